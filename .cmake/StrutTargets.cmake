@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# How every target of strut is compiled, and the functions that make one.
+
+set(STRUT_WARNINGS
+    -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wconversion
+    -Wdouble-promotion -Wundef)
+
+# A test preset keeps assertions at full optimisation; only Release drops them.
+set(CMAKE_C_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O3 -g")
+
+# strut_compile_options(TARGET): the same language, definitions and floating-point rules everywhere,
+# so that a result's bits do not depend on who compiled what.
+function(strut_compile_options target)
+  set_target_properties(
+    ${target}
+    PROPERTIES C_STANDARD 17
+               C_STANDARD_REQUIRED ON
+               C_EXTENSIONS OFF
+               C_VISIBILITY_PRESET hidden)
+  target_compile_definitions(${target} PRIVATE _POSIX_C_SOURCE=200809L
+                                               STRUT_VERSION="${PROJECT_VERSION}")
+  target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno)
+  if(STRUT_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(STRUT_SANITIZE OR STRUT_FUZZ)
+    # Function multiversioning resolves symbols before the sanitizers have started.
+    target_compile_definitions(${target} PRIVATE STRUT_NO_CLONES)
+    set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    if(STRUT_FUZZ)
+      list(APPEND sanitizers -fsanitize=fuzzer-no-link)
+    endif()
+    target_compile_options(${target} PRIVATE ${sanitizers})
+    target_link_options(${target} PRIVATE ${sanitizers})
+  endif()
+endfunction()
+
+# strut_existing(RESULT FILE...): the planned files that are there already.
+function(strut_existing result)
+  set(found)
+  foreach(file IN LISTS ARGN)
+    if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+      list(APPEND found "${file}")
+    else()
+      message(STATUS "not there yet: ${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+    endif()
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+                                           "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+  endforeach()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# strut_library(NAME SOURCE...): one library of strut, found by others as strut::NAME.
+function(strut_library name)
+  strut_existing(sources ${ARGN})
+  if(NOT sources)
+    set(sources "${CMAKE_CURRENT_BINARY_DIR}/${name}_empty.c")
+    file(WRITE "${sources}" "int strut_nothing_here_yet_${name};\n")
+  endif()
+  add_library(${name} ${sources})
+  add_library(strut::${name} ALIAS ${name})
+  strut_compile_options(${name})
+  target_include_directories(
+    ${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+                   "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/strut>")
+  set_target_properties(${name} PROPERTIES VERSION ${PROJECT_VERSION}
+                                           SOVERSION ${PROJECT_VERSION_MAJOR})
+endfunction()
