@@ -1,1 +1,75 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Where things go: the program, the libraries, their headers as the tree they are in the repository
+# (below include/strut, so that "engine/..." is spelled alike everywhere), and two descriptions for
+# other projects, one for CMake, one for pkg-config.
+include(CMakePackageConfigHelpers)
+
+set(strut_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/strut")
+
+if(TARGET strut)
+  install(TARGETS strut RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endif()
+install(
+  TARGETS strut_engine strut_output strut_parser
+  EXPORT strut
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+
+# strut.h and what it includes, all the way; nothing else is meant for others.
+function(strut_public_headers result)
+  set(seen)
+  set(queue parser/strut.h)
+  while(queue)
+    list(POP_FRONT queue header)
+    list(APPEND seen "${header}")
+    file(STRINGS "${PROJECT_SOURCE_DIR}/${header}" includes REGEX "^#include \"")
+    foreach(line IN LISTS includes)
+      string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
+      if(NOT included IN_LIST seen AND NOT included IN_LIST queue)
+        list(APPEND queue "${included}")
+      endif()
+    endforeach()
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+                                           "${PROJECT_SOURCE_DIR}/${header}")
+  endwhile()
+  set(${result} ${seen} PARENT_SCOPE)
+endfunction()
+
+strut_public_headers(headers)
+foreach(header IN LISTS headers)
+  get_filename_component(folder "${header}" DIRECTORY)
+  if(header STREQUAL "parser/strut.h")
+    set(folder "")
+  endif()
+  install(FILES "${PROJECT_SOURCE_DIR}/${header}"
+          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut/${folder}")
+endforeach()
+
+# CMake: find_package(strut), targets strut::engine, strut::output, strut::parser.
+install(EXPORT strut NAMESPACE strut:: FILE strutTargets.cmake DESTINATION "${strut_package_dir}")
+configure_package_config_file(
+  "${PROJECT_SOURCE_DIR}/.cmake/strutConfig.cmake.in" "${PROJECT_BINARY_DIR}/strutConfig.cmake"
+  INSTALL_DESTINATION "${strut_package_dir}" NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/strutConfigVersion.cmake"
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/strutConfig.cmake"
+              "${PROJECT_BINARY_DIR}/strutConfigVersion.cmake"
+              "${PROJECT_SOURCE_DIR}/.cmake/FindSuiteSparse.cmake"
+        DESTINATION "${strut_package_dir}")
+
+# pkg-config: a static libstrut needs everything named at every link, a shared one only itself.
+set(strut_pc_beneath "-lhdf5_hl -lcholmod -lm")
+if(BUILD_SHARED_LIBS)
+  set(strut_pc_private ".private")
+  set(strut_pc_libraries "\nLibs.private: ${strut_pc_beneath}")
+else()
+  set(strut_pc_private "")
+  set(strut_pc_libraries " ${strut_pc_beneath}")
+endif()
+# Its prefix is found from where the file lies, so that an installed tree may be moved.
+file(RELATIVE_PATH strut_pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+configure_file("${PROJECT_SOURCE_DIR}/.cmake/strut.pc.in" "${PROJECT_BINARY_DIR}/strut.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/strut.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+
+install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE"
+        DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -51,19 +51,23 @@ function(strut_existing result)
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-# strut_library(NAME SOURCE...): one library of strut, found by others as strut::NAME.
-function(strut_library name)
+# strut_library(ROOM SOURCE...): the library strut_ROOM; other projects know it as strut::ROOM.
+function(strut_library room)
+  set(name strut_${room})
   strut_existing(sources ${ARGN})
   if(NOT sources)
     set(sources "${CMAKE_CURRENT_BINARY_DIR}/${name}_empty.c")
-    file(WRITE "${sources}" "int strut_nothing_here_yet_${name};\n")
+    file(WRITE "${sources}" "extern int ${name}_is_empty;\nint ${name}_is_empty;\n")
   endif()
   add_library(${name} ${sources})
-  add_library(strut::${name} ALIAS ${name})
+  add_library(strut::${room} ALIAS ${name})
   strut_compile_options(${name})
   target_include_directories(
     ${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
                    "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/strut>")
-  set_target_properties(${name} PROPERTIES VERSION ${PROJECT_VERSION}
-                                           SOVERSION ${PROJECT_VERSION_MAJOR})
+  set_target_properties(
+    ${name}
+    PROPERTIES EXPORT_NAME ${room}
+               VERSION ${PROJECT_VERSION}
+               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endfunction()

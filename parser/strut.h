@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The front door of the libraries: everything a program needs to read a scene, compile it, run it
+ * and write what came out. Installed as include/strut/strut.h, beside the tree it includes.
+ *
+ * The libraries are written in C17; C++ programs may include this header as it stands.
+ */
+#ifndef STRUT_PARSER_STRUT_H
+#define STRUT_PARSER_STRUT_H
+
+/* The system's headers first, so that none of them lands inside the extern "C" below. */
+#include <math.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#ifdef __cplusplus
+#define restrict __restrict /* C's word, which C++ compilers know by this name only */
+extern "C" {
+#endif
+
+#include "engine/base/memory.h"
+#include "engine/base/status.h"
+#include "engine/integrate/integrator.h"
+#include "engine/model/model.h"
+#include "engine/model/state.h"
+#include "engine/output/csv.h"
+#include "engine/output/file.h"
+#include "engine/output/hdf5.h"
+#include "engine/output/json.h"
+#include "engine/run/recorder.h"
+#include "engine/run/summary.h"
+#include "engine/scene/check.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/signal.h"
+#include "parser/read_scene.h"
+#include "parser/write_scene.h"
+
+#ifdef __cplusplus
+}
+#undef restrict
+#endif
+
+#endif

@@ -1,0 +1,96 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the documents say to type works: every command of every ```sh block of README.md and
+# docs/*.md runs in a scratch folder (one per document, holding models/) with the strut just built
+# first on the PATH, and none fails. Two blocks of README.md install and build, which is not done
+# here: the one for the tests must be what .ci/run runs, the one for users the same with another
+# preset, and its last command runs here.
+#
+#   sh tests/docs.sh ROOT STRUT
+set -eu
+root=$(cd "$1" && pwd)
+strut=$(cd "$(dirname "$2")" && pwd)/strut
+PATH=$(dirname "$strut"):$PATH
+export PATH
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failures=0
+fail() { echo "$*"; failures=$((failures + 1)); }
+
+# blocks FILE FOLDER: the sh blocks of FILE as FOLDER/LINE.sh, those behind a marker
+# "<!-- command: NAME -->" as FOLDER/NAME.command. A fence that would hide commands is reported.
+blocks() {
+  awk -v file="$1" -v folder="$2" '
+    /^<!-- command: [a-z]+ -->$/ { marker = $3; next }
+    !inside && /^ *```/ {
+      inside = 1
+      language = $0; sub("^ *```", "", language)
+      if (language !~ /^(sh|yaml|json|c|text|csv|cmake)$/)
+        print file ":" NR ": a fence marked \"" language "\": sh for commands, text for the rest"
+      out = ""
+      if (language == "sh") out = folder "/" (marker == "" ? sprintf("%05d.sh", NR) : marker ".command")
+      marker = ""
+      next
+    }
+    inside && /^ *```/ { inside = 0; if (out != "") close(out); next }
+    inside && out != "" { print > out }
+    inside && out == "" && /^ *\$ [a-z]/ { print file ":" NR ": a command outside an sh block" }
+    END { if (inside) print file ": a fence that nothing closes" }' "$1"
+}
+
+# commands_work FILE FOLDER: runs the blocks of FILE in FOLDER, in order; says which failed.
+commands_work() {
+  mkdir -p "$2/blocks" "$2/here"
+  complaints=$(blocks "$1" "$2/blocks")
+  [ -z "$complaints" ] || { echo "$complaints"; return 1; }
+  cp -R "$root/models" "$2/here/models"
+  for block in "$2"/blocks/*.sh; do
+    [ -e "$block" ] || continue
+    ran=$((ran + 1))
+    if ! (cd "$2/here" && bash -euo pipefail "$block") >"$2/log" 2>&1 </dev/null; then
+      echo "$1, the block at line $(basename "$block" .sh | sed 's/^0*//'):"
+      cat "$block"
+      echo "--- ended badly, saying:"
+      tail -n 20 "$2/log"
+      return 1
+    fi
+  done
+}
+
+# Self-test: a document whose commands work, and four that must be noticed.
+ran=0
+document() { printf '%b' "$1" >"$scratch/made-up.md"; rm -rf "$scratch/self"; }
+document 'a\n```sh\necho a >left\n```\nb\n```sh\ntest -s left\nstrut --version\n```\n'
+commands_work "$scratch/made-up.md" "$scratch/self" || fail "self-test: a good document fails"
+[ "$ran" -eq 2 ] || fail "self-test: ran $ran blocks of 2"
+for bad in '```sh\nfalse\ntrue\n```\n' '```sh\nfalse | cat\n```\n' '```bash\ntrue\n```\n' \
+  '```text\n$ strut run a.yaml\n```\n' '```sh\ntrue\n'; do
+  document "$bad"
+  ! commands_work "$scratch/made-up.md" "$scratch/self" >/dev/null ||
+    fail "self-test: passes: $bad"
+done
+
+ran=0
+for document in "$root"/README.md "$root"/docs/*.md; do
+  [ -e "$document" ] || continue
+  commands_work "$document" "$scratch/$(basename "$document" .md)" ||
+    fail "$(basename "$document"): not as it says"
+done
+echo "$ran blocks of commands ran"
+[ "$ran" -gt 0 ] || fail "there were no commands"
+
+# The two command lines of README.md.
+build=$scratch/README/blocks/build.command
+tests=$scratch/README/blocks/tests.command
+for line in "$build" "$tests"; do
+  [ "$(wc -l <"$line")" -eq 1 ] || fail "$(basename "$line" .command): not one line"
+done
+sh "$root/.ci/run" --print | cmp - "$tests" || fail ".ci/run runs something else than README.md says"
+built=$(sed 's/ && build\/release\/strut .*//' "$build")
+tested=$(sed 's/ && ctest .*//; s/install.sh tests/install.sh/; s/preset tests/preset release/g' "$tests")
+[ "$built" = "$tested" ] || fail "the two command lines build in different ways: $built | $tested"
+crawl=$(sed -n 's/.* && build\/release\/\(strut .*\)/\1/p' "$build")
+[ -n "$crawl" ] || fail "the first command line does not end with a run"
+(cd "$scratch/README/here" && sh -euc "$crawl") >"$scratch/log" 2>&1 </dev/null ||
+  { cat "$scratch/log"; fail "failed: $crawl"; }
+exit "$((failures > 0))"

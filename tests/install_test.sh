@@ -1,0 +1,48 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# An installed strut is whole: it is installed below a scratch folder, moved, and then a program of
+# somebody else's is built against it, by way of CMake and of pkg-config, and run.
+#
+#   sh tests/install_test.sh BUILD
+set -eu
+build=$(cd "$1" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cache() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+
+cmake --install "$build" --prefix "$scratch/first" >/dev/null
+mv "$scratch/first" "$scratch/prefix"
+prefix=$scratch/prefix
+compiler=$(cache CMAKE_C_COMPILER)
+# A sanitized library needs its sanitizers in the program as well.
+sanitizers=
+[ "$(cache STRUT_SANITIZE)" = OFF ] || sanitizers='-fsanitize=address,undefined'
+
+mkdir "$scratch/user"
+cd "$scratch/user"
+cat >user.c <<'END'
+#include <strut.h>
+int main(void) { return puts(strut_status_text(STRUT_OK)) < 0; }
+END
+cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(user C)
+find_package(strut 0.1 REQUIRED)
+add_executable(user user.c)
+target_link_libraries(user PRIVATE strut::parser strut::output strut::engine)
+END
+cmake -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$compiler" \
+  -DCMAKE_C_FLAGS="$sanitizers" -DCMAKE_BUILD_TYPE=Release >configure.log 2>&1 ||
+  { cat configure.log; exit 1; }
+cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
+./build/user
+
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name strut.pc)")
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046
+"$compiler" -std=c17 $sanitizers user.c -o user $(pkg-config --cflags --libs strut)
+./user
+
+if [ -x "$build/strut" ]; then
+  "$prefix/bin/strut" --version
+fi

@@ -1,0 +1,126 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Includes run down the floors only. First proves on made-up trees that it notices each kind of
+# breach, then looks at the repository.
+#
+#   sh tests/layers.sh [ROOT]
+set -eu
+LC_ALL=C
+export LC_ALL
+
+# breaches ROOT: one line per include that is not allowed; nothing where all is well.
+breaches() {
+  (
+    cd "$1"
+    find engine parser -type f \( -name '*.c' -o -name '*.h' \) | sort |
+      xargs grep -nE '^[[:space:]]*#[[:space:]]*include' /dev/null || true
+  ) | awk -v root="$1" '
+    function folder(path) { sub("/[^/]*$", "", path); return path }
+    function room(path) { sub("^.*/", "", path); sub("[.][ch]$", "", path); return path }
+    function breach(why) { print place ": " why ": " text }
+    BEGIN {
+      floor["engine/base"] = 1; floor["engine/scene"] = 2; floor["engine/model"] = 3
+      floor["engine/forces"] = 4; floor["engine/integrate"] = 5; floor["engine/run"] = 6
+      floor["engine/statics"] = 7; floor["engine/output"] = 7; floor["engine/study"] = 8
+      # Foreign libraries live in one folder each; CHOLMOD and SPQR even in one room.
+      home["yaml.h"] = "parser"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
+      home["cJSON.h"] = home["cjson/cJSON.h"] = "engine/output"
+      solver["cholmod.h"] = solver["SuiteSparseQR_C.h"] = 1
+    }
+    {
+      split($0, part, ":"); file = part[1]; place = file ":" part[2]
+      text = $0; sub("^[^:]*:[^:]*:", "", text)
+      if (!match(text, /["<][^">]*[">]/)) { breach("cannot be read"); next }
+      name = substr(text, RSTART + 1, RLENGTH - 2)
+      quoted = substr(text, RSTART, 1) == "\""
+      from = folder(file); to = folder(name)
+      ours = name ~ "^(engine|parser|tests)/"
+      if (!ours) {
+        base = name; sub("^suitesparse/", "", base)
+        if (quoted) breach("not spelled from the repository root")
+        else if (base in home && from != home[base] && from != "parser/cli") breach("belongs to " home[base])
+        else if (base in solver && file !~ "^engine/model/linear_solver[.]")
+          breach("belongs to engine/model/linear_solver")
+        next
+      }
+      if (!quoted) { breach("a header of ours in angle brackets"); next }
+      if (system("test -f \"" root "/" name "\"") != 0) { breach("no such header"); next }
+      if (to ~ "^tests") { breach("the product includes a test"); next }
+      if (from == "parser/cli" || from == to) next
+      # The front door of the libraries names them all, but never the program.
+      if (file == "parser/strut.h") { if (to == "parser/cli") breach("runs up"); next }
+      if (from == "parser") {
+        if (to != "engine/base" && to != "engine/scene") breach("runs up")
+        next
+      }
+      if (from == "engine") { if (to !~ "^engine") breach("runs up"); next }
+      if (!(from in floor)) { breach("a folder without a floor"); next }
+      if (!(to in floor) || floor[to] >= floor[from]) breach("runs up")
+    }'
+}
+
+failures=0
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# expect COUNT FILE INCLUDE: the tree that holds FILE with that include has COUNT breaches.
+expect() {
+  rm -rf "$scratch/tree"
+  mkdir -p "$scratch/tree"
+  for header in engine/base/a.h engine/scene/a.h engine/model/a.h engine/forces/a.h \
+    engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/output/a.h engine/study/a.h \
+    engine/odd/a.h parser/a.h parser/cli/a.h tests/a.h "$2"; do
+    mkdir -p "$scratch/tree/${header%/*}"
+    : >"$scratch/tree/$header"
+  done
+  printf '/* a file */\n%s\nint x;\n' "$3" >"$scratch/tree/$2"
+  found=$(breaches "$scratch/tree" | wc -l)
+  if [ "$found" -ne "$1" ]; then
+    echo "self-test: $2 with $3: expected $1 breaches, found $found"
+    failures=$((failures + 1))
+  fi
+}
+
+expect 0 engine/model/b.c '#include "engine/base/a.h"'
+expect 0 engine/model/b.c '#include "engine/model/a.h"'
+expect 0 engine/study/b.c '#include "engine/statics/a.h"'
+expect 0 parser/b.c '#include "engine/scene/a.h"'
+expect 0 parser/cli/b.c '#include "engine/study/a.h"'
+expect 0 parser/strut.h '#include "engine/output/a.h"'
+expect 0 parser/b.c '#include <yaml.h>'
+expect 0 engine/model/linear_solver.c '#include <suitesparse/cholmod.h>'
+expect 0 engine/base/b.c '#include <stdio.h>'
+expect 1 engine/base/b.h '#include "engine/scene/a.h"'
+expect 1 engine/scene/b.c '  #  include "engine/model/a.h"'
+expect 1 engine/model/b.c '#include "engine/forces/a.h"'
+expect 1 engine/forces/b.c '#include "engine/run/a.h" // why'
+expect 1 engine/run/b.c '#include "engine/output/a.h"'
+expect 1 engine/statics/b.c '#include "engine/output/a.h"'
+expect 1 engine/output/b.c '#include "engine/statics/a.h"'
+expect 1 engine/run/b.c '#include "parser/a.h"'
+expect 1 parser/b.c '#include "engine/model/a.h"'
+expect 1 parser/b.c '#include "parser/cli/a.h"'
+expect 1 parser/strut.h '#include "parser/cli/a.h"'
+expect 1 engine/odd/b.c '#include "engine/base/a.h"'
+expect 1 engine/run/b.c '#include "tests/a.h"'
+expect 1 parser/cli/b.c '#include "tests/a.h"'
+expect 1 parser/b.c '#include "a.h"'
+expect 1 parser/b.c '#include "../engine/base/a.h"'
+expect 1 engine/run/b.c '#include <engine/base/a.h>'
+expect 1 engine/run/b.c '#include "engine/base/missing.h"'
+expect 1 engine/run/b.c '#include HEADER'
+expect 1 engine/run/b.c '#include <yaml.h>'
+expect 1 engine/forces/b.c '#include <cholmod.h>'
+expect 1 engine/run/b.c '#include <hdf5.h>'
+
+root=${1:-$(dirname "$0")/..}
+root=$(cd "$root" && pwd)
+found=$(breaches "$root")
+if [ -n "$found" ]; then
+  echo "$found"
+  failures=$((failures + 1))
+fi
+count=$(find "$root/engine" "$root/parser" -name '*.[ch]' | wc -l)
+[ "$count" -gt 20 ] || { echo "only $count files looked at"; failures=$((failures + 1)); }
+[ "$failures" -eq 0 ] && echo "the includes of $count files run down"
+exit "$((failures > 0))"
