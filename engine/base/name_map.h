@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A map from names to indices: a hash table that grows as names are added.
+ */
+#ifndef STRUT_ENGINE_BASE_NAME_MAP_H
+#define STRUT_ENGINE_BASE_NAME_MAP_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/export.h"
+
+/** Zero-initialise it; strut_name_map_free releases it. Names are not copied. */
+typedef struct strut_name_map {
+  size_t count, slots; /* slots: 0 or a power of two */
+  struct strut_name_slot *slot;
+} strut_name_map;
+
+/**
+ * Adds name -> index (index >= 0). Returns -1 when the name is new, the index it already has (the
+ * map is unchanged) otherwise, and -2 when memory is out.
+ */
+STRUT_API int32_t strut_name_map_add(strut_name_map *map, const char *name, int32_t index);
+/** The index of a name, or -1. */
+STRUT_API int32_t strut_name_map_find(const strut_name_map *map, const char *name);
+STRUT_API void strut_name_map_free(strut_name_map *map);
+
+#endif

@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rules about nodes and members, and the order in which all rules run. See check.h. */
+#include "engine/scene/check.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/name_map.h"
+#include "engine/scene/check_rules.h"
+
+void strut_find(strut_checker *checker, strut_subject subject, size_t index, const char *key,
+                const char *format, ...) {
+  strut_findings *f = checker->findings;
+  char text[600];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  if (f->count == f->capacity) {
+    size_t capacity = f->capacity ? 2 * f->capacity : 16;
+    strut_finding *items = strut_reallocate(f->items, capacity, sizeof *items);
+    if (!items) {
+      checker->out_of_memory = true;
+      return;
+    }
+    f->items = items;
+    f->capacity = capacity;
+  }
+  char *message = strut_arena_text(&f->arena, text, strlen(text));
+  if (!message) {
+    checker->out_of_memory = true;
+    return;
+  }
+  f->items[f->count++] = (strut_finding){subject, index, key, message};
+}
+
+bool strut_find_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
+                      const char *owner, double value, strut_range range) {
+  if (!isfinite(value))
+    strut_find(checker, subject, index, key, "the %s of %s is not a finite number", key, owner);
+  else if (range == STRUT_NOT_NEGATIVE && value < 0.0)
+    strut_find(checker, subject, index, key, "the %s of %s must not be negative, found %g", key,
+               owner, value);
+  else if (range == STRUT_ABOVE_ZERO && value <= 0.0)
+    strut_find(checker, subject, index, key, "the %s of %s must be above zero, found %g", key,
+               owner, value);
+  else
+    return true;
+  return false;
+}
+
+/* A name for the text of messages: "member 'm1'", or "member number 3" where it has none. */
+static const char *called(char buffer[200], const char *kind, const char *name, size_t index) {
+  if (name && *name)
+    snprintf(buffer, 200, "%s '%.150s'", kind, name);
+  else
+    snprintf(buffer, 200, "%s number %zu", kind, index + 1);
+  return buffer;
+}
+
+static void check_name(strut_checker *checker, strut_name_map *map, strut_subject subject,
+                       const char *kind, const char *name, size_t index) {
+  if (!name || !*name) {
+    strut_find(checker, subject, index, NULL, "%s number %zu has no name", kind, index + 1);
+    return;
+  }
+  int32_t first = strut_name_map_add(map, name, (int32_t)index);
+  if (first >= 0) strut_find(checker, subject, index, NULL, "there are two %ss '%s'", kind, name);
+  if (first == -2) checker->out_of_memory = true;
+}
+
+void strut_check_names(strut_checker *checker) {
+  const strut_scene *s = checker->scene;
+  strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0};
+  for (size_t i = 0; i < s->node_count; i++)
+    check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
+  for (size_t i = 0; i < s->member_count; i++)
+    check_name(checker, &members, STRUT_ON_MEMBER, "member", s->members[i].name, i);
+  for (size_t i = 0; i < s->actuator_count; i++)
+    check_name(checker, &actuators, STRUT_ON_ACTUATOR, "actuator", s->actuators[i].name, i);
+  for (size_t i = 0; i < s->load_count; i++)
+    check_name(checker, &loads, STRUT_ON_LOAD, "load", s->loads[i].name, i);
+  for (size_t i = 0; i < s->signal_count; i++)
+    if (s->signals[i].name)
+      check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
+  strut_name_map_free(&nodes);
+  strut_name_map_free(&members);
+  strut_name_map_free(&actuators);
+  strut_name_map_free(&loads);
+  strut_name_map_free(&signals);
+}
+
+void strut_check_nodes(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  if (!scene->node_count) strut_find(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
+  for (size_t i = 0; i < scene->node_count; i++) {
+    const strut_node *node = &scene->nodes[i];
+    char owner[200];
+    called(owner, "node", node->name, i);
+    strut_find_range(checker, STRUT_ON_NODE, i, "mass", owner, node->mass, STRUT_NOT_NEGATIVE);
+    if (!isfinite(node->position[0]) || !isfinite(node->position[1]))
+      strut_find(checker, STRUT_ON_NODE, i, "position", "the position of %s is not finite", owner);
+    else if (!isfinite(node->start[0]) || !isfinite(node->start[1]))
+      strut_find(checker, STRUT_ON_NODE, i, "start", "the start position of %s is not finite",
+                 owner);
+    for (size_t c = 0; c < 2; c++) {
+      if (!isfinite(node->velocity[c]))
+        strut_find(checker, STRUT_ON_NODE, i, "velocity", "the velocity of %s is not finite",
+                   owner);
+      else if (node->fixed[c] && node->velocity[c] != 0.0)
+        strut_find(checker, STRUT_ON_NODE, i, "velocity",
+                   "%s is fixed in %c and cannot have a velocity there", owner, "xy"[c]);
+    }
+  }
+}
+
+static double distance(const double a[2], const double b[2]) {
+  double dx = b[0] - a[0], dy = b[1] - a[1];
+  return sqrt(dx * dx + dy * dy);
+}
+
+static const char *rest_key(strut_rest_kind kind) {
+  static const char *const keys[] = {"rest_length_ratio", "rest_length", "pretension",
+                                     "force_density"};
+  return (unsigned)kind < 4 ? keys[kind] : NULL;
+}
+
+/* Does the member name two different nodes that exist? */
+static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  for (size_t e = 0; e < 2; e++)
+    if (m->node[e] < 0 || (size_t)m->node[e] >= checker->scene->node_count) {
+      strut_find(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins a node that does not exist",
+                 owner);
+      return false;
+    }
+  if (m->node[0] != m->node[1]) return true;
+  strut_find(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins node '%s' to itself", owner,
+             checker->scene->nodes[m->node[0]].name);
+  return false;
+}
+
+/* Its own numbers. */
+static bool check_numbers(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  const struct {
+    const char *key;
+    double value;
+  } numbers[] = {{"stiffness", m->stiffness},
+                 {"axial_stiffness", m->axial_stiffness},
+                 {"damping", m->damping},
+                 {"mass", m->mass}};
+  bool fine = true;
+  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    fine &= strut_find_range(checker, STRUT_ON_MEMBER, index, numbers[i].key, owner,
+                             numbers[i].value, STRUT_NOT_NEGATIVE);
+  const char *key = rest_key(m->rest_kind);
+  if (!key || (unsigned)m->kind > STRUT_CABLE) {
+    strut_find(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind", owner);
+    return false;
+  }
+  bool length = m->rest_kind == STRUT_REST_LENGTH || m->rest_kind == STRUT_REST_RATIO;
+  fine &= strut_find_range(checker, STRUT_ON_MEMBER, index, key, owner, m->rest_value,
+                           length ? STRUT_NOT_NEGATIVE : STRUT_ANY_NUMBER);
+  return fine;
+}
+
+/* What its numbers mean together. */
+static bool check_law(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  const char *key = rest_key(m->rest_kind);
+  bool force = m->rest_kind == STRUT_REST_PRETENSION || m->rest_kind == STRUT_REST_FORCE_DENSITY;
+  bool elastic = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
+  if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
+    strut_find(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
+               "%s has both a stiffness and an axial_stiffness; give one", owner);
+  else if (!elastic && m->damping == 0.0)
+    strut_find(checker, STRUT_ON_MEMBER, index, NULL,
+               "%s has neither stiffness nor damping, so it does nothing", owner);
+  else if (force && !elastic && m->rest_value != 0.0)
+    strut_find(checker, STRUT_ON_MEMBER, index, key, "the %s of %s needs a stiffness", key, owner);
+  else if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
+    strut_find(checker, STRUT_ON_MEMBER, index, key,
+               "the %s of %s must not be negative, since a cable cannot push; "
+               "give a slack cable its rest_length",
+               key, owner);
+  else
+    return true;
+  return false;
+}
+
+/* Its geometry: a direction as drawn and at the start, and a rest length. */
+static void check_shape(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_member *m = &scene->members[index];
+  const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
+  double drawn = distance(a->position, b->position), start = distance(a->start, b->start);
+  const char *key = rest_key(m->rest_kind);
+  bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
+  strut_rest rest;
+  if (isnan(drawn) || isnan(start)) return; /* said at the node */
+  if (drawn == 0.0 && !free_length)
+    strut_find(checker, STRUT_ON_MEMBER, index, "nodes",
+               "nodes '%s' and '%s' are drawn in one place, so %s has no direction", a->name,
+               b->name, owner);
+  else if (start == 0.0 && !free_length)
+    strut_find(checker, STRUT_ON_MEMBER, index, "nodes",
+               "nodes '%s' and '%s' start in one place, so %s has no direction", a->name, b->name,
+               owner);
+  else if (!strut_member_rest(scene, index, &rest) && m->axial_stiffness > 0.0)
+    strut_find(checker, STRUT_ON_MEMBER, index, key,
+               "the axial_stiffness of %s needs a rest length above zero, but its %s is %g "
+               "(drawn length %g m, axial_stiffness %g N)",
+               owner, key, m->rest_value, drawn, m->axial_stiffness);
+  else if (!strut_member_rest(scene, index, &rest))
+    strut_find(checker, STRUT_ON_MEMBER, index, key,
+               "the %s %g of %s would need a rest length below zero "
+               "(drawn length %g m, stiffness %g N/m)",
+               key, m->rest_value, owner, drawn, m->stiffness);
+}
+
+void strut_check_members(strut_checker *checker) {
+  for (size_t i = 0; i < checker->scene->member_count; i++) {
+    char owner[200];
+    called(owner, "member", checker->scene->members[i].name, i);
+    checker->loose[i] = !check_ends(checker, i, owner);
+    bool fine = check_numbers(checker, i, owner) && check_law(checker, i, owner);
+    if (fine && !checker->loose[i]) check_shape(checker, i, owner);
+  }
+}
+
+/* Is every node used, and does a run find a mass wherever it has to move one? */
+void strut_check_use(strut_checker *checker) {
+  enum { USED = 1, HEAVY = 2 };
+  const strut_scene *scene = checker->scene;
+  unsigned char *state = strut_allocate(scene->node_count, 1);
+  if (!state) {
+    checker->out_of_memory = true;
+    return;
+  }
+  for (size_t i = 0; i < scene->member_count; i++)
+    for (size_t e = 0; e < 2; e++) {
+      int32_t n = scene->members[i].node[e];
+      if (n < 0 || (size_t)n >= scene->node_count) continue;
+      state[n] = (unsigned char)(state[n] | USED | (scene->members[i].mass > 0.0 ? HEAVY : 0));
+    }
+  for (size_t i = 0; i < scene->load_count; i++)
+    if (scene->loads[i].node >= 0 && (size_t)scene->loads[i].node < scene->node_count)
+      state[scene->loads[i].node] |= USED;
+  for (size_t i = 0; i < scene->node_count; i++) {
+    const strut_node *node = &scene->nodes[i];
+    char owner[200];
+    called(owner, "node", node->name, i);
+    if (node->mass != 0.0) state[i] |= USED | HEAVY;
+    if (!(state[i] & USED))
+      strut_find(checker, STRUT_ON_NODE, i, NULL,
+                 "nothing uses %s: it has no member, no load and no mass", owner);
+    else if (checker->purpose == STRUT_FOR_RUN && !(state[i] & HEAVY) &&
+             !(node->fixed[0] && node->fixed[1]))
+      strut_find(checker, STRUT_ON_NODE, i, "mass",
+                 "%s has no mass, so a run cannot move it; "
+                 "give it or one of its members a mass, or fix it",
+                 owner);
+  }
+  strut_release(state);
+}
+
+strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
+                               strut_findings *findings) {
+  static void (*const rules[])(strut_checker *) = {
+      strut_check_names,   strut_check_nodes,  strut_check_members, strut_check_use,
+      strut_check_signals, strut_check_ground, strut_check_drives,  strut_check_experiment};
+  size_t before = findings->count;
+  strut_checker checker = {.scene = scene, .purpose = purpose, .findings = findings};
+  checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);
+  checker.wild = strut_allocate(scene->signal_count, sizeof *checker.wild);
+  if (!checker.loose || !checker.wild) checker.out_of_memory = true;
+  strut_c_locale locale = strut_c_locale_enter();
+  for (size_t i = 0; i < sizeof rules / sizeof rules[0] && !checker.out_of_memory; i++)
+    rules[i](&checker);
+  strut_c_locale_leave(locale);
+  strut_release(checker.loose);
+  strut_release(checker.wild);
+  if (checker.out_of_memory) return STRUT_NO_MEMORY;
+  return findings->count > before ? STRUT_BAD_SCENE : STRUT_OK;
+}
+
+void strut_findings_free(strut_findings *findings) {
+  strut_release(findings->items);
+  strut_arena_free(&findings->arena);
+  *findings = (strut_findings){0};
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rules about what acts on the structure and about the experiment. See check.h. */
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/scene/check_rules.h"
+
+enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
+
+static const double QUARTER_TURN = 1.57079632679489661923;
+
+static const char *called(char buffer[200], const char *kind, const char *name, size_t index) {
+  if (name && *name)
+    snprintf(buffer, 200, "%s '%.150s'", kind, name);
+  else
+    snprintf(buffer, 200, "%s number %zu", kind, index + 1);
+  return buffer;
+}
+
+static bool check_table(strut_checker *checker, size_t index, const char *owner) {
+  const strut_signal *s = &checker->scene->signals[index];
+  if (!s->point_count) {
+    strut_find(checker, STRUT_ON_SIGNAL, index, "table", "the table of %s has no points", owner);
+    return false;
+  }
+  for (size_t i = 0; i < s->point_count; i++) {
+    if (!isfinite(s->time[i]) || !isfinite(s->value[i]))
+      strut_find(checker, STRUT_ON_SIGNAL, index, "table",
+                 "point %zu in the table of %s is not finite", i + 1, owner);
+    else if (i && s->time[i] <= s->time[i - 1])
+      strut_find(checker, STRUT_ON_SIGNAL, index, "table",
+                 "the times in the table of %s must increase, but point %zu at %g s follows %g s",
+                 owner, i + 1, s->time[i], s->time[i - 1]);
+    else
+      continue;
+    return false;
+  }
+  return true;
+}
+
+/* Terms and depth of a sum, whose own terms have been checked before it. */
+static bool check_sum(strut_checker *checker, size_t index, const char *owner, uint32_t *size,
+                      uint32_t *depth) {
+  const strut_signal *s = &checker->scene->signals[index];
+  uint64_t terms = 1;
+  if (!s->term_count) {
+    strut_find(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms", owner);
+    return false;
+  }
+  for (size_t i = 0; i < s->term_count; i++) {
+    int32_t term = s->terms[i];
+    if (term < 0 || (size_t)term >= index) {
+      strut_find(checker, STRUT_ON_SIGNAL, index, "sum",
+                 "term %zu of %s is not a signal that comes before it", i + 1, owner);
+      return false;
+    }
+    if (checker->wild[term]) return false; /* said there */
+    terms += size[term];
+    if (depth[term] >= depth[index]) depth[index] = depth[term] + 1;
+  }
+  size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
+  if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
+  strut_find(checker, STRUT_ON_SIGNAL, index, "sum",
+             "%s has more than %d terms, or sums within sums more than %d deep", owner, MOST_TERMS,
+             DEEPEST_SUM);
+  return false;
+}
+
+/* The numbers of a waveform. */
+static bool check_wave(strut_checker *checker, size_t index, const char *owner) {
+  const strut_signal *s = &checker->scene->signals[index];
+  bool wave = s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE;
+  bool fine = strut_find_range(checker, STRUT_ON_SIGNAL, index, "amplitude", owner, s->amplitude,
+                               STRUT_ANY_NUMBER);
+  if (wave)
+    fine &= strut_find_range(checker, STRUT_ON_SIGNAL, index, "frequency", owner, s->frequency,
+                             STRUT_ABOVE_ZERO);
+  fine &=
+      strut_find_range(checker, STRUT_ON_SIGNAL, index, "phase", owner, s->phase, STRUT_ANY_NUMBER);
+  fine &=
+      strut_find_range(checker, STRUT_ON_SIGNAL, index, "start", owner, s->start, STRUT_ANY_NUMBER);
+  if (!fine) return false;
+  if (s->kind == STRUT_RAMP && !isfinite(s->stop))
+    strut_find(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
+  else if (!(s->stop > s->start))
+    strut_find(checker, STRUT_ON_SIGNAL, index, "stop",
+               "the stop of %s must come after its start, found %g s after %g s", owner, s->stop,
+               s->start);
+  else
+    return true;
+  return false;
+}
+
+void strut_check_signals(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  uint32_t *size = strut_allocate(scene->signal_count, sizeof *size);
+  uint32_t *depth = strut_allocate(scene->signal_count, sizeof *depth);
+  if (!size || !depth) checker->out_of_memory = true;
+  for (size_t i = 0; size && depth && i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    char owner[200];
+    called(owner, "signal", s->name, i);
+    size[i] = depth[i] = 1;
+    if ((unsigned)s->kind > STRUT_SUM)
+      strut_find(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind", owner);
+    bool fine = s->kind == STRUT_TABLE ? check_table(checker, i, owner)
+                : s->kind == STRUT_SUM ? check_sum(checker, i, owner, size, depth)
+                                       : check_wave(checker, i, owner);
+    checker->wild[i] = !fine || (unsigned)s->kind > STRUT_SUM;
+  }
+  strut_release(size);
+  strut_release(depth);
+}
+
+static void check_friction(strut_checker *checker, size_t index, const char *owner) {
+  const strut_friction *f = &checker->scene->contacts[index].friction;
+  if ((unsigned)f->law > STRUT_FRICTION_KARNOPP) {
+    strut_find(checker, STRUT_ON_CONTACT, index, "law", "the friction law of %s is unknown", owner);
+    return;
+  }
+  strut_find_range(checker, STRUT_ON_CONTACT, index, "mu_static", owner, f->mu_static,
+                   STRUT_NOT_NEGATIVE);
+  strut_find_range(checker, STRUT_ON_CONTACT, index, "mu_kinetic", owner, f->mu_kinetic,
+                   STRUT_NOT_NEGATIVE);
+  strut_find_range(checker, STRUT_ON_CONTACT, index, "stick_velocity", owner, f->stick_velocity,
+                   f->law == STRUT_FRICTION_KARNOPP ? STRUT_ABOVE_ZERO : STRUT_NOT_NEGATIVE);
+}
+
+void strut_check_ground(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const strut_ground *g = &scene->ground;
+  strut_find_range(checker, STRUT_ON_GROUND, 0, "height", "the ground", g->height,
+                   STRUT_ANY_NUMBER);
+  strut_find_range(checker, STRUT_ON_GROUND, 0, "belt_speed", "the ground", g->belt_speed,
+                   STRUT_ANY_NUMBER);
+  if (!(fabs(g->slope) < QUARTER_TURN))
+    strut_find(checker, STRUT_ON_GROUND, 0, "slope",
+               "the slope of the ground must lie between -90 deg and 90 deg, found %g deg",
+               g->slope / QUARTER_TURN * 90.0);
+  if (g->present && !scene->contact_count)
+    strut_find(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
+  if (!g->present && scene->contact_count)
+    strut_find(checker, STRUT_ON_GROUND, 0, NULL, "there are contacts but no ground");
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *c = &scene->contacts[i];
+    if (c->node < 0 || (size_t)c->node >= scene->node_count) {
+      strut_find(checker, STRUT_ON_CONTACT, i, NULL,
+                 "contact number %zu is of a node that does not exist", i + 1);
+      continue;
+    }
+    char owner[200];
+    called(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
+    if (i && c->node <= scene->contacts[i - 1].node)
+      strut_find(checker, STRUT_ON_CONTACT, i, NULL,
+                 "%s is out of order: contacts follow their nodes, one for each at most", owner);
+    strut_find_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
+                     STRUT_ABOVE_ZERO);
+    strut_find_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
+                     STRUT_NOT_NEGATIVE);
+    check_friction(checker, i, owner);
+  }
+}
+
+static bool there(int32_t index, size_t count) {
+  return index >= 0 && (size_t)index < count;
+}
+
+void strut_check_drives(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  char owner[200];
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    const strut_actuator *a = &scene->actuators[i];
+    called(owner, "actuator", a->name, i);
+    if (!there(a->member, scene->member_count))
+      strut_find(checker, STRUT_ON_ACTUATOR, i, "member", "%s drives a member that does not exist",
+                 owner);
+    if (!there(a->signal, scene->signal_count))
+      strut_find(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
+  }
+  for (size_t i = 0; i < scene->load_count; i++) {
+    const strut_load *l = &scene->loads[i];
+    called(owner, "load", l->name, i);
+    if (!there(l->node, scene->node_count))
+      strut_find(checker, STRUT_ON_LOAD, i, "node", "%s acts on a node that does not exist", owner);
+    if (!isfinite(l->force[0]) || !isfinite(l->force[1]))
+      strut_find(checker, STRUT_ON_LOAD, i, "force", "the force of %s is not finite", owner);
+    if (l->signal != -1 && !there(l->signal, scene->signal_count))
+      strut_find(checker, STRUT_ON_LOAD, i, "signal", "%s has a signal that does not exist", owner);
+  }
+}
+
+/* The length of the run: its duration, or the period it is counted in. */
+static bool check_length(strut_checker *checker) {
+  const strut_experiment *e = &checker->scene->experiment;
+  if (!strut_find_range(checker, STRUT_ON_RUN, 0, "duration", "the run", e->duration,
+                        STRUT_NOT_NEGATIVE) ||
+      !strut_find_range(checker, STRUT_ON_RUN, 0, "periods", "the run", e->periods,
+                        STRUT_NOT_NEGATIVE))
+    return false;
+  if (e->duration > 0.0 && e->periods > 0.0) {
+    strut_find(checker, STRUT_ON_RUN, 0, "periods",
+               "the run has both a duration and a number of periods; give one");
+    return false;
+  }
+  if (e->periods == 0.0) return e->duration > 0.0;
+  if (!there(e->period_signal, checker->scene->signal_count)) {
+    strut_find(checker, STRUT_ON_RUN, 0, "of", "a run in periods needs a signal to count them of");
+    return false;
+  }
+  if (checker->wild[e->period_signal]) return false; /* said there */
+  double period = strut_signal_period(checker->scene->signals, e->period_signal);
+  if (period > 0.0 && isfinite(period * e->periods)) return true;
+  if (period > 0.0 && isfinite(period))
+    strut_find(checker, STRUT_ON_RUN, 0, "periods", "the run is longer than any number");
+  else
+    strut_find(checker, STRUT_ON_RUN, 0, "of",
+               "'%s' has no period: the run can be counted in periods of a sine, a square, or a "
+               "sum whose periods fit into its longest one",
+               e->period_of ? e->period_of : "the signal");
+  return false;
+}
+
+static void check_window(strut_checker *checker, strut_subject subject, const char *owner,
+                         double last) {
+  const strut_experiment *e = &checker->scene->experiment;
+  bool periods = e->periods > 0.0;
+  double whole = periods ? e->periods : e->duration;
+  if (last <= whole) return;
+  strut_find(checker, subject, 0, "last", "%s the last %g %s of a run of %g %s", owner, last,
+             periods ? "periods" : "s", whole, periods ? "periods" : "s");
+}
+
+/* The step, and the number of steps that it leads to. */
+static void check_step(strut_checker *checker, bool length_known) {
+  const strut_experiment *e = &checker->scene->experiment;
+  if (!e->integrator || !*e->integrator)
+    strut_find(checker, STRUT_ON_SOLVER, 0, "integrator", "the solver names no integrator");
+  if (checker->purpose == STRUT_FOR_STATICS && e->step == 0.0) return;
+  if (!strut_find_range(checker, STRUT_ON_SOLVER, 0, "step", "the solver", e->step,
+                        STRUT_ABOVE_ZERO) ||
+      !length_known)
+    return;
+  double duration = strut_scene_span(checker->scene).duration;
+  if (e->step > duration)
+    strut_find(checker, STRUT_ON_SOLVER, 0, "step",
+               "the step of %g s is longer than the whole run of %g s", e->step, duration);
+  else if (duration / e->step > 1e15)
+    strut_find(checker, STRUT_ON_SOLVER, 0, "step",
+               "the run of %g s would take more than 1e15 steps of %g s", duration, e->step);
+}
+
+void strut_check_experiment(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const strut_experiment *e = &scene->experiment;
+  const strut_settle *settle = &scene->settle;
+  const struct {
+    const char *key;
+    double value;
+  } limits[] = {
+      {"speed", settle->speed}, {"acceleration", settle->acceleration}, {"limit", settle->limit}};
+  for (size_t i = 0; i < 3 && settle->wanted; i++)
+    strut_find_range(checker, STRUT_ON_INITIAL, 0, limits[i].key, "settling", limits[i].value,
+                     STRUT_ABOVE_ZERO);
+  if (!isfinite(scene->gravity[0]) || !isfinite(scene->gravity[1]))
+    strut_find(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
+  if ((unsigned)scene->mass_model > STRUT_MASS_LUMPED)
+    strut_find(checker, STRUT_ON_SCENE, 0, "mass_model", "the mass model is unknown");
+  bool length_known = check_length(checker);
+  if (checker->purpose == STRUT_FOR_RUN && e->duration == 0.0 && e->periods == 0.0)
+    strut_find(checker, STRUT_ON_RUN, 0, NULL, "the run has neither a duration nor periods");
+  check_step(checker, length_known);
+  if (e->measure_node != -1 && !there(e->measure_node, scene->node_count))
+    strut_find(checker, STRUT_ON_RUN, 0, "node", "the measured node does not exist");
+  bool measure = strut_find_range(checker, STRUT_ON_RUN, 0, "last", "the measuring window",
+                                  e->measure_last, STRUT_NOT_NEGATIVE);
+  bool output = strut_find_range(checker, STRUT_ON_OUTPUT, 0, "last", "the output", e->output_last,
+                                 STRUT_NOT_NEGATIVE);
+  strut_find_range(checker, STRUT_ON_OUTPUT, 0, "every", "the output", e->output_every,
+                   STRUT_NOT_NEGATIVE);
+  if (!length_known) return;
+  if (measure) check_window(checker, STRUT_ON_RUN, "cannot measure over", e->measure_last);
+  if (output) check_window(checker, STRUT_ON_OUTPUT, "cannot record", e->output_last);
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the rules of the check share. Internal to engine/scene.
+ */
+#ifndef STRUT_ENGINE_SCENE_CHECK_RULES_H
+#define STRUT_ENGINE_SCENE_CHECK_RULES_H
+
+#include "engine/scene/check.h"
+
+/** One check under way. */
+typedef struct strut_checker {
+  const strut_scene *scene;
+  strut_purpose purpose;
+  strut_findings *findings;
+  bool out_of_memory;
+  bool *loose; /* (member_count) true where a member's ends do not exist: other rules skip it */
+  bool *wild;  /* (signal_count) true where a signal must not be evaluated */
+} strut_checker;
+
+/** Adds a finding; remembers when memory is out. */
+void strut_find(strut_checker *checker, strut_subject subject, size_t index, const char *key,
+                const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+typedef enum strut_range { STRUT_ANY_NUMBER, STRUT_NOT_NEGATIVE, STRUT_ABOVE_ZERO } strut_range;
+
+/** Finds a number that is not finite or outside its range; returns true where it is fine. */
+bool strut_find_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
+                      const char *owner, double value, strut_range range);
+
+/** The rules, one function for each kind of thing. */
+void strut_check_names(strut_checker *checker);
+void strut_check_nodes(strut_checker *checker);
+void strut_check_members(strut_checker *checker);
+void strut_check_use(strut_checker *checker);
+void strut_check_ground(strut_checker *checker);
+void strut_check_signals(strut_checker *checker);
+void strut_check_drives(strut_checker *checker);
+void strut_check_experiment(strut_checker *checker);
+
+#endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Defaults of the plain description, and the few quantities that follow from it. See scene.h. */
+#include "engine/scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+void strut_scene_init(strut_scene *scene) {
+  memset(scene, 0, sizeof *scene);
+  scene->name = scene->description = scene->source = "";
+  scene->settle = (strut_settle){.speed = 1e-8, .acceleration = 1e-8, .limit = 100.0};
+  scene->experiment.integrator = "rk4";
+  scene->experiment.period_signal = -1;
+  scene->experiment.measure_node = -1;
+  scene->experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE;
+}
+
+strut_node strut_node_default(void) {
+  return (strut_node){.name = ""};
+}
+
+strut_member strut_member_default(void) {
+  return (strut_member){.name = "",
+                        .node = {-1, -1},
+                        .kind = STRUT_BAR,
+                        .rest_kind = STRUT_REST_RATIO,
+                        .rest_value = 1};
+}
+
+strut_contact strut_contact_default(void) {
+  return (strut_contact){.node = -1};
+}
+
+void strut_scene_free(strut_scene *scene) {
+  strut_arena_free(&scene->arena);
+  memset(scene, 0, sizeof *scene);
+}
+
+static double drawn_length(const strut_scene *scene, const strut_member *member) {
+  const double *a = scene->nodes[member->node[0]].position;
+  const double *b = scene->nodes[member->node[1]].position;
+  double dx = b[0] - a[0], dy = b[1] - a[1];
+  return sqrt(dx * dx + dy * dy);
+}
+
+/* Rest length that gives `force` in the drawn shape; NAN where there is none. */
+static double length_under(const strut_member *member, double drawn, double force) {
+  if (force == 0.0) return drawn;
+  if (member->axial_stiffness > 0.0) {
+    double sum = member->axial_stiffness + force;
+    return sum > 0.0 ? member->axial_stiffness * drawn / sum : (double)NAN;
+  }
+  return member->stiffness > 0.0 ? drawn - force / member->stiffness : (double)NAN;
+}
+
+bool strut_member_rest(const strut_scene *scene, size_t index, strut_rest *rest) {
+  const strut_member *member = &scene->members[index];
+  double drawn = drawn_length(scene, member), force = (double)NAN, length;
+  switch (member->rest_kind) {
+    case STRUT_REST_RATIO:
+      length = member->rest_value * drawn;
+      break;
+    case STRUT_REST_LENGTH:
+      length = member->rest_value;
+      break;
+    case STRUT_REST_PRETENSION:
+      length = length_under(member, drawn, force = member->rest_value);
+      break;
+    case STRUT_REST_FORCE_DENSITY:
+      length = length_under(member, drawn, force = member->rest_value * drawn);
+      break;
+    default:
+      return false;
+  }
+  bool by_ea = member->axial_stiffness > 0.0;
+  if (!isfinite(drawn) || !isfinite(length) || length < 0.0 || (by_ea && length == 0.0))
+    return false;
+  double stiffness = by_ea ? member->axial_stiffness / length : member->stiffness;
+  if (!isfinite(stiffness)) return false;
+  if (isnan(force)) force = stiffness * (drawn - length);
+  if (member->kind == STRUT_CABLE && force < 0.0) force = 0.0;
+  *rest = (strut_rest){.drawn_length = drawn,
+                       .length = length,
+                       .ratio = drawn > 0.0 ? length / drawn : 0.0,
+                       .pretension = force,
+                       .force_density = drawn > 0.0 ? force / drawn : 0.0,
+                       .stiffness = stiffness};
+  return true;
+}
+
+strut_span strut_scene_span(const strut_scene *scene) {
+  const strut_experiment *e = &scene->experiment;
+  strut_span span = {.duration = e->duration};
+  double unit = 1.0; /* of the windows: one period, or one second */
+  if (e->periods > 0.0) {
+    unit = span.period = strut_signal_period(scene->signals, e->period_signal);
+    span.duration = e->periods * span.period;
+  }
+  if (e->measure_last > 0.0) span.window_start = span.duration - e->measure_last * unit;
+  if (e->output_last > 0.0) span.record_start = span.duration - e->output_last * unit;
+  if (span.window_start < 0.0) span.window_start = 0.0;
+  if (span.record_start < 0.0) span.record_start = 0.0;
+  span.record_every =
+      e->output_every > 0.0 ? e->output_every : (span.duration - span.record_start) / 1000.0;
+  return span;
+}
