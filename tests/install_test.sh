@@ -39,6 +39,8 @@ cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name strut.pc)")
 export PKG_CONFIG_PATH
+LD_LIBRARY_PATH=${PKG_CONFIG_PATH%/pkgconfig} # for shared ones, which nobody registered here
+export LD_LIBRARY_PATH
 # shellcheck disable=SC2046
 "$compiler" -std=c17 $sanitizers user.c -o user $(pkg-config --cflags --libs strut)
 ./user
