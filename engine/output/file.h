@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Files that appear whole or not at all: written beside, synchronised, renamed.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_FILE_H
+#define STRUT_ENGINE_OUTPUT_FILE_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "engine/base/status.h"
+
+/** A file being written. Zero-initialise. */
+typedef struct strut_file {
+  FILE *stream;      /* write here; its error flag is looked at on commit */
+  char *path, *part; /* the final name, and the name while it is written */
+} strut_file;
+
+/** Creates DIR (one level, or more as mkdir -p) if it is missing. */
+STRUT_API strut_status strut_directory_create(const char *directory, strut_error *error);
+/** Opens directory/name for writing under a temporary name beside it. */
+STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
+                                       strut_error *error);
+/** Flushes, synchronises and renames; on failure nothing of it is left. */
+STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
+/** Closes and removes what was written. Does nothing on a committed or zeroed file. */
+STRUT_API void strut_file_abandon(strut_file *file);
+/** Writes a whole text as a file. */
+STRUT_API strut_status strut_file_write_text(const char *directory, const char *name,
+                                             const char *text, strut_error *error);
+
+#endif

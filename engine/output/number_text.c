@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The method is Raffaello Giulietti's Schubfach ("The Schubfach way to render doubles", 2020): one
+ * table of powers of ten to 128 bits, three products, no loop over digits to decide, no fallback.
+ * A value is c * 2^q; everything below is scaled by 4 so that the ends of the interval that rounds
+ * to it are integers.
+ */
+#include "engine/output/number_text.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "engine/output/number_powers.h"
+
+/* digits * 10^exponent */
+typedef struct decimal {
+  uint64_t digits;
+  int exponent;
+} decimal;
+
+/* Floor of log10(2^e), of log10(3/4 2^e) and of log2(10^e), for any exponent of a double. */
+static int floor_shift(int value, int bits) {
+  return value >= 0 ? value >> bits : -((-value + (1 << bits) - 1) >> bits);
+}
+static int log10_of_power_2(int e) { return floor_shift(e * 1262611, 22); }
+static int log10_of_three_quarters_power_2(int e) { return floor_shift(e * 1262611 - 524031, 22); }
+static int log2_of_power_10(int e) { return floor_shift(e * 1741647, 19); }
+
+static uint64_t multiply(uint64_t a, uint64_t b, uint64_t *low) {
+  uint64_t a0 = a & 0xffffffff, a1 = a >> 32, b0 = b & 0xffffffff, b1 = b >> 32;
+  uint64_t p00 = a0 * b0, p01 = a0 * b1, p10 = a1 * b0;
+  uint64_t middle = (p00 >> 32) + (p01 & 0xffffffff) + p10;
+  *low = (middle << 32) | (p00 & 0xffffffff);
+  return a1 * b1 + (p01 >> 32) + (middle >> 32);
+}
+
+/* floor(power * c / 2^128), its last bit set where anything was cut off. */
+static uint64_t scale(const uint64_t power[2], uint64_t c) {
+  uint64_t low, unused;
+  uint64_t carry = multiply(power[1], c, &unused);
+  uint64_t high = multiply(power[0], c, &low);
+  low += carry;
+  high += low < carry;
+  return high | (low > 1);
+}
+
+/* Of s and s + 1, the one inside [lower, upper]; of both, the nearer to `quadruple` / 4. */
+static uint64_t nearest(uint64_t s, uint64_t lower, uint64_t upper, uint64_t quadruple) {
+  bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
+  if (down != up) return s + up;
+  uint64_t middle = 4 * s + 2;
+  return s + (quadruple > middle || (quadruple == middle && (s & 1)));
+}
+
+static decimal shortest(uint64_t fraction, int biased) {
+  uint64_t c = biased ? fraction | (UINT64_C(1) << 52) : fraction;
+  int q = (biased ? biased : 1) - 1075;
+  if (q <= 0 && q > -53 && (c & ((UINT64_C(1) << -q) - 1)) == 0) return (decimal){c >> -q, 0};
+
+  bool uneven = fraction == 0 && biased > 1; /* the neighbour below is nearer */
+  unsigned odd = c & 1;                      /* the interval's ends round away from it */
+  int k = uneven ? log10_of_three_quarters_power_2(q) : log10_of_power_2(q);
+  int h = q + log2_of_power_10(-k) + 1;
+  const uint64_t *power = strut_number_powers[-k - STRUT_NUMBER_POWER_FIRST];
+  uint64_t lower = scale(power, (4 * c - 2 + uneven) << h) + odd;
+  uint64_t middle = scale(power, 4 * c << h);
+  uint64_t upper = scale(power, (4 * c + 2) << h) - odd;
+
+  uint64_t s = middle / 4;
+  if (s >= 10) { /* is there a multiple of ten inside? */
+    uint64_t tens = s / 10;
+    bool down = lower <= 40 * tens, up = 40 * tens + 40 <= upper;
+    if (down != up) return (decimal){tens + up, k + 1};
+  }
+  return (decimal){nearest(s, lower, upper, middle), k};
+}
+
+/* Writes the digits of a positive integer without trailing zeros; returns their number. */
+static int write_digits(decimal *d, char text[20]) {
+  char reversed[20];
+  int count = 0;
+  while (d->digits % 10 == 0) {
+    d->digits /= 10;
+    d->exponent++;
+  }
+  for (uint64_t rest = d->digits; rest; rest /= 10) reversed[count++] = (char)('0' + rest % 10);
+  for (int i = 0; i < count; i++) text[i] = reversed[count - 1 - i];
+  return count;
+}
+
+static char *write_zeros(char *at, int count) {
+  for (int i = 0; i < count; i++) *at++ = '0';
+  return at;
+}
+
+static char *write_exponent(char *at, int exponent) {
+  *at++ = 'e';
+  if (exponent < 0) {
+    *at++ = '-';
+    exponent = -exponent;
+  }
+  if (exponent >= 100) *at++ = (char)('0' + exponent / 100);
+  if (exponent >= 10) *at++ = (char)('0' + exponent / 10 % 10);
+  *at++ = (char)('0' + exponent % 10);
+  return at;
+}
+
+/* Digits with a point after the first `point` of them; point may lie outside. */
+static char *write_decimal(char *at, decimal d) {
+  char digits[20];
+  int count = write_digits(&d, digits);
+  int point = count + d.exponent;
+  bool scientific = point < -3 || point > 17;
+  int before = scientific ? 1 : point;
+  if (before <= 0) {
+    *at++ = '0';
+    *at++ = '.';
+    at = write_zeros(at, -before);
+  }
+  for (int i = 0; i < count; i++) {
+    if (i > 0 && i == before) *at++ = '.';
+    *at++ = digits[i];
+  }
+  at = write_zeros(at, before - count);
+  return scientific ? write_exponent(at, point - 1) : at;
+}
+
+size_t strut_number_text(double value, char text[STRUT_NUMBER_TEXT]) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
+  int biased = (int)(bits >> 52 & 0x7ff);
+  char *at = text;
+  if (isnan(value)) {
+    memcpy(text, "nan", 4);
+    return 3;
+  }
+  if (bits >> 63) *at++ = '-';
+  if (isinf(value)) {
+    memcpy(at, "inf", 3);
+    at += 3;
+  } else if (fraction == 0 && biased == 0) {
+    *at++ = '0';
+  } else {
+    at = write_decimal(at, shortest(fraction, biased));
+  }
+  *at = '\0';
+  return (size_t)(at - text);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Doubles as the shortest decimal text that reads back to the same bits, in any locale.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_NUMBER_TEXT_H
+#define STRUT_ENGINE_OUTPUT_NUMBER_TEXT_H
+
+#include <stddef.h>
+
+#include "engine/base/export.h"
+
+/** Room that any text of strut_number_text fits in, its NUL included. */
+enum { STRUT_NUMBER_TEXT = 32 };
+
+/**
+ * Writes value with a decimal point and the fewest digits that identify it (of those the nearest to
+ * it), NUL-terminated; returns the length. "0.1", "-0", "1e-07" is "1e-7"; "nan", "inf", "-inf".
+ */
+STRUT_API size_t strut_number_text(double value, char text[STRUT_NUMBER_TEXT]);
+
+#endif
