@@ -71,3 +71,20 @@ function(strut_library room)
                VERSION ${PROJECT_VERSION}
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endfunction()
+
+# strut_all_listed(FOLDER TARGET...): says which source files of FOLDER none of the targets has, so
+# that a new file does not stay out of the build unnoticed.
+function(strut_all_listed folder)
+  file(GLOB_RECURSE there CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.c")
+  foreach(target IN LISTS ARGN)
+    if(TARGET ${target})
+      get_target_property(sources ${target} SOURCES)
+      get_target_property(home ${target} SOURCE_DIR)
+      list(TRANSFORM sources PREPEND "${home}/")
+      list(REMOVE_ITEM there ${sources})
+    endif()
+  endforeach()
+  foreach(file IN LISTS there)
+    message(AUTHOR_WARNING "No list of sources names ${file}")
+  endforeach()
+endfunction()
