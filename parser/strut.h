@@ -31,6 +31,7 @@ extern "C" {
 #include "engine/output/hdf5.h"
 #include "engine/output/json.h"
 #include "engine/run/recorder.h"
+#include "engine/run/simulate.h"
 #include "engine/run/summary.h"
 #include "engine/scene/check.h"
 #include "engine/scene/scene.h"

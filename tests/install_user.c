@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A program of somebody else's: reads a scene, runs it, prints the summary. See install_test.sh. */
+#include <strut.h>
+
+static const char scene_text[] =
+    "strut: 1\n"
+    "nodes: {wall: {position: [0, 0], fixed: both}, bob: {position: [1.1, 0], mass: 1}}\n"
+    "members: {spring: {kind: spring, nodes: [wall, bob], stiffness: 10, rest_length: 1}}\n"
+    "solver: {step: 1 ms}\n"
+    "run: {duration: 0.1 s}\n";
+
+int main(void) {
+  strut_scene scene = {0};
+  strut_model *model = NULL;
+  strut_summary summary = {0};
+  strut_diagnostics diagnostics = {0};
+  strut_error error = {0};
+  strut_sink *sinks[] = {strut_csv_create("."), strut_hdf5_create(".", scene_text)};
+  const strut_run_options options = {.sinks = sinks, .sink_count = 2};
+
+  strut_status status = strut_scene_read(&scene, "scene", scene_text, sizeof scene_text - 1, NULL,
+                                         0, STRUT_FOR_RUN, &diagnostics);
+  if (status == STRUT_OK) status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, &error);
+  if (status == STRUT_OK) {
+    char *text = strut_summary_json(&summary, &scene, false);
+    puts(text ? text : "no memory");
+    strut_release(text);
+  } else {
+    printf("%s: %s\n", strut_status_text(status), error.message);
+  }
+  strut_csv_free(sinks[0]);
+  strut_hdf5_free(sinks[1]);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  strut_diagnostics_free(&diagnostics);
+  return status == STRUT_OK ? 0 : 1;
+}
