@@ -63,8 +63,8 @@ STRUT_INLINE void contact(double y, double vx, double vy, double mu, double *fx,
 /* (10) */
 STRUT_INLINE void acceleration(const nodes *q, const nodes *v, double s, double rate, double mu,
                                nodes *out) {
-#define MEMBER(i1, i2, c, rest, speed)                                                          \
-  member(q->x##i2 - q->x##i1, q->y##i2 - q->y##i1, v->x##i2 - v->x##i1, v->y##i2 - v->y##i1, c, \
+#define MEMBER(i1, i2, c, rest, speed)                                                             \
+  member(q->x##i2 - q->x##i1, q->y##i2 - q->y##i1, v->x##i2 - v->x##i1, v->y##i2 - v->y##i1, c,    \
          rest, speed)
   pull m1 = MEMBER(1, 2, C_BAR, 0.10, 0.0), m2 = MEMBER(3, 5, C_BAR, 0.02, 0.0);
   pull m3 = MEMBER(4, 5, C_BAR, 0.02, 0.0), m4 = MEMBER(1, 3, C_SOFT, 0.02, 0.0);

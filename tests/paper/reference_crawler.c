@@ -39,9 +39,7 @@ typedef struct crawler {
   double frequency, amplitude, mu;
 } crawler;
 
-static double sign(double x) {
-  return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0;
-}
+static double sign(double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; }
 
 static void mass_matrix(double mass[DOF][DOF]) {
   memset(mass, 0, sizeof(double[DOF][DOF]));

@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * strut_bench: how long a step takes.
+ *
+ *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
+ *                                            X-frames of 10 to N (default 1000000) members
+ *   strut_bench chain MEMBERS [lumped|consistent]   writes such a chain as a scene file to stdout
+ *   strut_bench load FILE                    reads and compiles a scene file; seconds and memory
+ *
+ * Competitors take turns, so that a change of the machine's speed meets all of them; the medians
+ * are printed.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "engine/integrate/integrator.h"
+#ifdef BENCH_PARSER
+#include "parser/read_scene.h"
+#endif
+#include "tests/bench/rivals.h"
+#include "tests/bench/scenes.h"
+
+enum { MOST_RIVALS = 16, MOST_REPEATS = 1001 };
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median(double *values, int count) {
+  qsort(values, (size_t)count, sizeof *values, ascending);
+  return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+static double peak_megabytes(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return (double)usage.ru_maxrss / 1024.0;
+}
+
+/* The crawler. Node 1 after a fifth of a second tells whether all compute the same thing. */
+static void compare_crawlers(int repeats) {
+  static double times[MOST_RIVALS][MOST_REPEATS];
+  void *crawlers[MOST_RIVALS] = {NULL};
+  double position[MOST_RIVALS] = {0};
+  const long long warm = 2000;
+  int count = 0;
+  for (; count < MOST_RIVALS && rival_at((size_t)count); count++) {
+    const rival *it = rival_at((size_t)count);
+    crawlers[count] = it->create();
+    if (!crawlers[count]) continue;
+    it->run(crawlers[count], warm);
+    position[count] = it->position(crawlers[count]);
+  }
+  for (int r = 0; r < repeats; r++)
+    for (int i = 0; i < count; i++) {
+      const rival *it = rival_at((size_t)i);
+      if (crawlers[i]) times[i][r] = 1e9 * it->run(crawlers[i], it->steps) / (double)it->steps;
+    }
+  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %10s %14s\n", "", "ns/step", "times",
+         "x_1(0.2 s) [mm]");
+  double own = crawlers[0] ? median(times[0], repeats) : (double)NAN;
+  for (int i = 0; i < count; i++) {
+    const rival *it = rival_at((size_t)i);
+    if (!crawlers[i]) {
+      printf("  %-32s %10s\n", it->name, "not here");
+      continue;
+    }
+    double typical = i ? median(times[i], repeats) : own;
+    printf("  %-32s %10.1f %10.3f %14.9f\n", it->name, typical, typical / own, 1e3 * position[i]);
+    it->free(crawlers[i]);
+  }
+}
+
+/* One chain, ready to step. */
+typedef struct chain {
+  strut_scene scene;
+  strut_model *model;
+  strut_state *state;
+  void *workspace;
+} chain;
+
+static void chain_free(chain *it) {
+  if (it->workspace) strut_integrator_rk4.destroy(it->workspace);
+  strut_state_free(it->state);
+  strut_model_free(it->model);
+  strut_scene_free(&it->scene);
+}
+
+static bool chain_make(chain *it, size_t members, strut_mass_model mass) {
+  strut_error error = {0};
+  *it = (chain){0};
+  strut_status status = bench_chain_scene(&it->scene, members, mass);
+  if (status == STRUT_OK) status = strut_model_compile(&it->scene, &it->model, &error);
+  if (status == STRUT_OK) status = strut_state_create(it->model, &it->state, &error);
+  if (status == STRUT_OK) it->workspace = strut_integrator_rk4.create(it->model);
+  if (it->workspace) {
+    strut_state_reset(it->model, it->state);
+    return true;
+  }
+  fprintf(stderr, "strut_bench: chain of %zu: %s: %s\n", members, strut_status_text(status),
+          error.message);
+  chain_free(it);
+  return false;
+}
+
+static double chain_run(chain *it, long long steps) {
+  double start = bench_seconds();
+  strut_integrator_rk4.advance(it->model, it->state, it->workspace, 1e-4, steps);
+  return bench_seconds() - start;
+}
+
+static void time_chain(size_t members, int repeats) {
+  static double times[2][MOST_REPEATS];
+  chain chains[2];
+  bool made[2];
+  long long steps = members < 200000 ? (long long)(1000000 / members) : 5;
+  double farthest = 0;
+  for (int m = 0; m < 2; m++) {
+    made[m] = chain_make(&chains[m], members, m ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
+    if (made[m]) chain_run(&chains[m], steps);
+  }
+  for (int r = 0; r < repeats; r++)
+    for (int m = 0; m < 2; m++)
+      if (made[m])
+        times[m][r] = chain_run(&chains[m], steps) / (double)(steps * (long long)members);
+  printf("  %10zu", members);
+  for (int m = 0; m < 2; m++) {
+    if (!made[m]) {
+      printf(" %12s", "failed");
+      continue;
+    }
+    printf(" %12.2f", 1e9 * median(times[m], repeats));
+    for (int32_t i = 0; i < 2 * chains[m].model->node_count; i++)
+      farthest = fmax(farthest, fabs(chains[m].state->v[i]));
+    chain_free(&chains[m]);
+  }
+  printf("   %s\n", farthest > 0 && farthest < 100 ? "" : "(not a sound motion)");
+}
+
+static void compare_chains(size_t largest, int repeats) {
+  printf("\nchains of X-frames, RK4, 0.1 ms: ns per member and step\n  %10s %12s %12s\n", "members",
+         "lumped", "consistent");
+  for (size_t members = 10; members <= largest; members *= 10)
+    time_chain(members, members >= 100000 && repeats > 5 ? 5 : repeats);
+  printf("  peak memory %.0f MB\n", peak_megabytes());
+}
+
+static int load(const char *path) {
+#ifdef BENCH_PARSER
+  char *text = NULL;
+  size_t length = 0;
+  strut_error error = {0};
+  strut_scene scene;
+  strut_model *model = NULL;
+  strut_diagnostics diagnostics = {0};
+  double start = bench_seconds();
+  strut_status status = strut_file_read(path, &text, &length, &error);
+  if (status == STRUT_OK)
+    status = strut_scene_read(&scene, path, text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+  double read = bench_seconds();
+  if (status == STRUT_OK) {
+    status = strut_model_compile(&scene, &model, &error);
+    printf(
+        "%zu members: read in %.2f s, compiled in %.2f s, together %.2f s, peak memory %.0f MB\n",
+        scene.member_count, read - start, bench_seconds() - read, bench_seconds() - start,
+        peak_megabytes());
+    strut_model_free(model);
+    strut_scene_free(&scene);
+  }
+  if (status != STRUT_OK)
+    fprintf(stderr, "strut_bench: %s: %s %s\n", path, strut_status_text(status), error.message);
+  strut_diagnostics_free(&diagnostics);
+  strut_release(text);
+  return strut_status_exit_code(status);
+#else
+  fprintf(stderr, "strut_bench: built without the parser, cannot read %s\n", path);
+  return 1;
+#endif
+}
+
+static int usage(void) {
+  fprintf(stderr,
+          "usage: strut_bench [--repeats N] [--members N]\n"
+          "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
+          "       strut_bench load FILE\n");
+  return 1;
+}
+
+int main(int argc, char **argv) {
+  if (argc == 3 && strcmp(argv[1], "load") == 0) return load(argv[2]);
+  if (argc >= 3 && strcmp(argv[1], "chain") == 0) {
+    bool consistent = argc > 3 && strcmp(argv[3], "consistent") == 0;
+    bench_chain_write(stdout, strtoul(argv[2], NULL, 10),
+                      consistent ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
+    return fflush(stdout) == 0 ? 0 : 4;
+  }
+  int repeats = 15;
+  size_t members = 1000000;
+  for (int i = 1; i < argc; i += 2) {
+    if (i + 1 < argc && strcmp(argv[i], "--repeats") == 0)
+      repeats = atoi(argv[i + 1]);
+    else if (i + 1 < argc && strcmp(argv[i], "--members") == 0)
+      members = strtoul(argv[i + 1], NULL, 10);
+    else
+      return usage();
+  }
+  if (repeats < 1 || repeats > MOST_REPEATS) return usage();
+  compare_crawlers(repeats);
+  compare_chains(members, repeats);
+  return 0;
+}

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/bench/rivals.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "engine/integrate/integrator.h"
+#include "tests/bench/hand_kernel.h"
+#include "tests/bench/scenes.h"
+#ifdef BENCH_MUJOCO
+#include "tests/bench/mujoco_crawler.h"
+#endif
+
+static const double frequency = 10.0, amplitude = 1e-4, friction = 0.1, step = 1e-4;
+
+double bench_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* strut */
+
+typedef struct engine_crawler {
+  strut_scene scene;
+  strut_model *model;
+  strut_state *state;
+  void *workspace;
+} engine_crawler;
+
+static void engine_free(void *crawler) {
+  engine_crawler *it = crawler;
+  if (it->workspace) strut_integrator_rk4.destroy(it->workspace);
+  strut_state_free(it->state);
+  strut_model_free(it->model);
+  strut_scene_free(&it->scene);
+  free(it);
+}
+
+static void *engine_make(bool ledger) {
+  engine_crawler *it = calloc(1, sizeof *it);
+  if (!it) return NULL;
+  if (bench_crawler_scene(&it->scene, frequency, amplitude, friction) == STRUT_OK &&
+      strut_model_compile(&it->scene, &it->model, NULL) == STRUT_OK &&
+      strut_state_create(it->model, &it->state, NULL) == STRUT_OK)
+    it->workspace = strut_integrator_rk4.create(it->model);
+  if (!it->workspace) {
+    engine_free(it);
+    return NULL;
+  }
+  strut_state_reset(it->model, it->state);
+  it->state->ledger = ledger;
+  return it;
+}
+
+static void *engine_create(void) { return engine_make(false); }
+static void *engine_create_ledger(void) { return engine_make(true); }
+
+static double engine_run(void *crawler, long long steps) {
+  engine_crawler *it = crawler;
+  double start = bench_seconds();
+  strut_integrator_rk4.advance(it->model, it->state, it->workspace, step, steps);
+  return bench_seconds() - start;
+}
+
+static double engine_position(void *crawler) {
+  const engine_crawler *it = crawler;
+  return it->state->q[0];
+}
+
+/* by hand */
+
+static void *hand_create(void) {
+  hand_crawler_state *it = malloc(sizeof *it);
+  if (it) hand_crawler_place(it, 0);
+  return it;
+}
+
+static double hand_run(void *crawler, long long steps) {
+  double start = bench_seconds();
+  hand_crawler_run(crawler, step, frequency, amplitude, friction, steps);
+  return bench_seconds() - start;
+}
+
+static double hand_run_scalar(void *crawler, long long steps) {
+  double start = bench_seconds();
+  hand_crawler_run_scalar(crawler, step, frequency, amplitude, friction, steps);
+  return bench_seconds() - start;
+}
+
+static double hand_position(void *crawler) {
+  const hand_crawler_state *it = crawler;
+  return it->x[0];
+}
+
+/* MuJoCo */
+
+#ifdef BENCH_MUJOCO
+static void *mujoco_make(void) {
+  char message[500] = "";
+  void *it = mujoco_crawler_create(frequency, amplitude, message, sizeof message);
+  if (!it) fprintf(stderr, "strut_bench: MuJoCo: %s\n", message);
+  return it;
+}
+
+static double mujoco_run(void *crawler, long long steps) {
+  double start = bench_seconds();
+  mujoco_crawler_run(crawler, steps);
+  return bench_seconds() - start;
+}
+
+static double mujoco_position(void *crawler) { return mujoco_crawler_position(crawler); }
+static void mujoco_free(void *crawler) { mujoco_crawler_free(crawler); }
+#else
+static void *mujoco_make(void) { return NULL; }
+static double mujoco_run(void *crawler, long long steps) {
+  (void)crawler, (void)steps;
+  return 0;
+}
+static double mujoco_position(void *crawler) {
+  (void)crawler;
+  return 0;
+}
+static void mujoco_free(void *crawler) { (void)crawler; }
+#endif
+
+/* Octave: a script that starts anew each time and times itself. */
+
+typedef struct octave_crawler {
+  double position;
+} octave_crawler;
+
+static double octave_run(void *crawler, long long steps) {
+  octave_crawler *it = crawler;
+  char command[600];
+  snprintf(command, sizeof command, "octave-cli --norc -q '%s/bench/crawler.m' %lld 2>/dev/null",
+           STRUT_TESTS_DIR, steps);
+  FILE *pipe = popen(command, "r");
+  double nanoseconds = (double)NAN;
+  if (!pipe) return nanoseconds;
+  if (fscanf(pipe, "%lf ns per step, node 1 at %lf", &nanoseconds, &it->position) != 2)
+    nanoseconds = (double)NAN;
+  pclose(pipe);
+  return 1e-9 * nanoseconds * (double)steps;
+}
+
+static void *octave_create(void) {
+  octave_crawler *it = calloc(1, sizeof *it);
+  if (it && !isfinite(octave_run(it, 1))) {
+    free(it);
+    it = NULL;
+  }
+  return it;
+}
+
+static double octave_position(void *crawler) {
+  const octave_crawler *it = crawler;
+  return it->position;
+}
+
+static const rival rivals[] = {
+    {"strut", 20000, engine_create, engine_run, engine_position, engine_free},
+    {"strut, with the energy ledger", 20000, engine_create_ledger, engine_run, engine_position,
+     engine_free},
+    {"by hand, vector registers", 20000, hand_create, hand_run, hand_position, free},
+    {"by hand, scalar", 20000, hand_create, hand_run_scalar, hand_position, free},
+    {"MuJoCo, RK4", 1000, mujoco_make, mujoco_run, mujoco_position, mujoco_free},
+    {"Octave, vectorised", 1000, octave_create, octave_run, octave_position, free},
+};
+
+const rival *rival_at(size_t i) { return i < sizeof rivals / sizeof rivals[0] ? &rivals[i] : NULL; }

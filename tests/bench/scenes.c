@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/bench/scenes.h"
+
+/* Sizes of a chain's frame and its members; the names of a node tell column and row. */
+#define SIDE 0.1
+#define BAR_STIFFNESS 1e5
+#define BAR_MASS 0.1
+#define CABLE_STIFFNESS 3000.0
+#define CABLE_RATIO 0.98
+#define DAMPING 0.2
+enum { PER_FRAME = 5 };
+
+static strut_status allocate(strut_scene *scene, size_t nodes, size_t members) {
+  strut_scene_init(scene);
+  scene->nodes = strut_arena_allocate(&scene->arena, nodes, sizeof *scene->nodes);
+  scene->members = strut_arena_allocate(&scene->arena, members, sizeof *scene->members);
+  if (!scene->nodes || !scene->members) {
+    strut_scene_free(scene);
+    return STRUT_NO_MEMORY;
+  }
+  scene->node_count = nodes, scene->member_count = members;
+  return STRUT_OK;
+}
+
+static void place(strut_node *node, double x, double y) {
+  *node = strut_node_default();
+  node->position[0] = node->start[0] = x;
+  node->position[1] = node->start[1] = y;
+}
+
+static void table1(strut_member *member, int i1, int i2, double rest, double stiffness,
+                   double mass) {
+  *member = strut_member_default();
+  member->kind = mass > 0 ? STRUT_BAR : STRUT_SPRING;
+  member->node[0] = i1 - 1, member->node[1] = i2 - 1;
+  member->rest_kind = STRUT_REST_LENGTH, member->rest_value = rest;
+  member->stiffness = stiffness, member->damping = 0.2, member->mass = mass;
+}
+
+static void fill_members(strut_member *m) {
+  table1(&m[0], 1, 2, 0.10, 1e6, 0.1);
+  table1(&m[1], 3, 5, 0.02, 1e6, 0.02);
+  table1(&m[2], 4, 5, 0.02, 1e6, 0.02);
+  table1(&m[3], 1, 3, 0.02, 3000, 0);
+  table1(&m[4], 2, 3, 0.02, 3000, 0);
+  table1(&m[5], 2, 4, 0.02, 3000, 0);
+  table1(&m[6], 1, 4, 0.02, 3000, 0);
+  table1(&m[7], 1, 5, 0.01, 1e4, 0);
+  table1(&m[8], 2, 5, 0.01, 1e4, 0);
+}
+
+strut_status bench_crawler_scene(strut_scene *scene, double f, double a, double mu) {
+  static const double drawn[5][2] = {{0, 0},
+                                     {0.0965109, 0.0238714},
+                                     {0.0526668, 0.0283691},
+                                     {0.0602933, 0},
+                                     {0.0434758, 0.0106875}};
+  strut_status status = allocate(scene, 5, 9);
+  if (status != STRUT_OK) return status;
+  for (int i = 0; i < 5; i++) place(&scene->nodes[i], drawn[i][0], drawn[i][1]);
+  fill_members(scene->members);
+  scene->gravity[1] = -9.81;
+  scene->ground.present = true;
+  scene->contacts = strut_arena_allocate(&scene->arena, 5, sizeof *scene->contacts);
+  scene->signals = strut_arena_allocate(&scene->arena, 1, sizeof *scene->signals);
+  scene->actuators = strut_arena_allocate(&scene->arena, 1, sizeof *scene->actuators);
+  if (!scene->contacts || !scene->signals || !scene->actuators) {
+    strut_scene_free(scene);
+    return STRUT_NO_MEMORY;
+  }
+  scene->contact_count = 5, scene->signal_count = scene->actuator_count = 1;
+  for (int i = 0; i < 5; i++) {
+    scene->contacts[i] = (strut_contact){.node = i, .stiffness = 1e5, .damping = 100};
+    scene->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, mu, mu, 1e-4};
+  }
+  scene->signals[0] = strut_signal_default(STRUT_SINE);
+  scene->signals[0].amplitude = a, scene->signals[0].frequency = f;
+  scene->actuators[0] = (strut_actuator){.name = "drive", .member = 7, .signal = 0};
+  scene->experiment.step = 1e-4, scene->experiment.duration = 1;
+  return STRUT_OK;
+}
+
+static strut_member link(strut_member_kind kind, size_t from, size_t to) {
+  strut_member member = strut_member_default();
+  member.kind = kind;
+  member.node[0] = (int32_t)from, member.node[1] = (int32_t)to;
+  member.stiffness = kind == STRUT_BAR ? BAR_STIFFNESS : CABLE_STIFFNESS;
+  member.mass = kind == STRUT_BAR ? BAR_MASS : 0;
+  member.rest_value = kind == STRUT_BAR ? 1 : CABLE_RATIO;
+  member.damping = DAMPING;
+  return member;
+}
+
+static size_t frames_of(size_t members) { return members < PER_FRAME ? 1 : members / PER_FRAME; }
+
+strut_status bench_chain_scene(strut_scene *scene, size_t members, strut_mass_model mass) {
+  size_t frames = frames_of(members);
+  strut_status status = allocate(scene, 2 * (frames + 1), PER_FRAME * frames);
+  if (status != STRUT_OK) return status;
+  for (size_t i = 0; i <= frames; i++) {
+    place(&scene->nodes[2 * i], SIDE * (double)i, 0);
+    place(&scene->nodes[2 * i + 1], SIDE * (double)i, SIDE);
+  }
+  for (int i = 0; i < 2; i++) scene->nodes[i].fixed[0] = scene->nodes[i].fixed[1] = true;
+  strut_member *next = scene->members;
+  for (size_t low = 0; low < 2 * frames; low += 2) {
+    *next++ = link(STRUT_BAR, low, low + 3);
+    *next++ = link(STRUT_BAR, low + 1, low + 2);
+    *next++ = link(STRUT_CABLE, low, low + 2);
+    *next++ = link(STRUT_CABLE, low + 1, low + 3);
+    *next++ = link(STRUT_CABLE, low + 2, low + 3);
+  }
+  scene->mass_model = mass;
+  scene->experiment.step = 1e-4, scene->experiment.duration = 1e-3;
+  return STRUT_OK;
+}
+
+void bench_chain_write(FILE *file, size_t members, strut_mass_model mass) {
+  size_t frames = frames_of(members);
+  fprintf(file,
+          "strut: 1\n"
+          "name: Chain of %zu X-frames\n"
+          "mass_model: %s\n"
+          "groups:\n"
+          "  rod: {kind: bar, stiffness: %g N/m, damping: %g N s/m, mass: %g kg}\n"
+          "  rope: {kind: cable, stiffness: %g N/m, damping: %g N s/m, rest_length_ratio: %g}\n"
+          "nodes:\n"
+          "  a0: {position: [0, 0], fixed: both}\n"
+          "  b0: {position: [0, %g], fixed: both}\n",
+          frames, mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", BAR_STIFFNESS, DAMPING,
+          BAR_MASS, CABLE_STIFFNESS, DAMPING, CABLE_RATIO, SIDE);
+  for (size_t i = 1; i <= frames; i++)
+    fprintf(file, "  a%zu: [%.17g, 0]\n  b%zu: [%.17g, %g]\n", i, SIDE * (double)i, i,
+            SIDE * (double)i, SIDE);
+  fprintf(file, "members:\n");
+  for (size_t i = 0; i < frames; i++) {
+    size_t j = i + 1;
+    fprintf(file, "  p%zu: {group: rod, nodes: [a%zu, b%zu]}\n", i, i, j);
+    fprintf(file, "  q%zu: {group: rod, nodes: [b%zu, a%zu]}\n", i, i, j);
+    fprintf(file, "  r%zu: {group: rope, nodes: [a%zu, a%zu]}\n", i, i, j);
+    fprintf(file, "  s%zu: {group: rope, nodes: [b%zu, b%zu]}\n", i, i, j);
+    fprintf(file, "  t%zu: {group: rope, nodes: [a%zu, b%zu]}\n", i, j, j);
+  }
+  fprintf(file, "solver: {step: 0.1 ms}\nrun: {duration: 1 ms}\n");
+}
