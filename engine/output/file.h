@@ -16,7 +16,7 @@ typedef struct strut_file {
   char *path, *part; /* the final name, and the name while it is written */
 } strut_file;
 
-/** Creates DIR (one level, or more as mkdir -p) if it is missing. */
+/** Creates a directory and what is missing above it, as mkdir -p. */
 STRUT_API strut_status strut_directory_create(const char *directory, strut_error *error);
 /** Opens directory/name for writing under a temporary name beside it. */
 STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
@@ -25,6 +25,10 @@ STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, 
 STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
 /** Closes and removes what was written. Does nothing on a committed or zeroed file. */
 STRUT_API void strut_file_abandon(strut_file *file);
+/** Reports that writing into the open file failed, with the reason in errno; returns the status. */
+STRUT_API strut_status strut_file_trouble(const strut_file *file, strut_error *error);
+/** Removes directory/name if it is there. */
+STRUT_API void strut_file_remove(const char *directory, const char *name);
 /** Writes a whole text as a file. */
 STRUT_API strut_status strut_file_write_text(const char *directory, const char *name,
                                              const char *text, strut_error *error);

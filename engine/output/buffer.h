@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A text that grows by printf.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_BUFFER_H
+#define STRUT_ENGINE_OUTPUT_BUFFER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/base/export.h"
+
+/** Zero-initialise it. */
+typedef struct strut_buffer {
+  char *text; /* NUL-terminated once something was added; a block of strut_allocate */
+  size_t length, room;
+  bool failed; /* memory was out: the text is not complete */
+} strut_buffer;
+
+/** Appends. Numbers look as in the C locale only between strut_c_locale_enter and leave. */
+STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/** Hands the text over (release it) and zeroes the buffer; NULL when memory was out. */
+STRUT_API char *strut_buffer_take(strut_buffer *buffer);
+
+#endif

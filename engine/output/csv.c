@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/csv.h"
+
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/number_text.h"
+
+enum { BUFFER = 1 << 16, FILE_COUNT = 4 };
+
+/* Which channels stand in which file; a file without channels is not written. */
+static const struct {
+  const char *name;
+  unsigned channels;
+} kinds[FILE_COUNT] = {
+    {"nodes.csv", STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY},
+    {"members.csv", STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE},
+    {"contacts.csv", STRUT_CHANNEL_CONTACT},
+    {"energy.csv", STRUT_CHANNEL_ENERGY},
+};
+
+typedef struct table {
+  strut_file file;
+  size_t column_count;
+  size_t *columns; /* (column_count) places in a row of the recorder */
+} table;
+
+typedef struct csv {
+  strut_sink sink;
+  char *directory;
+  size_t width; /* doubles in a row of the recorder */
+  table tables[FILE_COUNT];
+  size_t used;
+  char buffer[BUFFER]; /* what is on its way into one file */
+} csv;
+
+static strut_status flush(csv *self, table *t, strut_error *error) {
+  size_t count = self->used;
+  self->used = 0;
+  if (fwrite(self->buffer, 1, count, t->file.stream) == count) return STRUT_OK;
+  return strut_file_trouble(&t->file, error);
+}
+
+/* A cell of the header; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
+static void write_cell(FILE *stream, const char *const parts[4], const char *unit) {
+  bool quoted = false;
+  for (int i = 0; i < 4; i++) quoted = quoted || strpbrk(parts[i], ",\"\r\n");
+  if (quoted) fputc('"', stream);
+  for (int i = 0; i < 4; i++) {
+    for (const char *c = parts[i]; *c; c++) {
+      if (*c == '"') fputc('"', stream);
+      fputc(*c, stream);
+    }
+  }
+  fprintf(stream, " [%s]%s", unit, quoted ? "\"" : "");
+}
+
+/* "n1.x", "n1.vx", "m1.length", "n1.normal", "kinetic". */
+static void write_name(FILE *stream, const strut_record_channel *channel, size_t item,
+                       size_t component) {
+  bool energy = channel->id == STRUT_CHANNEL_ENERGY;
+  const char *name = channel->component_names[component];
+  if (*name == '\0') name = channel->name;
+  const char *const parts[4] = {energy ? "" : channel->item_names[item], energy ? "" : ".",
+                                channel->id == STRUT_CHANNEL_VELOCITY ? "v" : "", name};
+  write_cell(stream, parts, channel->unit);
+}
+
+/* Adds the columns of one item, channel after channel: everything about a node stands together. */
+static void add_item(table *t, unsigned mask, const strut_record_layout *layout, size_t item) {
+  for (size_t i = 0; i < layout->channel_count; i++) {
+    const strut_record_channel *channel = &layout->channels[i];
+    if (!(channel->id & mask) || item >= channel->items) continue;
+    for (size_t j = 0; j < channel->components; j++) {
+      t->columns[t->column_count++] = channel->offset + item * channel->components + j;
+      fputc(',', t->file.stream);
+      write_name(t->file.stream, channel, item, j);
+    }
+  }
+}
+
+static strut_status begin_table(csv *self, int kind, const strut_record_layout *layout,
+                                strut_error *error) {
+  table *t = &self->tables[kind];
+  unsigned mask = kinds[kind].channels;
+  size_t total = 0, items = 0;
+  for (size_t i = 0; i < layout->channel_count; i++) {
+    const strut_record_channel *channel = &layout->channels[i];
+    if (!(channel->id & mask)) continue;
+    total += channel->items * channel->components;
+    if (channel->items > items) items = channel->items;
+  }
+  if (total == 0) return STRUT_OK;
+  t->columns = strut_allocate(total, sizeof *t->columns);
+  if (!t->columns) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the CSV columns");
+  strut_status status = strut_file_open(&t->file, self->directory, kinds[kind].name, error);
+  if (status != STRUT_OK) return status;
+  fputs("time [s]", t->file.stream);
+  for (size_t item = 0; item < items; item++) add_item(t, mask, layout, item);
+  fputc('\n', t->file.stream);
+  return ferror(t->file.stream) ? strut_file_trouble(&t->file, error) : STRUT_OK;
+}
+
+static void abandon(csv *self) {
+  for (int i = 0; i < FILE_COUNT; i++) {
+    strut_file_abandon(&self->tables[i].file);
+    strut_release(self->tables[i].columns);
+    self->tables[i] = (table){0};
+  }
+}
+
+static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
+  csv *self = context;
+  self->width = layout->width;
+  for (int kind = 0; kind < FILE_COUNT; kind++) {
+    strut_status status = begin_table(self, kind, layout, error);
+    if (status == STRUT_OK) continue;
+    abandon(self);
+    return status;
+  }
+  return STRUT_OK;
+}
+
+static strut_status write_rows(csv *self, table *t, const double *rows, size_t count,
+                               strut_error *error) {
+  for (const double *row = rows; count > 0; count--, row += self->width) {
+    for (size_t i = 0; i <= t->column_count; i++) { /* the time, then the columns */
+      if (self->used + STRUT_NUMBER_TEXT + 1 > BUFFER) {
+        strut_status status = flush(self, t, error);
+        if (status != STRUT_OK) return status;
+      }
+      char *at = self->buffer + self->used;
+      size_t length = strut_number_text(row[i ? t->columns[i - 1] : 0], at);
+      at[length] = i == t->column_count ? '\n' : ',';
+      self->used += length + 1;
+    }
+  }
+  return flush(self, t, error);
+}
+
+static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
+  csv *self = context;
+  for (int i = 0; i < FILE_COUNT; i++) {
+    table *t = &self->tables[i];
+    strut_status status = t->columns ? write_rows(self, t, rows, count, error) : STRUT_OK;
+    if (status != STRUT_OK) return status;
+  }
+  return STRUT_OK;
+}
+
+/* All files or none: where one fails, those before it go too. */
+static strut_status commit(csv *self, strut_error *error) {
+  for (int i = 0; i < FILE_COUNT; i++) {
+    if (!self->tables[i].file.stream) continue;
+    strut_status status = strut_file_commit(&self->tables[i].file, error);
+    for (int j = 0; status != STRUT_OK && j < i; j++) {
+      if (self->tables[j].columns) strut_file_remove(self->directory, kinds[j].name);
+    }
+    if (status != STRUT_OK) return status;
+  }
+  return STRUT_OK;
+}
+
+static strut_status end(void *context, strut_status run_status, strut_error *error) {
+  csv *self = context;
+  strut_status status = STRUT_OK;
+  if (run_status != STRUT_FILE_TROUBLE && run_status != STRUT_NO_MEMORY) {
+    status = commit(self, error);
+  }
+  abandon(self);
+  return status;
+}
+
+strut_sink *strut_csv_create(const char *directory) {
+  csv *self = strut_allocate(1, sizeof *self);
+  if (!self) return NULL;
+  self->directory = strut_allocate(strlen(directory) + 1, 1);
+  if (!self->directory) {
+    strut_release(self);
+    return NULL;
+  }
+  memcpy(self->directory, directory, strlen(directory));
+  self->sink = (strut_sink){self, begin, take_rows, end};
+  return &self->sink;
+}
+
+void strut_csv_free(strut_sink *sink) {
+  if (!sink) return;
+  csv *self = sink->context;
+  abandon(self);
+  strut_release(self->directory);
+  strut_release(self);
+}

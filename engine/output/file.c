@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/base/memory.h"
+
+enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
+
+static strut_status trouble(strut_error *error, const char *what, const char *path, int code) {
+  char reason[128];
+  if (strerror_r(code, reason, sizeof reason) != 0) {
+    snprintf(reason, sizeof reason, "error %d", code);
+  }
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s': %s", what, path, reason);
+}
+
+static bool is_directory(const char *path) {
+  struct stat found;
+  return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+static strut_status no_memory(strut_error *error) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+}
+
+strut_status strut_directory_create(const char *directory, strut_error *error) {
+  size_t length = strlen(directory);
+  if (length == 0) return trouble(error, "create directory", directory, ENOENT);
+  char *path = strut_allocate(length + 1, 1);
+  if (!path) return no_memory(error);
+  strut_status status = STRUT_OK;
+  memcpy(path, directory, length);
+  for (size_t i = 1; i <= length && status == STRUT_OK; i++) {
+    if (directory[i] != '/' && directory[i] != '\0') continue;
+    path[i] = '\0';
+    if (mkdir(path, 0777) != 0) {
+      int code = errno;
+      if (!is_directory(path)) status = trouble(error, "create directory", path, code);
+    }
+    path[i] = '/';
+  }
+  strut_release(path);
+  return status;
+}
+
+/* Creates `path`.PID-N, the first N that nobody has; its name goes into `part`. */
+static int create_beside(const char *path, char *part, size_t room) {
+  int descriptor = -1;
+  for (int i = 0; i < MOST_NAMES; i++) {
+    snprintf(part, room, "%s.%ld-%d", path, (long)getpid(), i);
+    descriptor = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST) break;
+  }
+  return descriptor;
+}
+
+static void forget(strut_file *file) {
+  strut_release(file->path);
+  strut_release(file->part);
+  *file = (strut_file){0};
+}
+
+strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
+                             strut_error *error) {
+  size_t room = strlen(directory) + strlen(name) + 2;
+  *file = (strut_file){0};
+  file->path = strut_allocate(room, 1);
+  file->part = strut_allocate(room + NUMBER_ROOM, 1);
+  if (!file->path || !file->part) {
+    forget(file);
+    return no_memory(error);
+  }
+  snprintf(file->path, room, "%s/%s", directory, name);
+  int descriptor = -1, code = EISDIR;
+  if (!is_directory(file->path)) {
+    descriptor = create_beside(file->path, file->part, room + NUMBER_ROOM);
+    code = errno;
+  }
+  if (descriptor >= 0) {
+    file->stream = fdopen(descriptor, "wb");
+    code = errno;
+    if (!file->stream) {
+      close(descriptor);
+      unlink(file->part);
+    }
+  }
+  if (file->stream) return STRUT_OK;
+  strut_status status = trouble(error, "write", file->path, code);
+  forget(file);
+  return status;
+}
+
+/* Makes a rename durable. Some file systems cannot synchronise a directory: no trouble. */
+static int synchronise_parent(const char *path) {
+  const char *slash = strrchr(path, '/');
+  char *parent = strut_allocate((size_t)(slash - path) + 2, 1);
+  if (!parent) return ENOMEM;
+  memcpy(parent, path, (size_t)(slash - path) + (slash == path));
+  int code = 0, descriptor = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP) {
+      code = errno;
+    }
+    close(descriptor);
+  }
+  strut_release(parent);
+  return code;
+}
+
+strut_status strut_file_commit(strut_file *file, strut_error *error) {
+  int code = 0;
+  bool failed_before = ferror(file->stream) != 0;
+  errno = 0;
+  if (fflush(file->stream) != 0 || failed_before) code = errno ? errno : EIO;
+  if (!code && fsync(fileno(file->stream)) != 0 && errno != EINVAL) code = errno;
+  if (fclose(file->stream) != 0 && !code) code = errno;
+  file->stream = NULL;
+  bool renamed = false;
+  if (!code) {
+    renamed = rename(file->part, file->path) == 0;
+    code = renamed ? synchronise_parent(file->path) : errno;
+  }
+  strut_status status = STRUT_OK;
+  if (code) {
+    unlink(renamed ? file->path : file->part);
+    status = code == ENOMEM ? no_memory(error) : trouble(error, "write", file->path, code);
+  }
+  forget(file);
+  return status;
+}
+
+void strut_file_abandon(strut_file *file) {
+  if (file->stream) {
+    fclose(file->stream);
+    unlink(file->part);
+  }
+  forget(file);
+}
+
+strut_status strut_file_trouble(const strut_file *file, strut_error *error) {
+  return trouble(error, "write", file->path, errno ? errno : EIO);
+}
+
+void strut_file_remove(const char *directory, const char *name) {
+  int descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  unlinkat(descriptor, name, 0);
+  close(descriptor);
+}
+
+strut_status strut_file_write_text(const char *directory, const char *name, const char *text,
+                                   strut_error *error) {
+  strut_file file;
+  strut_status status = strut_file_open(&file, directory, name, error);
+  if (status != STRUT_OK) return status;
+  size_t length = strlen(text);
+  errno = 0;
+  if (fwrite(text, 1, length, file.stream) != length) {
+    status = strut_file_trouble(&file, error);
+    strut_file_abandon(&file);
+    return status;
+  }
+  return strut_file_commit(&file, error);
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/json.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+
+#include "engine/output/json_value.h"
+
+/* Every helper does nothing once memory was out, so that only the end has to ask. */
+
+static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool with_wall_time) {
+  strut_json_text(json, to, "status", strut_status_text(s->status));
+  strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
+  strut_json_number(json, to, "velocity", s->velocity);
+  strut_json_number(json, to, "velocity_spread", s->velocity_spread);
+  strut_json_number(json, to, "window_start", s->window_start);
+  strut_json_number(json, to, "duration", s->duration);
+  strut_json_number(json, to, "settle_time", s->settle_time);
+  strut_json_integer(json, to, "steps", s->steps);
+  strut_json_integer(json, to, "force_evaluations", s->force_evaluations);
+  strut_json_number(json, to, "step", s->step);
+  strut_json_number(json, to, "step_limit", s->step_limit);
+  if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);
+}
+
+static void add_parameters(strut_json *json, cJSON *to, const strut_scene *scene) {
+  cJSON *parameters = strut_json_object(json, to, "parameters");
+  for (size_t i = 0; i < scene->parameter_count; i++) {
+    const strut_parameter *parameter = &scene->parameters[i];
+    if (isnan(parameter->value)) {
+      strut_json_text(json, parameters, parameter->name, parameter->text);
+    } else {
+      strut_json_number(json, parameters, parameter->name, parameter->value);
+    }
+  }
+}
+
+static void add_nodes(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *nodes = strut_json_object(json, to, "nodes");
+  for (size_t i = 0; i < s->node_count; i++) {
+    cJSON *node = strut_json_object(json, nodes, s->node_names[i]);
+    strut_json_numbers(json, node, "position", s->positions + 2 * i, 2);
+  }
+}
+
+static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *contacts = strut_json_object(json, to, "contacts");
+  for (size_t i = 0; i < s->contact_count; i++) {
+    cJSON *contact = strut_json_object(json, contacts, s->contacts[i].node);
+    strut_json_number(json, contact, "duty", s->contacts[i].duty);
+    strut_json_number(json, contact, "max_height", s->contacts[i].max_height);
+  }
+}
+
+static void add_energy(strut_json *json, cJSON *to, const strut_energy *e) {
+  cJSON *energy = strut_json_object(json, to, "energy");
+  strut_json_number(json, energy, "kinetic", e->kinetic);
+  strut_json_number(json, energy, "elastic", e->elastic);
+  strut_json_number(json, energy, "gravity", e->gravity);
+  strut_json_number(json, energy, "contact", e->contact);
+  strut_json_number(json, energy, "drive_work", e->drive_work);
+  strut_json_number(json, energy, "load_work", e->load_work);
+  strut_json_number(json, energy, "belt_work", e->belt_work);
+  strut_json_number(json, energy, "dissipated_members", e->dissipated_members);
+  strut_json_number(json, energy, "dissipated_contact", e->dissipated_contact);
+  strut_json_number(json, energy, "dissipated_friction", e->dissipated_friction);
+  strut_json_number(json, energy, "initial", e->initial);
+  strut_json_number(json, energy, "residual", e->residual);
+  strut_json_number(json, energy, "moved", e->moved);
+}
+
+char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
+                         bool with_wall_time) {
+  strut_json json = strut_json_begin();
+  strut_json_text(&json, json.root, "name", scene->name);
+  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
+  strut_json_integer(&json, json.root, "language", STRUT_LANGUAGE_VERSION);
+  add_run(&json, json.root, summary, with_wall_time);
+  add_parameters(&json, json.root, scene);
+  add_nodes(&json, json.root, summary);
+  add_contacts(&json, json.root, summary);
+  add_energy(&json, json.root, &summary->energy);
+  return strut_json_end(&json);
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/quantity_text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/base/c_locale.h"
+
+enum { FIRST = -5, LAST = 3 }; /* femto to giga */
+
+static const char *const prefixes[] = {"f", "p", "n", "u", "m", "", "k", "M", "G"};
+
+const char *strut_quantity_text(double value, int digits, const char *unit,
+                                char text[STRUT_QUANTITY_TEXT]) {
+  if (isnan(value)) {
+    snprintf(text, STRUT_QUANTITY_TEXT, "none");
+    return text;
+  }
+  if (isinf(value)) {
+    snprintf(text, STRUT_QUANTITY_TEXT, "no limit");
+    return text;
+  }
+  strut_c_locale locale = strut_c_locale_enter();
+  /* Rounded first: 0.99996 m to four digits is 1 m, not 1000 mm. */
+  snprintf(text, STRUT_QUANTITY_TEXT, "%.*e", digits - 1, value);
+  double rounded = strtod(text, NULL);
+  int thousands = rounded != 0.0 ? (int)floor(log10(fabs(rounded)) / 3.0 + 1e-12) : 0;
+  if (thousands < FIRST) thousands = FIRST;
+  if (thousands > LAST) thousands = LAST;
+  double scaled = rounded;
+  for (int i = thousands; i < 0; i++) scaled *= 1000.0;
+  for (int i = thousands; i > 0; i--) scaled /= 1000.0;
+  snprintf(text, STRUT_QUANTITY_TEXT, "%.*g %s%s", digits, scaled, prefixes[thousands - FIRST],
+           unit);
+  strut_c_locale_leave(locale);
+  return text;
+}

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/results.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+
+enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
+
+static const char *const names[] = {"summary.json", "scene.yaml", "nodes.csv",     "members.csv",
+                                    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
+
+const char *strut_results_name(int i) { return names[i]; }
+
+static strut_status trouble(strut_error *error, const char *path, int code) {
+  char reason[128];
+  if (strerror_r(code, reason, sizeof reason) != 0) {
+    snprintf(reason, sizeof reason, "error %d", code);
+  }
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", path, reason);
+}
+
+/* directory/name in a block of strut_allocate, or NULL. */
+static char *join(const char *directory, const char *name) {
+  size_t room = strlen(directory) + strlen(name) + 2;
+  char *path = strut_allocate(room, 1);
+  if (path) snprintf(path, room, "%s/%s", directory, name);
+  return path;
+}
+
+/* Renaming onto a directory would fail when all the work is done: say so before. */
+static strut_status check_names(const char *directory, strut_error *error) {
+  strut_status status = STRUT_OK;
+  for (int i = 0; names[i] && status == STRUT_OK; i++) {
+    struct stat found;
+    char *path = join(directory, names[i]);
+    if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+    if (lstat(path, &found) == 0 && S_ISDIR(found.st_mode)) status = trouble(error, path, EISDIR);
+    strut_release(path);
+  }
+  return status;
+}
+
+static strut_status make_stage(strut_results *results, strut_error *error) {
+  size_t room = strlen(results->directory) + NUMBER_ROOM;
+  results->stage = strut_allocate(room, 1);
+  if (!results->stage) {
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+  }
+  for (int i = 0; i < MOST_NAMES; i++) {
+    snprintf(results->stage, room, "%s/.strut-%ld-%d", results->directory, (long)getpid(), i);
+    if (mkdir(results->stage, 0777) == 0) return STRUT_OK;
+    if (errno != EEXIST) break;
+  }
+  strut_status status = trouble(error, results->directory, errno);
+  strut_release(results->stage);
+  results->stage = NULL;
+  return status;
+}
+
+strut_status strut_results_begin(strut_results *results, const char *directory,
+                                 strut_error *error) {
+  struct stat found;
+  *results = (strut_results){.made = stat(directory, &found) != 0};
+  strut_status status = strut_directory_create(directory, error);
+  if (status != STRUT_OK) return status;
+  results->directory = strut_allocate(strlen(directory) + 1, 1);
+  if (!results->directory) {
+    if (results->made) rmdir(directory);
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+  }
+  memcpy(results->directory, directory, strlen(directory));
+  status = check_names(directory, error);
+  if (status == STRUT_OK) status = make_stage(results, error);
+  if (status != STRUT_OK) strut_results_abandon(results);
+  return status;
+}
+
+/* Moves the file of that name, or removes an older run's where there is none. 0 or an errno. */
+static int move(const strut_results *results, const char *name) {
+  char *from = join(results->stage, name), *to = join(results->directory, name);
+  int code = 0;
+  if (!from || !to) {
+    code = ENOMEM;
+  } else if (rename(from, to) != 0) {
+    code = errno;
+    if (code == ENOENT && (unlink(to) == 0 || errno == ENOENT)) code = 0;
+  }
+  strut_release(from);
+  strut_release(to);
+  return code;
+}
+
+strut_status strut_results_commit(strut_results *results, strut_error *error) {
+  int code = 0;
+  for (int i = 0; names[i] && !code; i++) code = move(results, names[i]);
+  strut_status status = STRUT_OK;
+  if (code) status = trouble(error, results->directory, code);
+  int descriptor = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    if (fsync(descriptor) != 0 && errno == EIO && !code) {
+      status = trouble(error, results->directory, EIO);
+    }
+    close(descriptor);
+  }
+  if (status == STRUT_OK) results->made = false;
+  strut_results_abandon(results);
+  return status;
+}
+
+static void empty_directory(const char *path) {
+  DIR *directory = opendir(path);
+  if (!directory) return;
+  for (struct dirent *entry = readdir(directory); entry; entry = readdir(directory)) {
+    bool itself = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
+    if (!itself) unlinkat(dirfd(directory), entry->d_name, 0);
+  }
+  closedir(directory);
+}
+
+void strut_results_abandon(strut_results *results) {
+  if (results->stage) {
+    empty_directory(results->stage);
+    rmdir(results->stage);
+  }
+  if (results->made && results->directory) rmdir(results->directory);
+  strut_release(results->directory);
+  strut_release(results->stage);
+  *results = (strut_results){0};
+}

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The end of a run as a table of a screenful. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/output/buffer.h"
+#include "engine/output/json.h"
+#include "engine/output/quantity_text.h"
+
+enum { MOST_ROWS = 10, DIGITS = 4 };
+
+typedef struct quantity {
+  char text[STRUT_QUANTITY_TEXT];
+} quantity;
+
+static quantity in(double value, const char *unit) {
+  quantity q;
+  strut_quantity_text(value, DIGITS, unit, q.text);
+  return q;
+}
+
+static const char *measured(const strut_scene *scene) {
+  int32_t node = scene->experiment.measure_node;
+  return node >= 0 ? scene->nodes[node].name : "the centre of mass";
+}
+
+static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
+  strut_buffer_add(table, "%s%s%s", scene->name, *scene->name ? ": " : "",
+                   strut_status_text(s->status));
+  if (s->reason[0]) strut_buffer_add(table, ": %s", s->reason);
+  strut_buffer_add(table, "\n  velocity    %s of %s", in(s->velocity, "m/s").text, measured(scene));
+  if (isfinite(s->velocity_spread)) {
+    strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
+  }
+  strut_buffer_add(table, ", from %s on\n", in(s->window_start, "s").text);
+  strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
+                   s->steps);
+  if (s->settle_time > 0.0) {
+    strut_buffer_add(table, ", after %s of settling", in(s->settle_time, "s").text);
+  }
+  strut_buffer_add(table, "\n  step        %s, stable up to %s\n", in(s->step, "s").text,
+                   in(s->step_limit, "s").text);
+  strut_buffer_add(table, "  computed    %" PRId64 " forces in %s", s->force_evaluations,
+                   in(s->wall_time, "s").text);
+  if (s->steps > 0) {
+    strut_buffer_add(table, ", %s per step", in(s->wall_time / (double)s->steps, "s").text);
+  }
+  strut_buffer_add(table, "\n");
+}
+
+static void add_more(strut_buffer *table, size_t count) {
+  if (count > MOST_ROWS) strut_buffer_add(table, "  ... and %zu more\n", count - MOST_ROWS);
+}
+
+static void add_positions(strut_buffer *table, const strut_summary *s) {
+  if (s->node_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "node", "x", "y");
+  for (size_t i = 0; i < s->node_count && i < MOST_ROWS; i++) {
+    strut_buffer_add(table, "  %-16s %14s %14s\n", s->node_names[i],
+                     in(s->positions[2 * i], "m").text, in(s->positions[2 * i + 1], "m").text);
+  }
+  add_more(table, s->node_count);
+}
+
+static void add_contacts(strut_buffer *table, const strut_summary *s) {
+  if (s->contact_count) {
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "time touching", "largest height");
+  }
+  for (size_t i = 0; i < s->contact_count && i < MOST_ROWS; i++) {
+    const strut_contact_summary *contact = &s->contacts[i];
+    strut_buffer_add(table, "  %-16s %12.1f %% %14s\n", contact->node, 100.0 * contact->duty,
+                     in(contact->max_height, "m").text);
+  }
+  add_more(table, s->contact_count);
+}
+
+static void add_energy(strut_buffer *table, const strut_energy *e) {
+  const struct {
+    const char *name;
+    double value;
+  } rows[] = {
+      {"kinetic", e->kinetic},
+      {"elastic", e->elastic},
+      {"gravity", e->gravity},
+      {"ground springs", e->contact},
+      {"done by drives", e->drive_work},
+      {"done by loads", e->load_work},
+      {"done by the belt", e->belt_work},
+      {"lost in members", e->dissipated_members},
+      {"lost in contact", e->dissipated_contact},
+      {"lost to friction", e->dissipated_friction},
+      {"residual", e->residual},
+  };
+  strut_buffer_add(table, "\n  energy\n");
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    if (rows[i].value == 0.0) continue; /* what the scene does not have */
+    strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);
+  }
+}
+
+char *strut_summary_table(const strut_summary *summary, const strut_scene *scene) {
+  strut_buffer table = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  add_head(&table, summary, scene);
+  add_positions(&table, summary);
+  add_contacts(&table, summary);
+  add_energy(&table, &summary->energy);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}
