@@ -37,7 +37,8 @@ cmake -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$compiler"
   -DCMAKE_C_FLAGS="$sanitizers" -DCMAKE_BUILD_TYPE=Release >configure.log 2>&1 ||
   { cat configure.log; exit 1; }
 cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
-./build/user >user.log && grep '"completed"' user.log
+./build/user >user.log
+grep '"completed"' user.log
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name strut.pc)")
 export PKG_CONFIG_PATH
@@ -45,7 +46,8 @@ LD_LIBRARY_PATH=${PKG_CONFIG_PATH%/pkgconfig} # for shared ones, which nobody re
 export LD_LIBRARY_PATH
 # shellcheck disable=SC2046
 "$compiler" -std=c17 $sanitizers user.c -o user $(pkg-config --cflags --libs strut)
-./user >user.log && grep '"completed"' user.log
+./user >user.log
+grep '"completed"' user.log
 
 if [ -x "$build/strut" ]; then
   "$prefix/bin/strut" --version
