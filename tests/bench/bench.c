@@ -60,7 +60,7 @@ static void compare_crawlers(int repeats) {
       const rival *it = rival_at((size_t)i);
       if (crawlers[i]) times[i][r] = 1e9 * it->run(crawlers[i], it->steps) / (double)it->steps;
     }
-  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %10s %14s\n", "", "ns/step", "times",
+  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %10s %14s\n", "", "ns/step", "of strut",
          "x_1(0.2 s) [mm]");
   double own = crawlers[0] ? median(times[0], repeats) : (double)NAN;
   for (int i = 0; i < count; i++) {
@@ -84,7 +84,7 @@ typedef struct chain {
 } chain;
 
 static void chain_free(chain *it) {
-  if (it->workspace) strut_integrator_rk4.destroy(it->workspace);
+  if (it->workspace) strut_integrator_find("rk4")->destroy(it->workspace);
   strut_state_free(it->state);
   strut_model_free(it->model);
   strut_scene_free(&it->scene);
@@ -96,7 +96,7 @@ static bool chain_make(chain *it, size_t members, strut_mass_model mass) {
   strut_status status = bench_chain_scene(&it->scene, members, mass);
   if (status == STRUT_OK) status = strut_model_compile(&it->scene, &it->model, &error);
   if (status == STRUT_OK) status = strut_state_create(it->model, &it->state, &error);
-  if (status == STRUT_OK) it->workspace = strut_integrator_rk4.create(it->model);
+  if (status == STRUT_OK) it->workspace = strut_integrator_find("rk4")->create(it->model);
   if (it->workspace) {
     strut_state_reset(it->model, it->state);
     return true;
@@ -109,7 +109,7 @@ static bool chain_make(chain *it, size_t members, strut_mass_model mass) {
 
 static double chain_run(chain *it, long long steps) {
   double start = bench_seconds();
-  strut_integrator_rk4.advance(it->model, it->state, it->workspace, 1e-4, steps);
+  strut_integrator_find("rk4")->advance(it->model, it->state, it->workspace, 1e-4, steps);
   return bench_seconds() - start;
 }
 

@@ -32,7 +32,7 @@ typedef struct engine_crawler {
 
 static void engine_free(void *crawler) {
   engine_crawler *it = crawler;
-  if (it->workspace) strut_integrator_rk4.destroy(it->workspace);
+  if (it->workspace) strut_integrator_find("rk4")->destroy(it->workspace);
   strut_state_free(it->state);
   strut_model_free(it->model);
   strut_scene_free(&it->scene);
@@ -45,7 +45,7 @@ static void *engine_make(bool ledger) {
   if (bench_crawler_scene(&it->scene, frequency, amplitude, friction) == STRUT_OK &&
       strut_model_compile(&it->scene, &it->model, NULL) == STRUT_OK &&
       strut_state_create(it->model, &it->state, NULL) == STRUT_OK)
-    it->workspace = strut_integrator_rk4.create(it->model);
+    it->workspace = strut_integrator_find("rk4")->create(it->model);
   if (!it->workspace) {
     engine_free(it);
     return NULL;
@@ -61,7 +61,7 @@ static void *engine_create_ledger(void) { return engine_make(true); }
 static double engine_run(void *crawler, long long steps) {
   engine_crawler *it = crawler;
   double start = bench_seconds();
-  strut_integrator_rk4.advance(it->model, it->state, it->workspace, step, steps);
+  strut_integrator_find("rk4")->advance(it->model, it->state, it->workspace, step, steps);
   return bench_seconds() - start;
 }
 
