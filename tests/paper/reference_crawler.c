@@ -218,7 +218,7 @@ int main(int argc, char **argv) {
   long first = lround((periods - window) / it.frequency / dt);
   double start_com = 0, start_one = 0, highest[NODES];
   long touching[NODES] = {0};
-  for (int i = 0; i < NODES; i++) highest[i] = -INFINITY;
+  for (int i = 0; i < NODES; i++) highest[i] = -(double)INFINITY;
   for (long n = 0; n < steps; n++) {
     if (n == first) start_com = centre_of_mass(z), start_one = z[0];
     rk4_step(&it, (double)n * dt, ((double)n + 0.5) * dt, ((double)n + 1.0) * dt, dt, z);
