@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Memory: counted allocation and arenas that are freed as one.
+ *
+ * All memory of strut itself comes from strut_allocate, so that a test can count allocations and
+ * make the n-th one fail. Scenes, documents and models each own one arena.
+ */
+#ifndef STRUT_ENGINE_BASE_MEMORY_H
+#define STRUT_ENGINE_BASE_MEMORY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/export.h"
+
+/** count * size zeroed bytes, or NULL (also when the product overflows). Free with strut_release. */
+STRUT_API void *strut_allocate(size_t count, size_t size);
+/** Grows or shrinks a block of strut_allocate; new bytes are not zeroed. NULL leaves the old one. */
+STRUT_API void *strut_reallocate(void *block, size_t count, size_t size);
+/** Frees a block of strut_allocate; NULL is allowed. */
+STRUT_API void strut_release(void *block);
+
+/** Calls of strut_allocate and strut_reallocate since the start of the process (all threads). */
+STRUT_API uint64_t strut_allocation_count(void);
+/** For tests: lets the next n allocations pass and every later one fail; negative: never fail. */
+STRUT_API void strut_fail_allocation_after(int64_t n);
+
+/** A growing store of blocks that are freed together. Zero-initialise it. */
+typedef struct strut_arena {
+  struct strut_arena_chunk *chunk; /* newest; owned */
+  size_t bytes;                    /* total handed out */
+} strut_arena;
+
+/** count * size zeroed bytes aligned to 64, owned by the arena; NULL when memory is out. */
+STRUT_API void *strut_arena_allocate(strut_arena *arena, size_t count, size_t size);
+/** A copy of the first length bytes of text with a terminating NUL; aligned to 1. */
+STRUT_API char *strut_arena_text(strut_arena *arena, const char *text, size_t length);
+/** printf into the arena; NULL when memory is out. */
+STRUT_API char *strut_arena_format(strut_arena *arena, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/** Frees all blocks; the arena may be used again. */
+STRUT_API void strut_arena_free(strut_arena *arena);
+
+#endif

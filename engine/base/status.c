@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/base/status.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+static const struct {
+  int exit_code;
+  const char *text;
+} table[] = {
+#define STRUT_STATUS_ROW(code, exit_code, text) {exit_code, text},
+    STRUT_STATUS_TABLE(STRUT_STATUS_ROW)
+#undef STRUT_STATUS_ROW
+};
+
+_Static_assert(sizeof table / sizeof table[0] == STRUT_STATUS_COUNT, "one row for each status");
+
+const char *strut_status_text(strut_status status) {
+  assert((unsigned)status < STRUT_STATUS_COUNT);
+  return table[status].text;
+}
+
+int strut_status_exit_code(strut_status status) {
+  assert((unsigned)status < STRUT_STATUS_COUNT);
+  return table[status].exit_code;
+}
+
+strut_status strut_fail(strut_error *error, strut_status status, const char *format, ...) {
+  if (error) {
+    va_list arguments;
+    va_start(arguments, format);
+    error->status = status;
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+  }
+  return status;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/base/trig.h"
+
+#include <math.h>
+
+/* Taylor sums for |x| <= pi/4, s = x^2: the first term left out is below 2e-17 in both. The even
+   and the odd powers of s are summed apart, so that neither waits for the other. */
+static inline double sine_of_small(double x) {
+  double s = x * x, ss = s * s;
+  double even = -1.0 / 6 + ss * (-1.0 / 5040 + ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));
+  double odd = 1.0 / 120 + ss * (1.0 / 362880 + ss * (1.0 / 6227020800.0));
+  return x + x * (s * (even + s * odd));
+}
+
+static inline double cosine_of_small(double x) {
+  double s = x * x, ss = s * s;
+  double even = 1.0 / 24 + ss * (1.0 / 40320 + ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));
+  double odd = -1.0 / 720 + ss * (-1.0 / 3628800 + ss * (-1.0 / 87178291200.0));
+  double half = 0.5 * s, rest = 1.0 - half;
+  return rest + (((1.0 - rest) - half) + ss * (even + s * odd));
+}
+
+void strut_sincos_turns(double turns, double *sine, double *cosine) {
+  /* Adding and taking away 1.5 * 2^52 rounds to an integer; above 2^49 turns floor comes first. */
+  const double rounder = 6755399441055744.0;
+  if (!(turns > -0x1p49 && turns < 0x1p49)) turns -= floor(turns);
+  double quarter = (4.0 * turns + rounder) - rounder; /* nearest quarter turn */
+  double rest = turns - 0.25 * quarter;               /* exact: in [-1/8, 1/8] */
+  double x = 6.283185307179586476925 * rest;
+  double s = sine_of_small(x), c = cosine_of_small(x);
+  int quadrant = (int)((long long)quarter & 3);
+  double first = quadrant & 1 ? c : s, second = quadrant & 1 ? s : c;
+  *sine = quadrant & 2 ? -first : first;
+  *cosine = (quadrant + 1) & 2 ? -second : second;
+}

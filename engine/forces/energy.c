@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/energy.h"
+
+#include <math.h>
+
+#include "engine/forces/forces.h"
+
+static double kinetic(const strut_model *model, const double *v) {
+  const strut_member_table *t = &model->members;
+  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
+  double sum = 0.0;
+  for (int c = 0; c < 2; c++, v++) {
+    for (int32_t i = 0; i < model->node_count; i++)
+      sum += 0.5 * model->point_mass[i] * v[2 * i] * v[2 * i];
+    for (int32_t j = 0; j < t->count; j++) {
+      double a = v[t->from[j]], b = v[t->to[j]];
+      sum += consistent ? t->mass[j] / 6.0 * (a * a + a * b + b * b)
+                        : t->mass[j] / 4.0 * (a * a + b * b);
+    }
+  }
+  return sum;
+}
+
+static double elastic(const strut_model *model, const strut_state *state) {
+  const strut_member_table *t = &model->members;
+  double sum = 0.0;
+  for (int32_t j = 0; j < t->count; j++) {
+    const double *a = state->q + t->from[j], *b = state->q + t->to[j];
+    double dx = b[0] - a[0], dy = b[1] - a[1];
+    double stretch = sqrt(dx * dx + dy * dy) - state->rest[j];
+    if (stretch > t->slack[j]) sum += 0.5 * t->stiffness[j] * stretch * stretch;
+  }
+  return sum;
+}
+
+static double gravity(const strut_model *model, const double *q) {
+  const double *g = model->scene->gravity;
+  double sum = 0.0;
+  for (int c = 0; c < 2; c++, q++)
+    for (int32_t i = 0; i < model->node_count && g[c] != 0.0; i++)
+      sum -= model->weight[i] * g[c] * q[2 * i];
+  return sum;
+}
+
+static double contact(const strut_model *model, const double *q) {
+  const strut_contact_table *c = &model->contacts;
+  double sum = 0.0;
+  for (int32_t i = 0; i < c->count; i++) {
+    int32_t n = c->node[i];
+    double gap = q[2 * n] * c->normal[0] + (q[2 * n + 1] - c->height) * c->normal[1];
+    if (gap < 0.0) sum += 0.5 * c->stiffness[i] * gap * gap;
+  }
+  return sum;
+}
+
+strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t) {
+  strut_drive_apply(model, state, t);
+  return (strut_stored){kinetic(model, state->v), elastic(model, state), gravity(model, state->q),
+                        contact(model, state->q)};
+}
+
+double strut_energy_of_loads(const strut_model *model, const strut_state *state) {
+  const strut_scene *scene = model->scene;
+  double sum = 0.0;
+  for (size_t i = 0; i < scene->load_count; i++) {
+    const strut_load *load = &scene->loads[i];
+    if (load->signal >= 0) continue;
+    for (int c = 0; c < 2; c++) {
+      int32_t at = 2 * load->node + c;
+      sum += load->force[c] * (state->q[at] - model->start[at]);
+    }
+  }
+  return sum;
+}

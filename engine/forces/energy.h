@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The energies that a state stores, and the work that constant loads have done.
+ */
+#ifndef STRUT_ENGINE_FORCES_ENERGY_H
+#define STRUT_ENGINE_FORCES_ENERGY_H
+
+#include "engine/model/state.h"
+
+/** All in [J]. */
+typedef struct strut_stored {
+  double kinetic; /* v'Mv / 2 with the scene's mass model */
+  double elastic; /* first term of (13); slack cables store nothing; driven rest lengths count */
+  double gravity; /* second term of (13), for any gravity vector; zero at the origin */
+  double contact; /* of the ground's springs */
+} strut_stored;
+
+/** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
+STRUT_API strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t);
+
+/** Work of the constant loads (gravity is not one) since the start [J]. */
+STRUT_API double strut_energy_of_loads(const strut_model *model, const strut_state *state);
+
+#endif

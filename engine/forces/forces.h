@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * All forces of a model at one instant, summed in a fixed order, and the acceleration they give.
+ *
+ * Only the terms in the model's plan are evaluated. Coordinate arrays are (length).
+ */
+#ifndef STRUT_ENGINE_FORCES_FORCES_H
+#define STRUT_ENGINE_FORCES_FORCES_H
+
+#include "engine/model/state.h"
+
+/**
+ * a = M^-1 (constant + loads - K - C + contact), equation (10), at time t [s], positions q [m] and
+ * velocities v [m/s], which need not be the state's own. Fills state->force, normal, friction, rest
+ * and, with the ledger, power. The model must have a mass.
+ */
+STRUT_API void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,
+                                         const double *restrict q, const double *restrict v,
+                                         double *restrict a);
+
+/** The same without the mass: leaves the net forces in state->force. */
+STRUT_API void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
+                                     const double *restrict q, const double *restrict v);
+
+/* Terms that change with time alone; those of members and ground are in *_kernel.h. */
+
+/** Driven rest lengths and their rates (6): state->rest, rest_rate. */
+void strut_drive_apply(const strut_model *model, strut_state *state, double t);
+/** Adds the loads that change with time at velocities v (for their power). */
+void strut_loads_apply(const strut_model *model, strut_state *state, double t,
+                       const double *restrict v);
+/** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
+STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
+                                     double *length, double *force);
+
+#endif

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: the ground's reaction (8) and friction (9), exactly as the paper prints them.
+ *
+ * The damper acts only while the node moves into the ground. Friction comes last of all forces,
+ * since Karnopp's band needs the sum of the others on the node.
+ */
+#ifndef STRUT_ENGINE_FORCES_GROUND_KERNEL_H
+#define STRUT_ENGINE_FORCES_GROUND_KERNEL_H
+
+#include <math.h>
+
+#include "engine/forces/friction.h"
+#include "engine/model/hot.h"
+#include "engine/model/state.h"
+
+STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double damper, double into,
+                                double friction, double slip) {
+  double damped = -damper * into, rubbed = -friction * slip, belt = friction * belt_speed;
+  state->power[STRUT_POWER_CONTACT] += damped;
+  state->power[STRUT_POWER_FRICTION] += rubbed;
+  state->power[STRUT_POWER_BELT] += belt;
+  state->power[STRUT_POWER_MOVED] += damped + fabs(rubbed) + fabs(belt);
+}
+
+/* One node in contact; f, v: its force and velocity; gap < 0. */
+STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state, int32_t i,
+                               double gap, double *restrict f, const double *restrict v,
+                               bool sloped, bool rough, bool ledger) {
+  double into = sloped ? v[0] * c->normal[0] + v[1] * c->normal[1] : v[1];
+  double along = sloped ? v[0] * c->tangent[0] + v[1] * c->tangent[1] : v[0];
+  double damper = into < 0.0 ? -c->damping[i] * into : 0.0;
+  double normal = -c->stiffness[i] * gap + damper;
+  double slip = along - c->belt_speed, friction = 0.0;
+  if (rough) {
+    double applied = sloped ? f[0] * c->tangent[0] + f[1] * c->tangent[1] : f[0];
+    friction = strut_friction_force(normal, slip, applied, c->mu_static[i], c->mu_kinetic[i],
+                                    c->stick_velocity[i]);
+  }
+  f[0] += sloped ? friction * c->tangent[0] + normal * c->normal[0] : friction;
+  f[1] += sloped ? friction * c->tangent[1] + normal * c->normal[1] : normal;
+  state->normal[i] = normal;
+  state->friction[i] = friction;
+  if (ledger) ground_ledger(state, c->belt_speed, damper, into, friction, slip);
+}
+
+STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
+                             const double *restrict q, const double *restrict v,
+                             double *restrict force, bool sloped, bool rough, bool ledger) {
+  const strut_contact_table *c = &model->contacts;
+  const int32_t count = c->count, *restrict node = c->node;
+  const double height = c->height;
+  for (int32_t i = 0; i < count; i++) {
+    int32_t at = 2 * node[i];
+    double gap = q[at + 1] - height;
+    if (sloped) gap = q[at] * c->normal[0] + gap * c->normal[1];
+    if (gap < 0.0) ground_touch(c, state, i, gap, force + at, v + at, sloped, rough, ledger);
+  }
+}
+
+/* Adds the ground's forces; slope and friction are compiled out where the scene has none. */
+STRUT_INLINE void ground_kernel(const strut_model *model, strut_state *state,
+                                const double *restrict q, const double *restrict v,
+                                double *restrict force, bool ledger) {
+  switch (model->plan & (STRUT_TERM_SLOPE | STRUT_TERM_FRICTION)) {
+    case 0: ground_all(model, state, q, v, force, false, false, ledger); break;
+    case STRUT_TERM_FRICTION: ground_all(model, state, q, v, force, false, true, ledger); break;
+    case STRUT_TERM_SLOPE: ground_all(model, state, q, v, force, true, false, ledger); break;
+    default: ground_all(model, state, q, v, force, true, true, ledger); break;
+  }
+}
+
+#endif

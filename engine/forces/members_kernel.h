@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: forces along members, equations (1), (2) and (6).
+ *
+ * Blocks of members are worked on in groups of STRUT_LANES: gather the ends, compute along the
+ * group, scatter in the scene's order. What no member of a block needs (dampers, slack, drive) is
+ * compiled out of the block's loop.
+ */
+#ifndef STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
+#define STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
+
+#include <math.h>
+
+#include "engine/model/hot.h"
+#include "engine/model/state.h"
+
+/* Powers of the members, lane by lane [W]. */
+typedef struct member_powers {
+  strut_lanes drive, moved, lost;
+} member_powers;
+
+/* Vectors from the first to the second nodes of a group: their x and their y. */
+typedef struct member_vectors {
+  strut_lanes x, y;
+} member_vectors;
+
+STRUT_INLINE member_vectors members_gather(const double *restrict p, const uint32_t *restrict from,
+                                           const uint32_t *restrict to) {
+  strut_pair d[STRUT_LANES];
+  for (int l = 0; l < STRUT_LANES; l++)
+    d[l] = strut_pair_load(p + to[l]) - strut_pair_load(p + from[l]);
+  return (member_vectors){{d[0][0], d[1][0], d[2][0], d[3][0]},
+                          {d[0][1], d[1][1], d[2][1], d[3][1]}};
+}
+
+STRUT_INLINE strut_lanes members_root(strut_lanes x) {
+  return (strut_lanes){sqrt(x[0]), sqrt(x[1]), sqrt(x[2]), sqrt(x[3])};
+}
+
+/* Tension of a group, cables never below 0; `rate`: of the lengths [m/s]. */
+STRUT_INLINE strut_lanes members_tension(const strut_member_table *t, const strut_state *state,
+                                         int32_t j, unsigned terms, bool ledger,
+                                         strut_lanes length, strut_lanes rate,
+                                         member_powers *powers) {
+  bool driven = terms & STRUT_TERM_DRIVE;
+  strut_lanes stretch = length - strut_lanes_load((driven ? state->rest : t->rest) + j);
+  strut_lanes elastic = strut_lanes_load(t->stiffness + j) * stretch, tension = elastic;
+  strut_lanes own_rate = driven ? rate - strut_lanes_load(state->rest_rate + j) : rate;
+  if (terms & STRUT_TERM_DAMPING)
+    tension = elastic + strut_lanes_load(t->damping + j) * own_rate;
+  if (terms & STRUT_TERM_SLACK) {
+    strut_lanes least = strut_lanes_load(t->slack + j);
+    strut_lane_mask taut = stretch > least;
+    tension = strut_lanes_choose(taut & (tension > least), tension, least);
+    if (ledger) elastic = strut_lanes_choose(taut, elastic, least);
+  }
+  if (ledger && driven) {
+    strut_lanes power = -tension * strut_lanes_load(state->rest_rate + j);
+    powers->drive += power;
+    powers->moved += strut_lanes_magnitude(power);
+  }
+  if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += (tension - elastic) * own_rate;
+  return tension;
+}
+
+/*
+ * Forces of the STRUT_LANES members from j on. A member of zero length has no direction: its unit
+ * vector is zero and so is its force.
+ */
+STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *state,
+                                const double *restrict q, const double *restrict v,
+                                double *restrict force, int32_t j, unsigned terms, bool ledger,
+                                member_powers *powers) {
+  const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
+  member_vectors d = members_gather(q, from, to);
+  strut_lanes length = members_root(d.x * d.x + d.y * d.y);
+  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0});
+  strut_lanes ux = d.x * inverse, uy = d.y * inverse, rate = {0};
+  if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
+    member_vectors w = members_gather(v, from, to);
+    rate = w.x * ux + w.y * uy;
+  }
+  strut_lanes tension = members_tension(t, state, j, terms, ledger, length, rate, powers);
+  strut_lanes px = tension * ux, py = tension * uy;
+  for (int l = 0; l < STRUT_LANES; l++) {
+    strut_pair pull = {px[l], py[l]};
+    double *a = force + from[l], *b = force + to[l];
+    strut_pair_store(a, strut_pair_load(a) + pull);
+    strut_pair_store(b, strut_pair_load(b) - pull);
+  }
+}
+
+/* A block; the table is a copy in the caller's frame, so that no store can be taken to change it. */
+STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *state,
+                                const double *restrict q, const double *restrict v,
+                                double *restrict force, int32_t begin, int32_t end, unsigned terms,
+                                bool ledger, member_powers *powers) {
+  for (int32_t j = begin; j < end; j += STRUT_LANES)
+    members_group(t, state, q, v, force, j, terms, ledger, powers);
+}
+
+/* Adds the forces of all members; one copy of the loop per set of terms, so none is tested inside. */
+STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
+                                 const double *restrict q, const double *restrict v,
+                                 double *restrict force, bool ledger, member_powers *powers) {
+  enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
+  const strut_member_table t = model->members;
+  for (int32_t b = 0; b < t.blocks; b++) {
+    int32_t begin = b * STRUT_BLOCK;
+    int32_t end = begin + STRUT_BLOCK < t.slots ? begin + STRUT_BLOCK : t.slots;
+#define STRUT_CASE(set)                                                                           \
+  case set: members_block(&t, state, q, v, force, begin, end, set, ledger, powers); break
+    switch (t.block_terms[b] & (K | S | D)) {
+      STRUT_CASE(0);
+      STRUT_CASE(K);
+      STRUT_CASE(S);
+      STRUT_CASE(K | S);
+      STRUT_CASE(D);
+      STRUT_CASE(D | K);
+      STRUT_CASE(D | S);
+      STRUT_CASE(D | K | S);
+    }
+#undef STRUT_CASE
+  }
+}
+
+#endif

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Methods of integration: one file per method, one row per method in the table.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
+#define STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
+
+#include "engine/forces/forces.h"
+
+/** A method. Its workspace belongs to one state. */
+typedef struct strut_integrator {
+  const char *name;        /* as the language calls it */
+  const char *description; /* one line for documents */
+  int order;               /* of convergence on smooth scenes */
+  int evaluations;         /* of the forces per step */
+  /** Allocates the workspace; NULL: out of memory. */
+  void *(*create)(const strut_model *model);
+  /** Advances the state by `count` steps of dt [s]; allocates nothing. */
+  void (*advance)(const strut_model *model, strut_state *state, void *workspace, double dt,
+                  int64_t count);
+  void (*destroy)(void *workspace);
+} strut_integrator;
+
+/** The i-th method, or NULL after the last. */
+STRUT_API const strut_integrator *strut_integrator_at(size_t i);
+/** The method of that name, or NULL. */
+STRUT_API const strut_integrator *strut_integrator_find(const char *name);
+
+/* The rows of the table. */
+extern const strut_integrator strut_integrator_rk4;
+
+#endif

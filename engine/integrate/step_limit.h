@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * How large a step may be: the spectrum of small motions against a method's region of stability.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_STEP_LIMIT_H
+#define STRUT_ENGINE_INTEGRATE_STEP_LIMIT_H
+
+#include "engine/model/state.h"
+
+typedef struct strut_step_limit {
+  double largest_frequency; /* undamped, all contacts closed [rad/s]; 0 where nothing vibrates */
+  double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
+  bool exact;               /* from all eigenvalues; else from an estimate of the largest ones */
+} strut_step_limit;
+
+/**
+ * Limits at the model's start with every contact closed, its stiffness and damping counted. Up to
+ * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
+ * power iterations estimate the largest frequency and damping rate. The model must have a mass.
+ */
+STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
+                                                 strut_error *error);
+
+/** Largest h with |R(h lambda)| <= 1 for RK4's R and lambda = re + i im, re <= 0; INFINITY at 0. */
+STRUT_API double strut_rk4_limit(double re, double im);
+
+enum { STRUT_EXACT_LIMIT = 60 };
+
+#endif

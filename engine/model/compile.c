@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The ordered passes from scene to model. See model.h. */
+#include <assert.h>
+#include <math.h>
+
+#include "engine/model/model.h"
+
+/* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
+static double *doubles(strut_model *model, size_t count, bool *failed) {
+  double *block = strut_arena_allocate(&model->arena, count, sizeof *block);
+  if (!block) *failed = true;
+  return block;
+}
+
+static int32_t *indices(strut_model *model, size_t count, bool *failed) {
+  int32_t *block = strut_arena_allocate(&model->arena, count, sizeof *block);
+  if (!block) *failed = true;
+  return block;
+}
+
+static void compile_nodes(strut_model *model, bool *failed) {
+  const strut_scene *scene = model->scene;
+  size_t count = scene->node_count;
+  size_t length = (2 * count + 4 + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  model->node_count = (int32_t)scene->node_count;
+  model->length = (int32_t)length;
+  double *start = doubles(model, length, failed), *velocity = doubles(model, length, failed);
+  double *mass = doubles(model, count, failed);
+  uint8_t *fixed = strut_arena_allocate(&model->arena, length, 1);
+  if (*failed || !fixed) {
+    *failed = true;
+    return;
+  }
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < scene->node_count; i++) {
+    const strut_node *node = &scene->nodes[i];
+    mass[i] = node->mass;
+    for (size_t c = 0; c < 2; c++) {
+      start[2 * i + c] = node->start[c];
+      velocity[2 * i + c] = node->fixed[c] ? 0.0 : node->velocity[c];
+      fixed[2 * i + c] = node->fixed[c];
+      low[c] = fmin(low[c], node->position[c]);
+      high[c] = fmax(high[c], node->position[c]);
+    }
+  }
+  model->size = fmax(high[0] - low[0], high[1] - low[1]);
+  model->start = start, model->velocity = velocity;
+  model->point_mass = mass, model->fixed = fixed;
+}
+
+static void compile_members(strut_model *model, bool *failed) {
+  const strut_scene *scene = model->scene;
+  strut_member_table *t = &model->members;
+  size_t slots = (scene->member_count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  t->count = (int32_t)scene->member_count;
+  t->slots = (int32_t)slots;
+  t->blocks = (t->slots + STRUT_BLOCK - 1) / STRUT_BLOCK;
+  uint32_t *from = strut_arena_allocate(&model->arena, slots, sizeof *from);
+  uint32_t *to = strut_arena_allocate(&model->arena, slots, sizeof *to);
+  double *stiffness = doubles(model, slots, failed), *damping = doubles(model, slots, failed);
+  double *rest = doubles(model, slots, failed), *mass = doubles(model, slots, failed);
+  double *slack = doubles(model, slots, failed);
+  uint16_t *terms = strut_arena_allocate(&model->arena, (size_t)t->blocks, sizeof *terms);
+  if (*failed || !terms || !from || !to) {
+    *failed = true;
+    return;
+  }
+  for (size_t j = 0; j < slots; j++) {
+    slack[j] = -HUGE_VAL;
+    from[j] = 2 * (uint32_t)model->node_count;
+    to[j] = from[j] + 2;
+  }
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *member = &scene->members[j];
+    strut_rest r;
+    bool resolved = strut_member_rest(scene, j, &r);
+    assert(resolved && "the scene has been checked");
+    (void)resolved;
+    from[j] = 2 * (uint32_t)member->node[0], to[j] = 2 * (uint32_t)member->node[1];
+    stiffness[j] = r.stiffness, rest[j] = r.length;
+    damping[j] = member->damping, mass[j] = member->mass;
+    unsigned needs = STRUT_TERM_MEMBERS;
+    if (member->damping > 0) needs |= STRUT_TERM_DAMPING;
+    if (member->kind == STRUT_CABLE) slack[j] = 0.0, needs |= STRUT_TERM_SLACK;
+    terms[j / STRUT_BLOCK] = (uint16_t)(terms[j / STRUT_BLOCK] | needs);
+    model->plan |= needs;
+  }
+  t->from = from, t->to = to, t->stiffness = stiffness, t->damping = damping, t->rest = rest;
+  t->slack = slack, t->mass = mass, t->block_terms = terms;
+}
+
+static void compile_drives(strut_model *model, bool *failed) {
+  const strut_scene *scene = model->scene;
+  size_t count = scene->actuator_count;
+  int32_t *member = indices(model, count, failed), *signal = indices(model, count, failed);
+  if (*failed) return;
+  uint16_t *terms = (uint16_t *)model->members.block_terms;
+  for (size_t i = 0; i < count; i++) {
+    member[i] = scene->actuators[i].member;
+    signal[i] = scene->actuators[i].signal;
+    terms[member[i] / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
+    model->plan |= STRUT_TERM_DRIVE;
+  }
+  model->drives = (strut_drive_table){(int32_t)count, member, signal};
+}
+
+/* Half of each member's mass at each of its ends (7), and the point masses. */
+static void compile_weights(strut_model *model, bool *failed) {
+  const strut_member_table *t = &model->members;
+  double *weight = doubles(model, (size_t)model->node_count, failed);
+  if (*failed) return;
+  for (int32_t i = 0; i < model->node_count; i++) weight[i] = model->point_mass[i];
+  for (int32_t j = 0; j < t->count; j++) {
+    weight[t->from[j] / 2] += 0.5 * t->mass[j];
+    weight[t->to[j] / 2] += 0.5 * t->mass[j];
+  }
+  model->weight = weight;
+}
+
+static void compile_loads(strut_model *model, bool *failed) {
+  const strut_scene *scene = model->scene;
+  size_t most = scene->load_count;
+  double *constant = doubles(model, (size_t)model->length, failed);
+  double *x = doubles(model, most, failed), *y = doubles(model, most, failed);
+  int32_t *node = indices(model, most, failed), *signal = indices(model, most, failed);
+  if (*failed) return;
+  bool any = false;
+  for (size_t c = 0; c < 2; c++)
+    for (size_t i = 0; i < scene->node_count && scene->gravity[c] != 0.0; i++) {
+      constant[2 * i + c] = model->weight[i] * scene->gravity[c];
+      any = true;
+    }
+  int32_t count = 0;
+  for (size_t i = 0; i < most; i++) {
+    const strut_load *load = &scene->loads[i];
+    if (load->signal >= 0) {
+      node[count] = load->node, signal[count] = load->signal;
+      x[count] = load->force[0], y[count++] = load->force[1];
+      continue;
+    }
+    constant[2 * load->node] += load->force[0];
+    constant[2 * load->node + 1] += load->force[1];
+    any = true;
+  }
+  model->constant_force = any ? constant : NULL;
+  model->loads = (strut_load_table){count, node, signal, x, y};
+  model->plan |= (any ? STRUT_TERM_CONSTANT : 0u) | (count ? STRUT_TERM_LOADS : 0u);
+}
+
+static void compile_contacts(strut_model *model, bool *failed) {
+  const strut_scene *scene = model->scene;
+  size_t count = scene->contact_count;
+  strut_contact_table *t = &model->contacts;
+  int32_t *node = indices(model, count, failed);
+  double *stiffness = doubles(model, count, failed), *damping = doubles(model, count, failed);
+  double *mu_static = doubles(model, count, failed), *mu_kinetic = doubles(model, count, failed);
+  double *stick = doubles(model, count, failed);
+  if (*failed || !scene->ground.present || !count) return;
+  for (size_t i = 0; i < count; i++) {
+    const strut_contact *contact = &scene->contacts[i];
+    node[i] = contact->node;
+    stiffness[i] = contact->stiffness, damping[i] = contact->damping;
+    if (contact->friction.law == STRUT_FRICTION_NONE) continue;
+    mu_static[i] = contact->friction.mu_static;
+    mu_kinetic[i] = contact->friction.mu_kinetic;
+    stick[i] = contact->friction.stick_velocity;
+    model->plan |= STRUT_TERM_FRICTION;
+  }
+  *t = (strut_contact_table){(int32_t)count, node, stiffness, damping, mu_static, mu_kinetic,
+                             stick, {1, 0}, {0, 1}, scene->ground.height,
+                             scene->ground.belt_speed};
+  model->plan |= STRUT_TERM_CONTACT;
+  if (scene->ground.slope == 0.0) return;
+  double c = cos(scene->ground.slope), s = sin(scene->ground.slope);
+  t->tangent[0] = c, t->tangent[1] = s, t->normal[0] = -s, t->normal[1] = c;
+  model->plan |= STRUT_TERM_SLOPE;
+}
+
+strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
+                                 strut_error *error) {
+  *result = NULL;
+  strut_model *model = strut_allocate(1, sizeof *model);
+  if (!model) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  model->scene = scene;
+  bool failed = false;
+  void (*const passes[])(strut_model *, bool *) = {compile_nodes,   compile_members,
+                                                   compile_drives,  compile_weights,
+                                                   compile_loads,   compile_contacts};
+  for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
+    passes[i](model, &failed);
+  strut_status status = failed ? strut_fail(error, STRUT_NO_MEMORY, "out of memory")
+                               : strut_mass_create(model, &model->mass, error);
+  if (status) {
+    strut_model_free(model);
+    return status;
+  }
+  if (model->mass && !model->mass->diagonal) model->plan |= STRUT_TERM_SOLVE;
+  *result = model;
+  return STRUT_OK;
+}
+
+void strut_model_free(strut_model *model) {
+  if (!model) return;
+  strut_mass_free(model->mass);
+  strut_arena_free(&model->arena);
+  strut_release(model);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Marks and vector types for code of the step loop.
+ *
+ * STRUT_CLONES compiles a function for wider vector registers too and picks at run time. Products
+ * and sums are never fused (-ffp-contract=off), so every clone gives the same bits. Give it to local
+ * functions only: clang names the clones of a public one otherwise than gcc.
+ */
+#ifndef STRUT_ENGINE_MODEL_HOT_H
+#define STRUT_ENGINE_MODEL_HOT_H
+
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(STRUT_NO_CLONES) && \
+    !defined(__AVX2__) && defined(__OPTIMIZE__)
+#define STRUT_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define STRUT_CLONES
+#endif
+#define STRUT_INLINE static inline __attribute__((always_inline))
+
+/* No function with a vector in its signature is ever called: all of them are inlined. */
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/** Four doubles that are computed alike; the compiler splits them where registers are narrower. */
+typedef double strut_lanes __attribute__((vector_size(32)));
+typedef long long strut_lane_mask __attribute__((vector_size(32)));
+/** The x and y of one node. */
+typedef double strut_pair __attribute__((vector_size(16)));
+
+/* The same at the alignment of a double; they alias doubles, and nothing else. */
+typedef double strut_pair_at __attribute__((vector_size(16), aligned(8)));
+typedef double strut_lanes_at __attribute__((vector_size(32), aligned(8)));
+
+STRUT_INLINE strut_pair strut_pair_load(const double *p) { return *(const strut_pair_at *)p; }
+STRUT_INLINE void strut_pair_store(double *p, strut_pair x) { *(strut_pair_at *)p = x; }
+STRUT_INLINE strut_lanes strut_lanes_load(const double *p) { return *(const strut_lanes_at *)p; }
+STRUT_INLINE void strut_lanes_store(double *p, strut_lanes x) { *(strut_lanes_at *)p = x; }
+
+/** mask ? x : y, lane by lane. */
+STRUT_INLINE strut_lanes strut_lanes_choose(strut_lane_mask mask, strut_lanes x, strut_lanes y) {
+  return (strut_lanes)((mask & (strut_lane_mask)x) | (~mask & (strut_lane_mask)y));
+}
+
+STRUT_INLINE strut_lanes strut_lanes_magnitude(strut_lanes x) {
+  return (strut_lanes)((strut_lane_mask)x & 0x7fffffffffffffffLL);
+}
+
+#endif

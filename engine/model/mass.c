@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/model/mass.h"
+
+#include "engine/model/mass_matrix.h"
+#include "engine/model/model.h"
+
+/* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
+static int32_t find_root(int32_t *parent, int32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static void join_coupled(const strut_sparse *m, int32_t *parent) {
+  for (int32_t i = 0; i < m->n; i++) parent[i] = i;
+  for (int32_t j = 0; j < m->n; j++)
+    for (int32_t k = m->start[j] + 1; k < m->start[j + 1]; k++) {
+      int32_t a = find_root(parent, j), b = find_root(parent, m->row[k]);
+      if (a < b) parent[b] = a;
+      if (b < a) parent[a] = b;
+    }
+  for (int32_t i = 0; i < m->n; i++) parent[i] = find_root(parent, i);
+}
+
+/* Inverse of a small positive definite matrix in place, by Gauss-Jordan; false if it is not one. */
+static bool invert_small(int32_t n, double *a) {
+  for (int32_t p = 0; p < n; p++) {
+    double pivot = a[p * n + p];
+    if (!(pivot > 0)) return false;
+    a[p * n + p] = 1.0;
+    for (int32_t j = 0; j < n; j++) a[p * n + j] /= pivot;
+    for (int32_t i = 0; i < n; i++) {
+      if (i == p) continue;
+      double factor = a[i * n + p];
+      a[i * n + p] = 0.0;
+      for (int32_t j = 0; j < n; j++) a[i * n + j] -= factor * a[p * n + j];
+    }
+  }
+  return true;
+}
+
+/* What each row of M becomes, found from the size of its coupled set. */
+typedef struct sorting {
+  int32_t *root, *size; /* of each row's set; size stands at the root */
+  int32_t *order;       /* rows, sets together, each set's rows ascending */
+  int32_t *place;       /* scratch */
+} sorting;
+
+static bool sort_rows(const strut_sparse *m, strut_arena *scratch, sorting *s) {
+  size_t n = (size_t)m->n;
+  s->root = strut_arena_allocate(scratch, n, sizeof *s->root);
+  s->size = strut_arena_allocate(scratch, n, sizeof *s->size);
+  s->order = strut_arena_allocate(scratch, n, sizeof *s->order);
+  s->place = strut_arena_allocate(scratch, n + 1, sizeof *s->place);
+  if (!s->root || !s->size || !s->order || !s->place) return false;
+  join_coupled(m, s->root);
+  for (int32_t i = 0; i < m->n; i++) s->size[s->root[i]]++;
+  for (int32_t i = 0, at = 0; i < m->n; at += s->size[i++]) s->place[i] = at;
+  for (int32_t i = 0; i < m->n; i++) s->order[s->place[s->root[i]]++] = i;
+  return true;
+}
+
+static double entry(const strut_sparse *m, int32_t i, int32_t j) {
+  int32_t column = i < j ? i : j, row = i < j ? j : i;
+  for (int32_t k = m->start[column]; k < m->start[column + 1]; k++)
+    if (m->row[k] == row) return m->value[k];
+  return 0.0;
+}
+
+/* Dense inverses of all sets of 2 to STRUT_DENSE_BLOCK rows. */
+static strut_status make_blocks(strut_model *model, const sorting *s, strut_mass_operator *op,
+                                strut_mass *mass, strut_error *error) {
+  const strut_sparse *m = op->matrix;
+  size_t nodes = 0, entries = 0;
+  for (int32_t i = 0; i < m->n; i++)
+    if (s->size[i] > 1 && s->size[i] <= STRUT_DENSE_BLOCK) {
+      op->block_count++;
+      nodes += (size_t)s->size[i];
+      entries += (size_t)(s->size[i] * s->size[i]);
+    }
+  if (!op->block_count) return STRUT_OK;
+  int32_t *size = strut_arena_allocate(&model->arena, (size_t)op->block_count, sizeof *size);
+  int32_t *node = strut_arena_allocate(&model->arena, nodes, sizeof *node);
+  double *inverse = strut_arena_allocate(&model->arena, entries, sizeof *inverse);
+  if (!size || !node || !inverse) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  op->block_size = size, op->block_node = node, op->block_inverse = inverse;
+  mass->dense_entries += entries;
+  for (int32_t at = 0; at < m->n;) {
+    const int32_t *rows = s->order + at;
+    int32_t n = s->size[s->root[rows[0]]];
+    at += n;
+    if (n < 2 || n > STRUT_DENSE_BLOCK) continue;
+    for (int32_t i = 0; i < n; i++)
+      for (int32_t j = 0; j < n; j++) inverse[i * n + j] = entry(m, rows[i], rows[j]);
+    if (!invert_small(n, inverse))
+      return strut_fail(error, STRUT_SINGULAR, "the mass matrix of node '%s' is singular",
+                        model->scene->nodes[op->matrix_node[rows[0]]].name);
+    for (int32_t i = 0; i < n; i++) *node++ = op->matrix_node[rows[i]];
+    inverse += n * n;
+    *size++ = n;
+  }
+  return STRUT_OK;
+}
+
+/* The rows of large sets as one matrix of their own; its node list is returned in *node. */
+static strut_status take_rest(strut_arena *scratch, const sorting *s, const strut_sparse *m,
+                              const int32_t *matrix_node, strut_sparse *rest, int32_t **node) {
+  int32_t *map = strut_arena_allocate(scratch, (size_t)m->n, sizeof *map);
+  *node = strut_arena_allocate(scratch, (size_t)m->n, sizeof **node);
+  rest->start = strut_arena_allocate(scratch, (size_t)m->n + 1, sizeof *rest->start);
+  rest->row = strut_arena_allocate(scratch, (size_t)m->start[m->n], sizeof *rest->row);
+  rest->value = strut_arena_allocate(scratch, (size_t)m->start[m->n], sizeof *rest->value);
+  if (!map || !*node || !rest->start || !rest->row || !rest->value) return STRUT_NO_MEMORY;
+  int32_t nonzeros = 0;
+  for (int32_t i = 0; i < m->n; i++)
+    if (s->size[s->root[i]] > STRUT_DENSE_BLOCK) {
+      (*node)[rest->n] = matrix_node[i];
+      map[i] = rest->n++;
+    }
+  for (int32_t j = 0, column = 0; j < m->n; j++) {
+    if (s->size[s->root[j]] <= STRUT_DENSE_BLOCK) continue;
+    for (int32_t k = m->start[j]; k < m->start[j + 1]; k++, nonzeros++) {
+      rest->row[nonzeros] = map[m->row[k]];
+      rest->value[nonzeros] = m->value[k];
+    }
+    rest->start[++column] = nonzeros;
+  }
+  return STRUT_OK;
+}
+
+static strut_status make_factor(strut_model *model, strut_arena *scratch, const sorting *s,
+                                strut_mass_operator *op, strut_mass *mass, int coordinate,
+                                strut_error *error) {
+  strut_sparse rest = {0};
+  int32_t *node = NULL;
+  if (take_rest(scratch, s, op->matrix, op->matrix_node, &rest, &node))
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!rest.n) return STRUT_OK;
+  strut_factor *factor = NULL;
+  strut_status status = strut_factor_create(&rest, &factor, error);
+  if (status) return status;
+  mass->owned_factor[coordinate] = factor;
+  mass->factor_nonzeros += (size_t)factor->start[factor->n] + (size_t)factor->n;
+  op->factor = factor;
+  int32_t *ordered = strut_arena_allocate(&model->arena, (size_t)rest.n, sizeof *ordered);
+  if (!ordered) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (int32_t i = 0; i < rest.n; i++) ordered[i] = node[factor->order[i]];
+  op->factor_node = ordered;
+  return STRUT_OK;
+}
+
+static strut_status make_operator(strut_model *model, strut_arena *scratch, strut_mass *mass,
+                                  int coordinate, strut_error *error) {
+  strut_mass_operator *op = &mass->coordinate[coordinate];
+  sorting s = {0};
+  strut_sparse *matrix = NULL;
+  int32_t *node = NULL;
+  strut_status status = strut_mass_matrix(model, coordinate, scratch, &matrix, &node);
+  double *inverse = strut_arena_allocate(&model->arena, (size_t)model->length, sizeof *inverse);
+  if (status || !inverse || !sort_rows(matrix, scratch, &s))
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  op->matrix = matrix, op->matrix_node = node, op->inverse = inverse;
+  mass->matrix_nonzeros += (size_t)matrix->start[matrix->n];
+  for (int32_t i = 0; i < matrix->n; i++)
+    if (s.size[s.root[i]] == 1) inverse[2 * node[i] + coordinate] = 1.0 / matrix->value[matrix->start[i]];
+  status = make_blocks(model, &s, op, mass, error);
+  return status ? status : make_factor(model, scratch, &s, op, mass, coordinate, error);
+}
+
+/* A free coordinate without mass cannot be moved: such a model is for statics only. */
+static bool has_massless_node(const strut_model *model) {
+  for (int32_t i = 0; i < model->node_count; i++)
+    if (!(model->weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1]))
+      return true;
+  return false;
+}
+
+/* One array of inverses for both coordinates; each operator has filled its own places. */
+static void join_inverses(const strut_model *model, strut_mass *mass) {
+  double *x = (double *)mass->coordinate[0].inverse;
+  for (int32_t i = 0; i < model->node_count; i++)
+    x[2 * i + 1] = mass->coordinate[1].inverse[2 * i + 1];
+}
+
+static bool same_supports(const strut_model *model) {
+  for (int32_t i = 0; i < model->node_count; i++)
+    if (model->fixed[2 * i] != model->fixed[2 * i + 1]) return false;
+  return true;
+}
+
+/* x and y have one matrix: the second operator is the first. */
+static void share_operator(const strut_model *model, strut_mass *mass) {
+  double *inverse = (double *)mass->coordinate[0].inverse;
+  for (int32_t i = 0; i < model->node_count; i++) inverse[2 * i + 1] = inverse[2 * i];
+  mass->coordinate[1] = mass->coordinate[0];
+  mass->shared = true;
+}
+
+strut_status strut_mass_create(strut_model *model, strut_mass **result, strut_error *error) {
+  *result = NULL;
+  if (has_massless_node(model)) return STRUT_OK;
+  strut_mass *mass = strut_allocate(1, sizeof *mass);
+  if (!mass) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_arena scratch = {0};
+  strut_status status = make_operator(model, &scratch, mass, 0, error);
+  if (!status && same_supports(model))
+    share_operator(model, mass);
+  else if (!status)
+    status = make_operator(model, &scratch, mass, 1, error);
+  if (!status && !mass->shared) join_inverses(model, mass);
+  strut_arena_free(&scratch);
+  if (status) {
+    strut_mass_free(mass);
+    return status;
+  }
+  const strut_mass_operator *op = mass->coordinate;
+  mass->inverse = op[0].inverse;
+  mass->diagonal = !op[0].block_count && !op[0].factor && !op[1].block_count && !op[1].factor;
+  *result = mass;
+  return STRUT_OK;
+}
+
+void strut_mass_free(strut_mass *mass) {
+  if (!mass) return;
+  strut_factor_free(mass->owned_factor[0]);
+  strut_factor_free(mass->owned_factor[1]);
+  strut_release(mass);
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: the inverse of the mass matrix applied once per force evaluation. See mass.h.
+ */
+#ifndef STRUT_ENGINE_MODEL_MASS_KERNEL_H
+#define STRUT_ENGINE_MODEL_MASS_KERNEL_H
+
+#include "engine/model/hot.h"
+#include "engine/model/model.h"
+
+/* x and y of one dense block of n nodes together: they have the same inverse. */
+STRUT_INLINE void mass_block_pair(int32_t n, const double *restrict inverse,
+                                  const int32_t *restrict node, const double *restrict f,
+                                  double *restrict a) {
+  strut_pair x[STRUT_DENSE_BLOCK];
+  for (int32_t j = 0; j < n; j++) x[j] = strut_pair_load(f + 2 * node[j]);
+  for (int32_t i = 0; i < n; i++) {
+    strut_pair sum = inverse[i * n] * x[0];
+    for (int32_t j = 1; j < n; j++) sum += inverse[i * n + j] * x[j];
+    strut_pair_store(a + 2 * node[i], sum);
+  }
+}
+
+/* One coordinate of a block: f and a point at that coordinate of node 0. */
+STRUT_INLINE void mass_block_single(int32_t n, const double *restrict inverse,
+                                    const int32_t *restrict node, const double *restrict f,
+                                    double *restrict a) {
+  for (int32_t i = 0; i < n; i++) {
+    double sum = inverse[i * n] * f[2 * node[0]];
+    for (int32_t j = 1; j < n; j++) sum += inverse[i * n + j] * f[2 * node[j]];
+    a[2 * node[i]] = sum;
+  }
+}
+
+STRUT_INLINE void mass_blocks(const strut_mass_operator *op, bool pair, const double *restrict f,
+                              double *restrict a) {
+  const int32_t *node = op->block_node;
+  const double *inverse = op->block_inverse;
+  for (int32_t b = 0; b < op->block_count; b++) {
+    int32_t n = op->block_size[b];
+    if (!pair)
+      mass_block_single(n, inverse, node, f, a);
+    else if (n == 2)
+      mass_block_pair(2, inverse, node, f, a);
+    else if (n == 3)
+      mass_block_pair(3, inverse, node, f, a);
+    else
+      mass_block_pair(n, inverse, node, f, a);
+    node += n;
+    inverse += n * n;
+  }
+}
+
+/* a = M^-1 f; work: scratch. All (length). */
+STRUT_INLINE void mass_kernel(const strut_model *model, const double *restrict f,
+                              double *restrict a, double *restrict work) {
+  const strut_mass *mass = model->mass;
+  const double *restrict inverse = mass->inverse;
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES)
+    strut_lanes_store(a + i, strut_lanes_load(f + i) * strut_lanes_load(inverse + i));
+  if (mass->diagonal) return;
+  if (mass->shared) {
+    mass_blocks(&mass->coordinate[0], true, f, a);
+    if (mass->coordinate[0].factor) strut_mass_factor_pair(&mass->coordinate[0], f, a, work);
+    return;
+  }
+  for (int c = 0; c < 2; c++) {
+    mass_blocks(&mass->coordinate[c], false, f + c, a + c);
+    if (mass->coordinate[c].factor)
+      strut_mass_factor_single(&mass->coordinate[c], f + c, a + c, work);
+  }
+}
+
+#endif

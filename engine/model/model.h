@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The model: a scene compiled into indices and numbers, constant from then on.
+ *
+ * A model is shared by threads without locks. It refers to the scene it came from for names, so the
+ * scene must outlive it. Coordinate arrays follow the paper's q = (x1, y1, x2, y2, ...): node i has
+ * its x at 2 i and its y at 2 i + 1, and two unused nodes or more pad them to `length` doubles. Supports are eliminated
+ * from the mass matrix, and their coordinates simply never accelerate.
+ * Members keep the scene's order, so that a term left out changes no bit of the others.
+ */
+#ifndef STRUT_ENGINE_MODEL_MODEL_H
+#define STRUT_ENGINE_MODEL_MODEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "engine/model/mass.h"
+#include "engine/scene/scene.h"
+
+/** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
+enum { STRUT_LANES = 4, STRUT_BLOCK = 64 };
+
+/** The terms a scene may need. The plan of a model is the set of those it does need. */
+typedef enum strut_term {
+  STRUT_TERM_MEMBERS = 1 << 0,  /* elastic forces (1) */
+  STRUT_TERM_DAMPING = 1 << 1,  /* member dampers (2) */
+  STRUT_TERM_SLACK = 1 << 2,    /* the slack test of cables */
+  STRUT_TERM_DRIVE = 1 << 3,    /* driven rest lengths (6) */
+  STRUT_TERM_CONSTANT = 1 << 4, /* gravity (7) and constant loads */
+  STRUT_TERM_LOADS = 1 << 5,    /* loads that change with time */
+  STRUT_TERM_CONTACT = 1 << 6,  /* ground reaction (8) */
+  STRUT_TERM_FRICTION = 1 << 7, /* Coulomb with Karnopp's band (9) */
+  STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
+  STRUT_TERM_SOLVE = 1 << 9     /* the mass matrix is not diagonal */
+} strut_term;
+
+/**
+ * Member tables in scene order; (slots) entries each. Padding slots pull with no force on the two
+ * nodes of padding that every coordinate array ends with.
+ */
+typedef struct strut_member_table {
+  int32_t count, slots, blocks;
+  const uint32_t *from, *to; /* where nodes i1, i2 have their x in coordinate arrays: 2 * node */
+  const double *stiffness;   /* c [N/m] */
+  const double *damping;     /* k [N s/m] */
+  const double *rest;        /* lambda_0 [m] */
+  const double *slack;       /* least force [N]: 0 for cables, -INFINITY otherwise */
+  const double *mass;        /* m [kg] */
+  const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
+} strut_member_table;
+
+/** Contact tables, one entry for each node that may touch. */
+typedef struct strut_contact_table {
+  int32_t count;
+  const int32_t *node;
+  const double *stiffness, *damping;      /* c_g [N/m], k_g [N s/m] */
+  const double *mu_static, *mu_kinetic;   /* mu_0, mu [1]; 0 without friction */
+  const double *stick_velocity;           /* delta [m/s] */
+  double tangent[2], normal[2];           /* unit vectors along and out of the ground */
+  double height;                          /* at x = 0 [m] */
+  double belt_speed;                      /* [m/s] */
+} strut_contact_table;
+
+/** Signals that act on the structure. */
+typedef struct strut_drive_table {
+  int32_t count;
+  const int32_t *member, *signal;
+} strut_drive_table;
+
+typedef struct strut_load_table {
+  int32_t count;
+  const int32_t *node, *signal;
+  const double *x, *y; /* [N], times the signal */
+} strut_load_table;
+
+typedef struct strut_model {
+  const strut_scene *scene;
+  unsigned plan; /* strut_term bits */
+  int32_t node_count, length;
+  double size;             /* largest extent of the drawn shape [m]: the scale for "beyond" */
+  const double *start;     /* (length) positions at t = 0 */
+  const double *velocity;  /* (length) velocities at t = 0 */
+  const double *constant_force; /* (length) gravity and constant loads; NULL when all zero */
+  const double *weight;    /* (node_count) mass half of each member at each node, and point masses */
+  const uint8_t *fixed;    /* (length) 1 where supported */
+  const double *point_mass;     /* (node_count) [kg] */
+  strut_member_table members;
+  strut_contact_table contacts;
+  strut_drive_table drives;
+  strut_load_table loads;
+  strut_mass *mass; /* NULL where some free coordinate has no mass: statics only */
+  strut_arena arena;
+} strut_model;
+
+/**
+ * Compiles a valid scene. The model refers to the scene. Fails with STRUT_NO_MEMORY or
+ * STRUT_SINGULAR (a mass matrix that cannot be factorised).
+ */
+STRUT_API strut_status strut_model_compile(const strut_scene *scene, strut_model **model,
+                                           strut_error *error);
+/** NULL is allowed. */
+STRUT_API void strut_model_free(strut_model *model);
+
+#endif

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/model/state.h"
+
+#include <math.h>
+#include <string.h>
+
+strut_status strut_state_create(const strut_model *model, strut_state **result,
+                                strut_error *error) {
+  strut_state *state = strut_allocate(1, sizeof *state);
+  *result = state;
+  if (!state) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  size_t both = (size_t)model->length, slots = (size_t)model->members.slots;
+  size_t contacts = (size_t)model->contacts.count;
+  strut_arena *arena = &state->arena;
+  state->q = strut_arena_allocate(arena, both, sizeof(double));
+  state->v = strut_arena_allocate(arena, both, sizeof(double));
+  state->rest = strut_arena_allocate(arena, slots, sizeof(double));
+  state->rest_rate = strut_arena_allocate(arena, slots, sizeof(double));
+  state->force = strut_arena_allocate(arena, both, sizeof(double));
+  state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
+  state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
+  state->scratch = strut_arena_allocate(arena, both, sizeof(double));
+  if (!state->q || !state->v || !state->rest || !state->rest_rate || !state->force ||
+      !state->normal || !state->friction || !state->scratch) {
+    strut_state_free(state);
+    *result = NULL;
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  }
+  strut_state_reset(model, state);
+  return STRUT_OK;
+}
+
+void strut_state_reset(const strut_model *model, strut_state *state) {
+  size_t both = (size_t)model->length * sizeof(double);
+  size_t slots = (size_t)model->members.slots * sizeof(double);
+  state->step = 0;
+  state->evaluations = 0;
+  state->drive_time = (double)NAN;
+  memcpy(state->q, model->start, both);
+  memcpy(state->v, model->velocity, both);
+  memcpy(state->rest, model->members.rest, slots);
+  memset(state->rest_rate, 0, slots);
+  memset(state->work, 0, sizeof state->work);
+  memset(state->power, 0, sizeof state->power);
+}
+
+void strut_state_free(strut_state *state) {
+  if (!state) return;
+  strut_arena_free(&state->arena);
+  strut_release(state);
+}

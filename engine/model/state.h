@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The state: all that changes while a model runs. One per run; the model stays constant.
+ *
+ * Coordinate arrays are (length): x, y of node 0, x, y of node 1, ... Read from top to bottom it is the order
+ * in which a force evaluation works.
+ */
+#ifndef STRUT_ENGINE_MODEL_STATE_H
+#define STRUT_ENGINE_MODEL_STATE_H
+
+#include "engine/model/model.h"
+
+/** Powers that the ledger integrates beside the motion [W]. */
+typedef enum strut_power {
+  STRUT_POWER_DRIVE,    /* actuators, on the structure */
+  STRUT_POWER_LOAD,     /* loads that change with time */
+  STRUT_POWER_BELT,     /* the ground's own motion, through friction */
+  STRUT_POWER_MEMBERS,  /* lost in member dampers, > 0 */
+  STRUT_POWER_CONTACT,  /* lost in ground dampers, > 0 */
+  STRUT_POWER_FRICTION, /* lost in friction, > 0 */
+  STRUT_POWER_MOVED,    /* sum of the absolute values of the above */
+  STRUT_POWER_COUNT
+} strut_power;
+
+typedef struct strut_state {
+  /* the state proper: filled by strut_state_reset, advanced by an integrator */
+  int64_t step;  /* n; time is n * dt, never a sum */
+  double *q;     /* positions [m] */
+  double *v;     /* velocities [m/s] */
+  double work[STRUT_POWER_COUNT]; /* powers integrated since t = 0 [J] */
+  int64_t evaluations;            /* of the forces since the reset */
+
+  /* time dependent: strut_drive_apply, strut_loads_apply */
+  double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */
+  double *rest_rate; /* (slots) [m/s] */
+  double drive_time; /* the time these two are for [s]; NAN before the first evaluation */
+
+  /* position, velocity and time dependent: strut_forces */
+  double *force;     /* net force on each node [N] */
+  double *normal;    /* (contacts) normal force [N]; in the step only where it touches */
+  double *friction;  /* (contacts) friction force along the ground [N] */
+  double power[STRUT_POWER_COUNT]; /* [W]; only where the ledger is kept */
+
+  bool ledger;       /* keep the ledger? It costs some arithmetic per evaluation */
+  double *scratch;   /* (length) for the mass solve */
+  strut_arena arena;
+} strut_state;
+
+/** All memory a run needs, apart from the integrator's own. STRUT_OK or STRUT_NO_MEMORY. */
+STRUT_API strut_status strut_state_create(const strut_model *model, strut_state **state,
+                                          strut_error *error);
+/** Back to the start: positions and velocities of the scene, time 0, empty ledger. */
+STRUT_API void strut_state_reset(const strut_model *model, strut_state *state);
+/** NULL is allowed. */
+STRUT_API void strut_state_free(strut_state *state);
+
+#endif

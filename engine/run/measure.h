@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Measuring over the window: mean velocity (14) and its spread, contact duty and height.
+ */
+#ifndef STRUT_ENGINE_RUN_MEASURE_H
+#define STRUT_ENGINE_RUN_MEASURE_H
+
+#include "engine/model/state.h"
+#include "engine/run/summary.h"
+
+/**
+ * The window is cut at marks: its ends and, in a run by periods, every period between. The tracked
+ * point's x at a mark is found by cubic Hermite interpolation within the step around it, so that
+ * periods that the step does not divide are measured exactly.
+ */
+typedef struct strut_measure {
+  double step;        /* dt [s] */
+  int32_t node;       /* tracked node, or -1: centre of mass */
+  double total_mass;  /* [kg] */
+  size_t marks, next; /* number of marks; the next one to pass */
+  double *time;       /* (marks) [s] */
+  double *x;          /* (marks) tracked x there [m] */
+  double last_x, last_v; /* tracked point after the latest step */
+  int64_t window_steps;
+  int64_t *contact_steps; /* (contacts) steps of the window that ended in contact */
+  double *max_height;     /* (contacts) [m] */
+  strut_arena arena;
+} strut_measure;
+
+/** Prepares. STRUT_OK or STRUT_NO_MEMORY. */
+strut_status strut_measure_create(const strut_model *model, double step, strut_measure *measure);
+/** First step number n after which strut_measure_step must be called for every step. */
+int64_t strut_measure_first_step(const strut_measure *measure);
+/** Before the first measured step: takes the point's x and v. */
+void strut_measure_begin(const strut_model *model, const strut_state *state,
+                         strut_measure *measure);
+/** After each step from then on. Allocates nothing. */
+void strut_measure_step(const strut_model *model, const strut_state *state,
+                        strut_measure *measure);
+/** Fills velocity, spread, window and contacts of the summary from the marks passed so far. */
+void strut_measure_finish(const strut_model *model, const strut_measure *measure,
+                          strut_summary *summary);
+void strut_measure_free(strut_measure *measure);
+
+#endif

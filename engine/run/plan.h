@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The plan of a model in figures: what it will cost and how large a step it bears.
+ */
+#ifndef STRUT_ENGINE_RUN_PLAN_H
+#define STRUT_ENGINE_RUN_PLAN_H
+
+#include "engine/model/model.h"
+
+/** A term, whether the model evaluates it, and what it is. */
+typedef struct strut_plan_term {
+  strut_term term;
+  const char *name; /* "member dampers" */
+  const char *why;  /* what in a scene asks for it: "a member with damping" */
+  bool in;
+} strut_plan_term;
+
+enum { STRUT_PLAN_TERMS = 10 };
+
+typedef struct strut_plan {
+  size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
+  size_t mass_nonzeros;   /* stored entries of M (lower triangle, each coordinate that differs) */
+  size_t factor_nonzeros; /* of its sparse factor; 0 without one */
+  size_t dense_entries;   /* of dense block inverses */
+  size_t bytes;           /* of the compiled model */
+  bool runnable;          /* every free coordinate has mass; else the figures below are 0 */
+  double largest_frequency; /* undamped, all contacts closed [rad/s] */
+  double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
+  bool step_limit_exact;    /* from all eigenvalues; else an estimate */
+  strut_plan_term terms[STRUT_PLAN_TERMS];
+} strut_plan;
+
+/** Fills the plan of a compiled model. */
+STRUT_API strut_status strut_plan_describe(const strut_model *model, strut_plan *plan,
+                                           strut_error *error);
+
+#endif

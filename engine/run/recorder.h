@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Channels over time: what a run hands to whoever keeps it.
+ *
+ * The recorder knows no files. It gathers rows of doubles and passes them, some at a time and
+ * between steps, to sinks. A row is the time followed by the channels in the layout's order.
+ */
+#ifndef STRUT_ENGINE_RUN_RECORDER_H
+#define STRUT_ENGINE_RUN_RECORDER_H
+
+#include <stddef.h>
+
+#include "engine/base/status.h"
+#include "engine/scene/scene.h"
+
+/** One quantity of every item of a kind: (items, components) doubles of a row from `offset` on. */
+typedef struct strut_record_channel {
+  strut_channel id;
+  const char *name; /* "position", "velocity", "length", "force", "contact", "energy" */
+  const char *unit; /* "m", "m/s", "m", "N", "N", "J" */
+  size_t items, components, offset;
+  const char *const *item_names;      /* (items) node or member names; {"total"} for energy */
+  const char *const *component_names; /* (components) {"x", "y"}; {""} for a single one;
+                                         contact: {"normal", "friction"}; energy: {"kinetic", ...} */
+} strut_record_channel;
+
+/** The columns of a row: width doubles, the first is the time [s]. */
+typedef struct strut_record_layout {
+  size_t width, channel_count;
+  const strut_record_channel *channels;
+  size_t expected_rows; /* an estimate for progress and chunk sizes */
+} strut_record_layout;
+
+/**
+ * Takes a run's rows. A sink that fails stops the run with its status. end is called once if begin
+ * succeeded, with the status of the run: a sink that writes files completes them even when the run
+ * diverged or was interrupted (and marks them so), and removes them when end is given
+ * STRUT_FILE_TROUBLE or STRUT_NO_MEMORY.
+ */
+typedef struct strut_sink {
+  void *context;
+  strut_status (*begin)(void *context, const strut_record_layout *layout, strut_error *error);
+  strut_status (*rows)(void *context, const double *rows, size_t count, strut_error *error);
+  strut_status (*end)(void *context, strut_status run_status, strut_error *error);
+} strut_sink;
+
+#endif

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/recording.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
+
+static const char *const xy[] = {"x", "y"};
+static const char *const single[] = {""};
+static const char *const reactions[] = {"normal", "friction"};
+static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact", "drive_work",
+                                       "load_work", "belt_work", "dissipated_members",
+                                       "dissipated_contact", "dissipated_friction"};
+static const char *const total[] = {"total"};
+
+static const struct {
+  strut_channel id;
+  const char *name, *unit;
+  size_t components;
+  const char *const *component_names;
+} kinds[] = {
+    {STRUT_CHANNEL_POSITION, "position", "m", 2, xy},
+    {STRUT_CHANNEL_VELOCITY, "velocity", "m/s", 2, xy},
+    {STRUT_CHANNEL_LENGTH, "length", "m", 1, single},
+    {STRUT_CHANNEL_FORCE, "force", "N", 1, single},
+    {STRUT_CHANNEL_CONTACT, "contact", "N", 2, reactions},
+    {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
+};
+
+/* Names of the items that a channel is about, in the arena; *count of them. */
+static const char *const *item_names(const strut_model *model, strut_channel id,
+                                     strut_arena *arena, size_t *count) {
+  const strut_scene *scene = model->scene;
+  bool of_nodes = id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY;
+  bool of_contacts = id == STRUT_CHANNEL_CONTACT;
+  *count = 1;
+  if (id == STRUT_CHANNEL_ENERGY) return total;
+  *count = of_nodes      ? scene->node_count
+           : of_contacts ? (size_t)model->contacts.count
+                         : scene->member_count;
+  const char **names = strut_arena_allocate(arena, *count, sizeof *names);
+  for (size_t i = 0; names && i < *count; i++)
+    names[i] = of_nodes      ? scene->nodes[i].name
+               : of_contacts ? scene->nodes[model->contacts.node[i]].name
+                             : scene->members[i].name;
+  return names;
+}
+
+static bool lay_out(const strut_model *model, strut_recording *r) {
+  unsigned wanted = model->scene->experiment.channels;
+  r->layout.width = 1;
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    if (!(wanted & kinds[k].id)) continue;
+    strut_record_channel *c = &r->channel[r->layout.channel_count];
+    *c = (strut_record_channel){.id = kinds[k].id,
+                                .name = kinds[k].name,
+                                .unit = kinds[k].unit,
+                                .components = kinds[k].components,
+                                .component_names = kinds[k].component_names,
+                                .offset = r->layout.width};
+    c->item_names = item_names(model, c->id, &r->arena, &c->items);
+    if (!c->item_names) return false;
+    if (!c->items) continue;
+    r->layout.width += c->items * c->components;
+    r->layout.channel_count++;
+  }
+  r->layout.channels = r->channel;
+  return true;
+}
+
+static strut_status begin_sinks(strut_recording *r, strut_error *error) {
+  for (; r->begun < r->sink_count; r->begun++) {
+    strut_sink *sink = r->sinks[r->begun];
+    strut_status status = sink->begin(sink->context, &r->layout, error);
+    if (status) return status;
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_recording_create(const strut_model *model, double step, strut_sink **sinks,
+                                    size_t sink_count, strut_recording *r, strut_error *error) {
+  *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .step = step,
+                         .last = -1};
+  if (!sink_count) return STRUT_OK;
+  strut_span span = strut_scene_span(model->scene);
+  r->start = span.record_start;
+  r->every = span.record_every;
+  size_t members = model->scene->member_count;
+  r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
+  r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
+  bool ready = r->length && r->force && lay_out(model, r);
+  double expected = (span.duration - span.record_start) / fmax(span.record_every, step) + 1.0;
+  r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
+  r->capacity = 1 + 65536 / r->layout.width;
+  if (ready) r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
+  if (!ready || !r->rows) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return begin_sinks(r, error);
+}
+
+int64_t strut_recording_next_step(const strut_recording *r) {
+  if (!r->sink_count) return INT64_MAX;
+  int64_t due = (int64_t)ceil((r->start + (double)r->sampled * r->every) / r->step - 1e-6);
+  return due > r->last ? due : r->last + 1;
+}
+
+/* Values of one channel, (items, components) in the row's order. */
+static void fill_channel(const strut_model *model, strut_state *state, const strut_recording *r,
+                         const strut_record_channel *c, double *out) {
+  const double *from = c->id == STRUT_CHANNEL_POSITION ? state->q : state->v;
+  switch (c->id) {
+    case STRUT_CHANNEL_POSITION:
+    case STRUT_CHANNEL_VELOCITY:
+      memcpy(out, from, 2 * c->items * sizeof *out);
+      break;
+    case STRUT_CHANNEL_LENGTH: memcpy(out, r->length, c->items * sizeof *out); break;
+    case STRUT_CHANNEL_FORCE: memcpy(out, r->force, c->items * sizeof *out); break;
+    case STRUT_CHANNEL_CONTACT:
+      for (size_t i = 0; i < c->items; i++) {
+        out[2 * i] = state->normal[i];
+        out[2 * i + 1] = state->friction[i];
+      }
+      break;
+    case STRUT_CHANNEL_ENERGY: {
+      strut_stored stored = strut_energy_stored(model, state, (double)state->step * r->step);
+      const double *w = state->work;
+      double values[] = {stored.kinetic,           stored.elastic,
+                         stored.gravity,           stored.contact,
+                         w[STRUT_POWER_DRIVE],     w[STRUT_POWER_LOAD] +
+                                                       strut_energy_of_loads(model, state),
+                         w[STRUT_POWER_BELT],      w[STRUT_POWER_MEMBERS],
+                         w[STRUT_POWER_CONTACT],   w[STRUT_POWER_FRICTION]};
+      memcpy(out, values, sizeof values);
+    }
+  }
+}
+
+static strut_status hand_over(strut_recording *r, strut_error *error) {
+  for (size_t s = 0; s < r->begun && r->row_count; s++) {
+    strut_status status = r->sinks[s]->rows(r->sinks[s]->context, r->rows, r->row_count, error);
+    if (status) return status;
+  }
+  r->row_count = 0;
+  return STRUT_OK;
+}
+
+strut_status strut_recording_sample(const strut_model *model, strut_state *state,
+                                    strut_recording *r, strut_error *error) {
+  double t = (double)state->step * r->step;
+  double *row = r->rows + r->row_count++ * r->layout.width;
+  int64_t evaluations = state->evaluations;
+  strut_forces_evaluate(model, state, t, state->q, state->v);
+  state->evaluations = evaluations; /* looking on is not part of the run's cost */
+  strut_members_measure(model, state, r->length, r->force);
+  row[0] = t;
+  for (size_t k = 0; k < r->layout.channel_count; k++)
+    fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);
+  r->last = state->step;
+  r->sampled++;
+  return r->row_count == r->capacity ? hand_over(r, error) : STRUT_OK;
+}
+
+strut_status strut_recording_finish(strut_recording *r, strut_status run_status,
+                                    strut_error *error) {
+  strut_status status = hand_over(r, error);
+  if (status) run_status = status;
+  for (size_t s = 0; s < r->begun; s++) {
+    strut_error own = {0};
+    strut_status ended = r->sinks[s]->end(r->sinks[s]->context, run_status, &own);
+    if (!ended || status) continue;
+    status = ended;
+    if (error) *error = own;
+  }
+  r->begun = 0;
+  return status;
+}
+
+void strut_recording_free(strut_recording *r) {
+  for (size_t s = 0; s < r->begun; s++)
+    r->sinks[s]->end(r->sinks[s]->context, STRUT_FILE_TROUBLE, NULL);
+  strut_arena_free(&r->arena);
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Recording: lays out the rows of a run, samples the state and hands rows to the sinks.
+ */
+#ifndef STRUT_ENGINE_RUN_RECORDING_H
+#define STRUT_ENGINE_RUN_RECORDING_H
+
+#include "engine/model/state.h"
+#include "engine/run/recorder.h"
+
+typedef struct strut_recording {
+  strut_sink **sinks;
+  size_t sink_count, begun;  /* sinks whose begin succeeded */
+  strut_record_layout layout;
+  strut_record_channel channel[6];
+  double *rows;              /* (capacity, width) waiting to be handed over */
+  size_t row_count, capacity;
+  double start, every, step; /* first sample, interval, dt [s] */
+  int64_t sampled, last;     /* samples taken; the step of the latest, -1 before the first */
+  double *length, *force;    /* (members) scratch */
+  strut_arena arena;
+} strut_recording;
+
+/** Lays out the channels and begins every sink. Without sinks it costs nothing. */
+strut_status strut_recording_create(const strut_model *model, double step, strut_sink **sinks,
+                                    size_t sink_count, strut_recording *recording,
+                                    strut_error *error);
+/** The number of the step at whose end the next sample is due; INT64_MAX without sinks. */
+int64_t strut_recording_next_step(const strut_recording *recording);
+/** Takes a sample of the state now; hands rows over when enough have gathered. */
+strut_status strut_recording_sample(const strut_model *model, strut_state *state,
+                                    strut_recording *recording, strut_error *error);
+/** Hands over the rest and ends every sink with the run's status; the first failure is returned. */
+strut_status strut_recording_finish(strut_recording *recording, strut_status run_status,
+                                    strut_error *error);
+/** Frees; sinks that were begun but not finished are ended with STRUT_FILE_TROUBLE. */
+void strut_recording_free(strut_recording *recording);
+
+#endif

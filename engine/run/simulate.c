@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/simulate.h"
+
+#include <math.h>
+#include <time.h>
+
+#include "engine/forces/energy.h"
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/step_limit.h"
+#include "engine/run/measure.h"
+#include "engine/run/recording.h"
+#include "engine/run/settle.h"
+
+/* Beyond this many times the scene's size a run counts as diverged. */
+static const double BEYOND = 1e10;
+/* Work, in members times steps, between two looks at the state and at the interrupt flag. */
+static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
+
+/* All that belongs to one run. */
+typedef struct run {
+  const strut_model *model;
+  const strut_run_options *options;
+  const strut_integrator *method;
+  strut_summary *summary;
+  strut_error *error;
+  strut_state *state;
+  void *workspace;
+  strut_measure measure;
+  strut_recording recording;
+  strut_stored initial;
+  double dt;
+  int64_t steps; /* planned */
+} run;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static strut_status refuse_large_step(const run *r) {
+  double limit = r->summary->step_limit;
+  if (r->dt <= limit || r->options->force) return STRUT_OK;
+  return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                    "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
+                    "closed); use solver.step <= %.2g s, or --force to run all the same",
+                    r->dt, r->method->name, limit, 0.9 * limit);
+}
+
+static strut_status fill_names(run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_summary *s = r->summary;
+  size_t contacts = (size_t)r->model->contacts.count;
+  s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
+  s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
+  s->contacts = strut_allocate(contacts, sizeof *s->contacts);
+  if (!s->node_names || !s->positions || !s->contacts)
+    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  s->node_count = scene->node_count;
+  s->contact_count = contacts;
+  for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
+  for (size_t i = 0; i < contacts; i++)
+    s->contacts[i].node = scene->nodes[r->model->contacts.node[i]].name;
+  return STRUT_OK;
+}
+
+/* Everything a run needs, before the first step: no memory is asked for after this. */
+static strut_status prepare(run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_span span = strut_scene_span(scene);
+  strut_step_limit limit;
+  r->dt = r->summary->step = scene->experiment.step;
+  r->steps = (int64_t)ceil(span.duration / r->dt - 1e-6);
+  r->method = strut_integrator_find(scene->experiment.integrator);
+  if (!r->method)
+    return strut_fail(r->error, STRUT_USAGE, "there is no integrator '%s'",
+                      scene->experiment.integrator);
+  if (!r->model->mass)
+    return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
+  strut_status status = strut_step_limit_estimate(r->model, &limit, r->error);
+  if (status) return status;
+  r->summary->step_limit = limit.limit;
+  if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||
+      (status = strut_state_create(r->model, &r->state, r->error)))
+    return status;
+  r->workspace = r->method->create(r->model);
+  if (!r->workspace || strut_measure_create(r->model, r->dt, &r->measure))
+    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  if (scene->settle.wanted &&
+      (status = strut_settle_state(r->model, r->state, r->options->interrupt,
+                                   &r->summary->settle_time, r->error)))
+    return status;
+  r->state->ledger = true;
+  r->initial = strut_energy_stored(r->model, r->state, 0.0);
+  return strut_recording_create(r->model, r->dt, r->options->sinks, r->options->sink_count,
+                                &r->recording, r->error);
+}
+
+/* The first node that is nowhere or too far away, or -1. */
+static int32_t lost_node(const strut_model *model, const strut_state *state) {
+  double bound = BEYOND * (model->size > 0 ? model->size : 1.0);
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double x = state->q[2 * i], y = state->q[2 * i + 1];
+    double vx = state->v[2 * i], vy = state->v[2 * i + 1];
+    if (!(fabs(x) <= bound && fabs(y) <= bound) || isnan(vx + vy)) return i;
+  }
+  return -1;
+}
+
+static strut_status diverged(const run *r, int32_t node) {
+  const char *remedy = r->dt > 0.5 * r->summary->step_limit
+                           ? "use a smaller step"
+                           : "look for a member or contact that is far too stiff or a load that "
+                             "grows without bound; a smaller step may help too";
+  return strut_fail(r->error, STRUT_DIVERGED,
+                    "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
+                    "at the start: %.4g s); %s",
+                    r->summary->node_names[node], (double)r->state->step * r->dt, r->dt,
+                    r->summary->step_limit, remedy);
+}
+
+/* Where to stop stepping for a while: a sample, the window, the end, or just to look around. */
+static int64_t next_stop(const run *r, int64_t chunk) {
+  int64_t n = r->state->step, stop = n + chunk;
+  int64_t sample = strut_recording_next_step(&r->recording);
+  int64_t window = strut_measure_first_step(&r->measure);
+  if (stop > r->steps) stop = r->steps;
+  if (sample > n && stop > sample) stop = sample;
+  if (window > n && stop > window) stop = window;
+  return stop;
+}
+
+static void advance_to(run *r, int64_t stop) {
+  int64_t n = r->state->step;
+  if (n < strut_measure_first_step(&r->measure)) {
+    r->method->advance(r->model, r->state, r->workspace, r->dt, stop - n);
+    return;
+  }
+  for (; n < stop; n++) {
+    r->method->advance(r->model, r->state, r->workspace, r->dt, 1);
+    strut_measure_step(r->model, r->state, &r->measure);
+  }
+}
+
+static strut_status step_all(run *r) {
+  const strut_run_options *o = r->options;
+  int64_t size = r->model->members.count + r->model->node_count;
+  int64_t chunk = CHUNK_WORK / (size + 1);
+  chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
+  double told = now();
+  for (;;) {
+    int64_t n = r->state->step;
+    int32_t lost = lost_node(r->model, r->state);
+    if (lost >= 0) return diverged(r, lost);
+    if (n == strut_measure_first_step(&r->measure))
+      strut_measure_begin(r->model, r->state, &r->measure);
+    if (n == strut_recording_next_step(&r->recording)) {
+      strut_status status = strut_recording_sample(r->model, r->state, &r->recording, r->error);
+      if (status) return status;
+    }
+    if (n >= r->steps) return STRUT_OK;
+    if (o->interrupt && *o->interrupt)
+      return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
+                        (double)n * r->dt);
+    if (o->progress && now() - told > 0.1) {
+      o->progress(o->progress_context, (double)n / (double)r->steps);
+      told = now();
+    }
+    advance_to(r, next_stop(r, chunk));
+  }
+}
+
+static double change(double a, double b) { return fabs(a - b); }
+
+static void fill_energy(run *r) {
+  const double *w = r->state->work;
+  strut_stored end = strut_energy_stored(r->model, r->state, (double)r->state->step * r->dt);
+  const strut_stored *begin = &r->initial;
+  strut_energy *e = &r->summary->energy;
+  double loads = strut_energy_of_loads(r->model, r->state);
+  e->kinetic = end.kinetic, e->elastic = end.elastic, e->gravity = end.gravity;
+  e->contact = end.contact;
+  e->drive_work = w[STRUT_POWER_DRIVE];
+  e->load_work = w[STRUT_POWER_LOAD] + loads;
+  e->belt_work = w[STRUT_POWER_BELT];
+  e->dissipated_members = w[STRUT_POWER_MEMBERS];
+  e->dissipated_contact = w[STRUT_POWER_CONTACT];
+  e->dissipated_friction = w[STRUT_POWER_FRICTION];
+  e->initial = begin->kinetic + begin->elastic + begin->gravity + begin->contact;
+  e->residual = end.kinetic + end.elastic + end.gravity + end.contact - e->initial -
+                e->drive_work - e->load_work - e->belt_work + e->dissipated_members +
+                e->dissipated_contact + e->dissipated_friction;
+  e->moved = change(end.kinetic, begin->kinetic) + change(end.elastic, begin->elastic) +
+             change(end.gravity, begin->gravity) + change(end.contact, begin->contact) +
+             fabs(loads) + w[STRUT_POWER_MOVED];
+}
+
+static void fill_summary(run *r, strut_status status) {
+  strut_summary *s = r->summary;
+  s->status = status;
+  s->steps = r->state->step;
+  s->duration = (double)s->steps * r->dt;
+  s->force_evaluations = s->steps * r->method->evaluations;
+  strut_measure_finish(r->model, &r->measure, s);
+  for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
+  fill_energy(r);
+}
+
+strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
+                            strut_summary *summary, strut_error *error) {
+  strut_error own = {0};
+  if (!error) error = &own;
+  *summary = (strut_summary){0};
+  run r = {.model = model, .options = options, .summary = summary, .error = error};
+  strut_status status = prepare(&r);
+  if (!status) {
+    double begin = now();
+    status = step_all(&r);
+    summary->wall_time = now() - begin;
+    fill_summary(&r, status);
+    strut_error first = *error;
+    strut_status written = strut_recording_finish(&r.recording, status, error);
+    if (written && (!status || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED))
+      status = written;
+    else if (status)
+      *error = first;
+  }
+  summary->status = status;
+  for (size_t i = 0; status && i + 1 < sizeof summary->reason; i++)
+    if (!(summary->reason[i] = error->message[i])) break;
+  strut_recording_free(&r.recording);
+  strut_measure_free(&r.measure);
+  if (r.method) r.method->destroy(r.workspace);
+  strut_state_free(r.state);
+  return status;
+}

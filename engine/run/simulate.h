@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The run: from a compiled model to its summary, with rows for whoever records.
+ */
+#ifndef STRUT_ENGINE_RUN_SIMULATE_H
+#define STRUT_ENGINE_RUN_SIMULATE_H
+
+#include <signal.h>
+
+#include "engine/model/model.h"
+#include "engine/run/recorder.h"
+#include "engine/run/summary.h"
+
+/** How to run; zero-initialised it means: obey the step limit, tell nobody, record nothing. */
+typedef struct strut_run_options {
+  bool force;                             /* run even above the step limit */
+  const volatile sig_atomic_t *interrupt; /* stops soon after it becomes non-zero; may be NULL */
+  void (*progress)(void *context, double fraction); /* a few times a second; may be NULL */
+  void *progress_context;
+  strut_sink **sinks; /* (sink_count) */
+  size_t sink_count;
+} strut_run_options;
+
+/**
+ * Runs the scene's experiment. The summary is filled whenever a run began: also with
+ * STRUT_DIVERGED and STRUT_INTERRUPTED, up to where it came; free it with strut_summary_free.
+ * Other failures: STRUT_STEP_TOO_LARGE (nothing was run), STRUT_NOT_SETTLED, STRUT_SINGULAR (no
+ * mass), STRUT_NO_MEMORY, and what a sink returned.
+ */
+STRUT_API strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
+                                      strut_summary *summary, strut_error *error);
+
+#endif

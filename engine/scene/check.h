@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The semantic rules of a scene: everything that makes numbers meaningless, all findings at once.
+ *
+ * The rules are about the plain description, so they hold however it was made. A finding names the
+ * thing and the key it is about; a reader of text finds the place by them.
+ */
+#ifndef STRUT_ENGINE_SCENE_CHECK_H
+#define STRUT_ENGINE_SCENE_CHECK_H
+
+#include "engine/scene/scene.h"
+
+typedef enum strut_subject {
+  STRUT_ON_SCENE,
+  STRUT_ON_NODE,
+  STRUT_ON_MEMBER,
+  STRUT_ON_GROUND,
+  STRUT_ON_CONTACT,
+  STRUT_ON_ACTUATOR,
+  STRUT_ON_LOAD,
+  STRUT_ON_SIGNAL,
+  STRUT_ON_INITIAL,
+  STRUT_ON_SOLVER,
+  STRUT_ON_RUN,
+  STRUT_ON_OUTPUT
+} strut_subject;
+
+typedef struct strut_finding {
+  strut_subject subject;
+  size_t index;        /* into the scene's array of that kind of thing; else 0 */
+  const char *key;     /* the key of the language it is about ("stiffness"), or NULL: the thing */
+  const char *message; /* one sentence without a full stop */
+} strut_finding;
+
+/** All findings; owns their messages. Zero-initialise it. */
+typedef struct strut_findings {
+  size_t count, capacity;
+  strut_finding *items;
+  strut_arena arena;
+} strut_findings;
+
+/** What the scene is to be used for: a run needs masses, a step and a duration; statics do not. */
+typedef enum strut_purpose { STRUT_FOR_STATICS, STRUT_FOR_RUN } strut_purpose;
+
+/** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */
+STRUT_API strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
+                                         strut_findings *findings);
+STRUT_API void strut_findings_free(strut_findings *findings);
+
+#endif

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The scene: what the user wrote, as a plain and editable description in SI units.
+ *
+ * A scene owns all its texts and arrays in one arena (strut_scene_free releases them). Things refer
+ * to each other by index into the arrays; -1 means none. Whatever fills a scene, strut_scene_check
+ * decides whether it is valid, and strut_model_compile turns it into numbers to run.
+ */
+#ifndef STRUT_ENGINE_SCENE_SCENE_H
+#define STRUT_ENGINE_SCENE_SCENE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/export.h"
+#include "engine/base/memory.h"
+#include "engine/base/status.h"
+#include "engine/scene/signal.h"
+
+enum { STRUT_LANGUAGE_VERSION = 1 };
+
+typedef struct strut_node {
+  const char *name;
+  double position[2]; /* as drawn [m] */
+  double mass;        /* point mass [kg], >= 0 */
+  bool fixed[2];      /* supported in x, in y */
+  double start[2];    /* position at t = 0 [m]; equals position unless the scene says otherwise */
+  double velocity[2]; /* at t = 0 [m/s]; 0 where fixed */
+} strut_node;
+
+typedef enum strut_member_kind {
+  STRUT_BAR,    /* pulls and pushes; drawn thick */
+  STRUT_SPRING, /* pulls and pushes: the paper's tensioned members */
+  STRUT_CABLE   /* pulls only: force max(0, elastic + damper) while stretched, 0 while slack */
+} strut_member_kind;
+
+/** How the rest length is given; strut_member_rest turns each into the others. */
+typedef enum strut_rest_kind {
+  STRUT_REST_RATIO,        /* rest length / drawn length [1]; the default, with value 1 */
+  STRUT_REST_LENGTH,       /* rest length [m] */
+  STRUT_REST_PRETENSION,   /* force in the drawn shape [N], tension positive */
+  STRUT_REST_FORCE_DENSITY /* that force / drawn length [N/m] */
+} strut_rest_kind;
+
+typedef struct strut_member {
+  const char *name;
+  int32_t node[2]; /* i1, i2 of the paper */
+  strut_member_kind kind;
+  double stiffness;       /* c [N/m], >= 0; 0 when axial_stiffness is given */
+  double axial_stiffness; /* EA [N], >= 0; then c = EA / rest length */
+  double damping;         /* k [N s/m], >= 0 */
+  double mass;            /* of the whole member [kg], >= 0 */
+  strut_rest_kind rest_kind;
+  double rest_value; /* in the unit of rest_kind */
+} strut_member;
+
+typedef enum strut_friction_law { STRUT_FRICTION_NONE, STRUT_FRICTION_KARNOPP } strut_friction_law;
+
+/** Coulomb friction with Karnopp's stick band, equation (9) of the paper. */
+typedef struct strut_friction {
+  strut_friction_law law;
+  double mu_static;      /* mu_0 [1], >= 0 */
+  double mu_kinetic;     /* mu [1], >= 0 */
+  double stick_velocity; /* delta [m/s], > 0 with the Karnopp law */
+} strut_friction;
+
+/** The ground line y = height + x tan(slope); its surface moves along itself at belt_speed. */
+typedef struct strut_ground {
+  bool present;
+  double height;     /* [m] */
+  double slope;      /* [rad], within +-pi/2 */
+  double belt_speed; /* [m/s], along the slope, positive towards +x */
+} strut_ground;
+
+/** One node that may touch the ground. */
+typedef struct strut_contact {
+  int32_t node;
+  double stiffness; /* c_g [N/m], > 0 */
+  double damping;   /* k_g [N s/m], >= 0; acts while the node moves into the ground, (8) */
+  strut_friction friction;
+} strut_contact;
+
+/** Drives a member's rest length: rest length + signal(t). */
+typedef struct strut_actuator {
+  const char *name;
+  int32_t member, signal;
+} strut_actuator;
+
+/** A force on a node: force, times signal(t) if there is one. */
+typedef struct strut_load {
+  const char *name;
+  int32_t node;
+  double force[2]; /* [N]; with a signal a direction, or a force scaled by the signal */
+  int32_t signal;  /* or -1 */
+} strut_load;
+
+/** A parameter as it was used, for the record only: the scene's numbers already contain it. */
+typedef struct strut_parameter {
+  const char *name;
+  const char *text; /* what was written, e.g. "10 Hz" */
+  double value;     /* SI; NAN where it is a text, such as a configuration's name */
+} strut_parameter;
+
+typedef enum strut_mass_model { STRUT_MASS_CONSISTENT, STRUT_MASS_LUMPED } strut_mass_model;
+
+/** Coming to rest before t = 0: actuators, loads with a signal, belt and friction are off. */
+typedef struct strut_settle {
+  bool wanted;
+  double speed;        /* at rest when every speed is below this [m/s]; paper 1e-8 */
+  double acceleration; /* and every acceleration below this [m/s^2]; paper 1e-8 */
+  double limit;        /* gives up after this much simulated time [s] */
+} strut_settle;
+
+typedef enum strut_channel {
+  STRUT_CHANNEL_POSITION = 1,
+  STRUT_CHANNEL_VELOCITY = 2,
+  STRUT_CHANNEL_LENGTH = 4,
+  STRUT_CHANNEL_FORCE = 8,
+  STRUT_CHANNEL_CONTACT = 16,
+  STRUT_CHANNEL_ENERGY = 32
+} strut_channel;
+
+/** What to integrate, for how long, and what to measure. */
+typedef struct strut_experiment {
+  const char *integrator; /* name in the table of methods; default "rk4" */
+  double step;            /* dt [s], > 0 */
+  double duration;        /* [s]; 0 when given in periods */
+  double periods;         /* number of periods of signal `period_signal`; 0 when in seconds */
+  int32_t period_signal;  /* or -1 */
+  const char *period_of;  /* the name the file used for it, or NULL */
+  double measure_last;    /* window: the last so many periods (if periods > 0), else seconds; 0 =
+                             the whole run */
+  int32_t measure_node;   /* whose velocity (14) is measured; -1: the centre of mass */
+  double output_every;    /* sampling interval [s]; 0: a thousandth of the recorded time */
+  double output_last;     /* record only the last so many periods or seconds; 0: all */
+  unsigned channels;      /* strut_channel bits; default position, length, force */
+} strut_experiment;
+
+typedef struct strut_scene {
+  const char *name, *description, *source; /* never NULL */
+  strut_mass_model mass_model;
+  double gravity[2]; /* [m/s^2]; default 0, 0 */
+  size_t node_count, member_count, contact_count, actuator_count, load_count, signal_count,
+      parameter_count;
+  strut_node *nodes;
+  strut_member *members;
+  strut_ground ground;
+  strut_contact *contacts; /* in the order of their nodes, one per node at most */
+  strut_actuator *actuators;
+  strut_load *loads;
+  strut_signal *signals;
+  strut_parameter *parameters;
+  strut_settle settle;
+  strut_experiment experiment;
+  strut_arena arena; /* owns every text and array above */
+} strut_scene;
+
+/** Prefilled structs: zero where nothing is said above, names empty, indices -1. */
+STRUT_API void strut_scene_init(strut_scene *scene);
+STRUT_API strut_node strut_node_default(void);
+STRUT_API strut_member strut_member_default(void);
+STRUT_API strut_contact strut_contact_default(void);
+/** Frees all that the scene owns and zeroes it. */
+STRUT_API void strut_scene_free(strut_scene *scene);
+
+/** The four ways to say a member's prestress, and its stiffness, from the drawn shape. */
+typedef struct strut_rest {
+  double drawn_length;  /* [m] */
+  double length;        /* rest length lambda_0 [m] */
+  double ratio;         /* rest length / drawn length [1] */
+  double pretension;    /* force in the drawn shape [N], tension positive (cables: 0 when slack) */
+  double force_density; /* pretension / drawn length [N/m] */
+  double stiffness;     /* c [N/m] */
+} strut_rest;
+
+/**
+ * Resolves how a member's rest length was given. With c: L0 = L - t/c; with EA: L0 = EA L/(EA + t).
+ * Returns false where that is impossible (pretension without stiffness, rest length not >= 0).
+ */
+STRUT_API bool strut_member_rest(const strut_scene *scene, size_t member, strut_rest *rest);
+
+/** Duration, drive period and measuring window that the experiment amounts to, all in [s]. */
+typedef struct strut_span {
+  double duration;
+  double period;       /* 0 when the run is given in seconds */
+  double window_start; /* the window ends with the run */
+  double record_start; /* first time to record */
+  double record_every;
+} strut_span;
+STRUT_API strut_span strut_scene_span(const strut_scene *scene);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Signals: the waveforms that drive rest lengths and loads.
+ *
+ * A signal is a plain description; a scene owns an array of them and refers to them by index. The
+ * unit of a value is the one its user expects (m for an actuator, N for a load's force factor).
+ */
+#ifndef STRUT_ENGINE_SCENE_SIGNAL_H
+#define STRUT_ENGINE_SCENE_SIGNAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/export.h"
+
+typedef enum strut_signal_kind {
+  STRUT_CONSTANT,  /* amplitude */
+  STRUT_SINE,      /* amplitude * sin(2 pi (frequency * tau + phase)) */
+  STRUT_HALF_SINE, /* one half-wave: the sine for 0 <= tau <= 1 / (2 frequency), then 0 */
+  STRUT_SQUARE,    /* +amplitude in the first half of a period, -amplitude in the second */
+  STRUT_RAMP,      /* from 0 at start to amplitude at stop, linearly; holds amplitude after */
+  STRUT_TABLE,     /* linear between the points; holds the first and the last value outside */
+  STRUT_SUM        /* the sum of other signals */
+} strut_signal_kind;
+
+/**
+ * One waveform; tau = t - start. Except for ramp and table a signal is 0 before start and after
+ * stop.
+ */
+typedef struct strut_signal {
+  const char *name; /* as the file calls it, or NULL */
+  strut_signal_kind kind;
+  double amplitude;     /* [m], [N] or [1] */
+  double frequency;     /* [Hz], > 0 for sine, half-sine, square */
+  double phase;         /* [turns]; sine and square */
+  double start, stop;   /* [s]; default 0 and INFINITY */
+  size_t point_count;   /* table: number of points, >= 1 */
+  const double *time;   /* (point_count) [s], strictly increasing */
+  const double *value;  /* (point_count) */
+  size_t term_count;    /* sum: number of terms */
+  const int32_t *terms; /* (term_count) indices of signals, each below this signal's own */
+} strut_signal;
+
+/** A signal of the given kind with the defaults above. */
+STRUT_API strut_signal strut_signal_default(strut_signal_kind kind);
+
+/**
+ * Value and time derivative (from the right where they jump; the jump itself is not a rate) of
+ * signal `index` of `signals` at time t [s].
+ */
+STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
+                                     double *value, double *rate);
+
+/**
+ * Period of a signal [s]: 1 / frequency; of a sum, the longest period of its terms if every other
+ * one divides it; 0 where there is none.
+ */
+STRUT_API double strut_signal_period(const strut_signal *signals, int32_t index);
+
+#endif
