@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The table of the language: one line for each key. See keys.h for what is made of it.
+ *
+ * X(room, id, name, type, measure, range, need, set, default, words, description)
+ * Of the keys of one set (not 0) a mapping may give one only. Words are separated by '|'.
+ */
+#ifndef STRUT_PARSER_KEYS_TABLE_H
+#define STRUT_PARSER_KEYS_TABLE_H
+
+/* clang-format off */
+#define STRUT_KEY_TABLE(X) \
+  X(SCENE, VERSION, "strut", VERSION, NONE, ANY, true, 0, "", "1", "Version of the language.") \
+  X(SCENE, NAME, "name", TEXT, NONE, ANY, false, 0, "", "", "What the scene is called.") \
+  X(SCENE, DESCRIPTION, "description", TEXT, NONE, ANY, false, 0, "", "", "What it shows.") \
+  X(SCENE, SOURCE, "source", TEXT, NONE, ANY, false, 0, "", "", "Where its numbers come from.") \
+  X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, false, 0, "", "an expression or a quoted text", "Named values that expressions may use and `--set` may change.") \
+  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, false, 0, "", "keys of a member, a node or a contact", "Defaults that members, nodes and contacts share. Own keys win.") \
+  X(SCENE, NODES, "nodes", THINGS, NONE, ANY, true, 0, "", "[x, y] or the keys of a node", "The points of the structure.") \
+  X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, false, 0, "", "the keys of a member", "What joins the nodes.") \
+  X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, false, 0, "consistent", "consistent|lumped", "How a member's mass acts: as of a uniform rod (the paper's), or half at each end.") \
+  X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, false, 0, "[0, 0]", "", "Acceleration of free fall.") \
+  X(SCENE, GROUND, "ground", MAP, NONE, ANY, false, 0, "", "", "The line that nodes may touch. Without it there is none.") \
+  X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, false, 0, "", "the keys of an actuator", "Members whose rest length a signal changes. Several on one member add up.") \
+  X(SCENE, LOADS, "loads", THINGS, NONE, ANY, false, 0, "", "the keys of a load", "Forces on nodes.") \
+  X(SCENE, SIGNALS, "signals", THINGS, NONE, ANY, false, 0, "", "a signal", "Signals with a name, for use in several places.") \
+  X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, false, 0, "", "{NODE: [x, y], ...}", "Named sets of positions to start from. A node that is not listed stays as drawn.") \
+  X(SCENE, INITIAL, "initial", MAP, NONE, ANY, false, 0, "", "", "The state at t = 0. Without it: at rest, as drawn.") \
+  X(SCENE, SOLVER, "solver", MAP, NONE, ANY, false, 0, "", "", "How to integrate. A run needs it.") \
+  X(SCENE, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "How long, and what to measure. A run needs it.") \
+  X(SCENE, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "What to record.") \
+  X(NODE, POSITION, "position", PAIR, LENGTH, ANY, true, 0, "", "", "Where the node is drawn.") \
+  X(NODE, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "A group, or a list of groups of which the later wins.") \
+  X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, false, 0, "0", "", "Point mass, besides what its members bring.") \
+  X(NODE, FIXED, "fixed", FIXED, NONE, ANY, false, 0, "none", "none|x|y|both", "Supports; also as a list, `[x, y]`.") \
+  X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "A group, or a list of groups of which the later wins.") \
+  X(MEMBER, NODES, "nodes", NODE_PAIR, NONE, ANY, true, 0, "", "", "The two nodes it joins.") \
+  X(MEMBER, KIND, "kind", WORD, NONE, ANY, true, 0, "", "bar|spring|cable", "A bar and a spring pull and push; a cable only pulls, and carries nothing while slack.") \
+  X(MEMBER, STIFFNESS, "stiffness", NUMBER, STIFFNESS, NOT_NEGATIVE, false, 1, "0", "", "Force for each length of stretch.") \
+  X(MEMBER, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, NOT_NEGATIVE, false, 1, "", "", "EA; the stiffness is EA / rest length.") \
+  X(MEMBER, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, false, 0, "0", "", "Force for each speed of stretch.") \
+  X(MEMBER, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, false, 0, "0", "", "Of the whole member.") \
+  X(MEMBER, REST_LENGTH, "rest_length", NUMBER, LENGTH, NOT_NEGATIVE, false, 2, "", "", "Length at which it carries no force.") \
+  X(MEMBER, REST_LENGTH_RATIO, "rest_length_ratio", NUMBER, NONE, NOT_NEGATIVE, false, 2, "1", "", "Rest length / drawn length.") \
+  X(MEMBER, PRETENSION, "pretension", NUMBER, FORCE, ANY, false, 2, "", "", "Force in the drawn shape; tension is positive.") \
+  X(MEMBER, FORCE_DENSITY, "force_density", NUMBER, STIFFNESS, ANY, false, 2, "", "", "Force in the drawn shape / drawn length.") \
+  X(GROUND, HEIGHT, "height", NUMBER, LENGTH, ANY, false, 0, "0", "", "Of the line where x = 0.") \
+  X(GROUND, SLOPE, "slope", NUMBER, ANGLE, ANY, false, 0, "0", "", "Angle of the line, rising towards +x; within -90 deg and 90 deg.") \
+  X(GROUND, BELT_SPEED, "belt_speed", NUMBER, VELOCITY, ANY, false, 0, "0", "", "Speed of the surface along itself, towards +x.") \
+  X(GROUND, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, true, 0, "", "", "Force for each depth of a node below the line.") \
+  X(GROUND, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, false, 0, "0", "", "Force for each speed of a node that moves into the ground.") \
+  X(GROUND, FRICTION, "friction", MAP, NONE, ANY, false, 0, "", "", "Friction of every contact. Without it there is none.") \
+  X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, false, 0, "all", "", "Which nodes may touch the ground: `all`, or a list.") \
+  X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, false, 0, "", "the keys of a contact", "What is different for a node; named by the node.") \
+  X(FRICTION, LAW, "law", WORD, NONE, ANY, false, 0, "karnopp", "none|karnopp", "Coulomb friction with Karnopp's stick band, or none.") \
+  X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Both coefficients.") \
+  X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sticking.") \
+  X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sliding.") \
+  X(FRICTION, STICK_VELOCITY, "stick_velocity", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "", "", "Half the width of the stick band. Karnopp's law needs it.") \
+  X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "A group, or a list of groups of which the later wins.") \
+  X(CONTACT, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, false, 0, "the ground's", "", "Instead of the ground's.") \
+  X(CONTACT, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, false, 0, "the ground's", "", "Instead of the ground's.") \
+  X(CONTACT, FRICTION, "friction", MAP, NONE, ANY, false, 0, "the ground's", "", "Overrides the ground's key by key.") \
+  X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, true, 0, "", "", "The member it drives.") \
+  X(ACTUATOR, SIGNAL, "signal", SIGNAL, LENGTH, ANY, true, 0, "", "", "Added to the member's rest length.") \
+  X(LOAD, NODE, "node", NAME, NONE, ANY, true, 0, "", "", "The node it acts on.") \
+  X(LOAD, FORCE, "force", PAIR, FORCE, ANY, true, 0, "", "", "The force, or with a signal the force at a signal of 1.") \
+  X(LOAD, SIGNAL, "signal", SIGNAL, NONE, ANY, false, 0, "constant 1", "", "A factor on the force.") \
+  X(SIGNAL, CONSTANT, "constant", NUMBER, CONTEXT, ANY, false, 0, "", "", "The same value for t >= 0.") \
+  X(SIGNAL, SINE, "sine", MAP, NONE, ANY, false, 0, "", "", "amplitude * sin(2 pi frequency (t - start) + phase).") \
+  X(SIGNAL, HALF_SINE, "half_sine", MAP, NONE, ANY, false, 0, "", "", "The first half-wave of a sine, once.") \
+  X(SIGNAL, SQUARE, "square", MAP, NONE, ANY, false, 0, "", "", "+amplitude in the first half of a period, -amplitude in the second.") \
+  X(SIGNAL, RAMP, "ramp", MAP, NONE, ANY, false, 0, "", "", "From 0 at start to amplitude at stop; then it stays.") \
+  X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, false, 0, "", "", "Points `[[t, value], ...]` joined by straight lines; the ends hold.") \
+  X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, false, 0, "", "", "A list of signals, added.") \
+  X(SINE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, true, 0, "", "", "Largest value.") \
+  X(SINE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, true, 0, "", "", "Periods in a second.") \
+  X(SINE, PHASE, "phase", NUMBER, ANGLE, ANY, false, 0, "0", "", "Angle at start.") \
+  X(SINE, START, "start", NUMBER, TIME, ANY, false, 0, "0", "", "The signal is 0 before.") \
+  X(SINE, STOP, "stop", NUMBER, TIME, ANY, false, 0, "never", "", "The signal is 0 from then on.") \
+  X(HALF_SINE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, true, 0, "", "", "Largest value.") \
+  X(HALF_SINE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, true, 0, "", "", "Of the sine; the half-wave lasts 1 / (2 frequency).") \
+  X(HALF_SINE, START, "start", NUMBER, TIME, ANY, false, 0, "0", "", "When the half-wave begins.") \
+  X(SQUARE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, true, 0, "", "", "Largest value.") \
+  X(SQUARE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, true, 0, "", "", "Periods in a second.") \
+  X(SQUARE, PHASE, "phase", NUMBER, ANGLE, ANY, false, 0, "0", "", "Angle at start.") \
+  X(SQUARE, START, "start", NUMBER, TIME, ANY, false, 0, "0", "", "The signal is 0 before.") \
+  X(SQUARE, STOP, "stop", NUMBER, TIME, ANY, false, 0, "never", "", "The signal is 0 from then on.") \
+  X(RAMP, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, true, 0, "", "", "Value at stop and after.") \
+  X(RAMP, START, "start", NUMBER, TIME, ANY, false, 0, "0", "", "When it leaves 0.") \
+  X(RAMP, STOP, "stop", NUMBER, TIME, ANY, true, 0, "", "", "When it reaches amplitude.") \
+  X(INITIAL, CONFIGURATION, "configuration", NAME, NONE, ANY, false, 0, "", "", "A configuration, or a text parameter that names one.") \
+  X(INITIAL, POSITIONS, "positions", THINGS, NONE, ANY, false, 0, "", "[x, y]", "Positions of single nodes; they win over the configuration.") \
+  X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, false, 0, "", "[vx, vy]", "Velocities of single nodes.") \
+  X(INITIAL, VELOCITY, "velocity", PAIR, VELOCITY, ANY, false, 0, "[0, 0]", "", "Velocity of every other node, where it is free.") \
+  X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, false, 0, "false", "", "Come to rest before t = 0, with actuators, driven loads, belt and friction off: `true`, or a mapping.") \
+  X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "1e-8", "", "At rest when every node is slower,") \
+  X(SETTLE, ACCELERATION, "acceleration", NUMBER, ACCELERATION, ABOVE_ZERO, false, 0, "1e-8", "", "and accelerates less.") \
+  X(SETTLE, LIMIT, "limit", NUMBER, TIME, ABOVE_ZERO, false, 0, "100", "", "Give up after so much simulated time.") \
+  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4", "The method.") \
+  X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step. A run needs it.") \
+  X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, false, 3, "", "", "Length of the run.") \
+  X(RUN, PERIODS, "periods", NUMBER, NONE, ABOVE_ZERO, false, 3, "", "", "Length of the run in periods; needs `of`.") \
+  X(RUN, OF, "of", NAME, NONE, ANY, false, 0, "", "", "The actuator, load or signal whose periods count.") \
+  X(RUN, MEASURE, "measure", MAP, NONE, ANY, false, 0, "", "", "What to measure. Without it: the centre of mass, over the whole run.") \
+  X(MEASURE, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "The window: the last so many periods if the run is in periods, else the last so much time.") \
+  X(MEASURE, NODE, "node", NAME, NONE, ANY, false, 0, "the centre of mass", "", "Whose velocity.") \
+  X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, false, 0, "a thousandth", "", "Time between two samples.") \
+  X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "Record the last so many periods, or the last so much time.") \
+  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, false, 0, "[position, length, force]", "position|velocity|length|force|contact|energy", "A list of what to record.")
+/* clang-format on */
+
+#endif

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Parameters: evaluated on demand, in any order; --set; circles. See reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/quantity.h"
+#include "parser/reader.h"
+
+enum { DEEPEST = 200 };
+
+static const strut_place NOWHERE = {0, 0, 0}; /* the file as a whole */
+
+const char *strut_parameter_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->parameter_count ? reader->parameters[i].name : NULL;
+}
+
+strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name) {
+  int32_t index = strut_name_map_find(&reader->parameter_names, name);
+  return index < 0 ? NULL : &reader->parameters[index];
+}
+
+/* The place of the expression that is being evaluated, for errors that its text does not show. */
+static strut_place asking_place(const strut_reader *reader) {
+  return reader->asking_set || !reader->asking ? NOWHERE : reader->asking->place;
+}
+
+/* Reports the circle that leads back to p, which is being read. */
+static void report_circle(strut_reader *reader, const strut_parameter_state *p) {
+  strut_say(reader, p->key->place, "parameter '%s' depends on itself", p->name);
+}
+
+/* An expression of a parameter: from the file, or from --set. */
+static bool evaluate(strut_reader *reader, strut_parameter_state *p, const char *set,
+                     strut_quantity *quantity) {
+  if (!set)
+    return strut_read_quantity(reader, p->value, p->name, (strut_owner){"parameters", NULL},
+                               quantity);
+  strut_expression_error error = {0};
+  strut_scope scope = strut_parameter_scope(reader);
+  const char *before = reader->asking_set;
+  reader->asking_set = p->name;
+  bool fine = strut_expression_evaluate(set, &scope, quantity, &error);
+  reader->asking_set = before;
+  if (!fine && error.message[0])
+    strut_say(reader, NOWHERE, "--set %s=%s: %s", p->name, strut_shown(reader, set), error.message);
+  return fine;
+}
+
+/* Does what --set gives fit what the file declares? A bare value takes the declared dimension. */
+static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_quantity *declared) {
+  char expected[200], found[80];
+  if (declared->bare) return true;
+  if (p->quantity.bare) {
+    p->quantity.bare = false;
+    p->quantity.dimension = declared->dimension;
+  }
+  if (strut_dimension_equal(p->quantity.dimension, declared->dimension)) return true;
+  strut_say(reader, NOWHERE, "--set %s=%s: expected %s, found %s", p->name,
+            strut_shown(reader, p->override),
+            strut_expected_number(declared->dimension, expected, sizeof expected),
+            strut_dimension_name(p->quantity.dimension, found, sizeof found));
+  return false;
+}
+
+static void resolve(strut_reader *reader, strut_parameter_state *p) {
+  if (p->state != STRUT_UNREAD) return;
+  if (reader->parameter_depth >= DEEPEST) {
+    strut_say(reader, p->key->place, "parameters depend on each other more than %d deep", DEEPEST);
+    p->state = STRUT_FAILED;
+    return;
+  }
+  reader->parameter_depth++;
+  p->state = STRUT_READING;
+  strut_quantity declared;
+  bool fine = evaluate(reader, p, NULL, &declared);
+  if (p->override) {
+    fine = evaluate(reader, p, p->override, &p->quantity) && fine;
+    fine = fine && adopt(reader, p, &declared);
+  } else if (fine) {
+    p->quantity = declared;
+  }
+  if (p->state == STRUT_READING) p->state = fine ? STRUT_READ : STRUT_FAILED;
+  reader->parameter_depth--;
+}
+
+static int look_up(void *context, const char *name, size_t length, strut_quantity *quantity) {
+  strut_reader *reader = context;
+  char text[65];
+  if (length >= sizeof text) return 0;
+  memcpy(text, name, length);
+  text[length] = '\0';
+  strut_parameter_state *p = strut_parameter_find(reader, text);
+  if (!p) return 0;
+  if (p->text) {
+    strut_say(reader, asking_place(reader), "parameter '%s' is a text and has no value here",
+              p->name);
+    return -1;
+  }
+  resolve(reader, p);
+  if (p->state == STRUT_READING) {
+    report_circle(reader, p);
+    p->state = STRUT_FAILED;
+  }
+  if (p->state == STRUT_FAILED) return -1;
+  *quantity = p->quantity;
+  return 1;
+}
+
+strut_scope strut_parameter_scope(strut_reader *reader) {
+  return (strut_scope){look_up, strut_parameter_name, reader};
+}
+
+/* An identifier that is not taken: it must be able to stand in an expression. */
+static bool name_fits(strut_reader *reader, const strut_tree *key) {
+  const char *c = key->text;
+  size_t length = strlen(c);
+  if (!strut_read_name(reader, key, "parameter")) return false;
+  if (strcmp(c, "pi") == 0 || strut_function_find(c, length)) {
+    strut_say(reader, key->place, "'%s' cannot be the name of a parameter: expressions use it", c);
+    return false;
+  }
+  for (size_t i = 0; i < length; i++) {
+    bool letter = (c[i] >= 'a' && c[i] <= 'z') || (c[i] >= 'A' && c[i] <= 'Z') || c[i] == '_';
+    if (letter || (i && c[i] >= '0' && c[i] <= '9')) continue;
+    strut_say(reader, key->place,
+              "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
+              "and '_', so that it can stand in expressions",
+              c);
+    return false;
+  }
+  return true;
+}
+
+static void declare(strut_reader *reader, const strut_tree *key, strut_parameter_state *p) {
+  const strut_tree *value = key->next;
+  *p = (strut_parameter_state){.name = key->text, .key = key, .value = value};
+  bool fine = name_fits(reader, key);
+  fine = strut_read_scalar(reader, value, key->text, (strut_owner){"parameters", NULL},
+                           "an expression or a quoted text") &&
+         fine;
+  p->text = value->kind == STRUT_TREE_SCALAR && value->quoted;
+  p->state = fine ? (p->text ? STRUT_READ : STRUT_UNREAD) : STRUT_FAILED;
+}
+
+static void override(strut_reader *reader, const strut_override *set) {
+  strut_parameter_state *p = strut_parameter_find(reader, set->name);
+  if (!p) {
+    strut_say(reader, NOWHERE, "--set %s=%s: the scene has no parameter '%s'%s",
+              strut_shown(reader, set->name), strut_shown(reader, set->value),
+              strut_shown(reader, set->name),
+              strut_hint(reader, set->name, strut_parameter_name, reader, reader->parameter_count));
+  } else if (p->override) {
+    strut_say(reader, NOWHERE, "--set %s is given twice", p->name);
+  } else {
+    p->override = set->value;
+  }
+}
+
+void strut_read_parameters(strut_reader *reader, const strut_override *overrides, size_t count) {
+  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
+  bool known = slot->state != STRUT_BROKEN;
+  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  reader->parameters =
+      strut_take(reader, &reader->scratch, map ? map->count : 0, sizeof *reader->parameters);
+  if (!reader->parameters) return;
+  for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
+    declare(reader, key, &reader->parameters[reader->parameter_count]);
+    strut_add_name(reader, &reader->parameter_names, key->text, reader->parameter_count++);
+  }
+  for (size_t i = 0; known && i < count; i++) override(reader, &overrides[i]);
+  for (size_t i = 0; i < reader->parameter_count; i++) resolve(reader, &reader->parameters[i]);
+}
+
+void strut_keep_parameters(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  scene->parameters =
+      strut_take(reader, &scene->arena, reader->parameter_count, sizeof *scene->parameters);
+  for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
+    const strut_parameter_state *p = &reader->parameters[i];
+    if (p->value->kind != STRUT_TREE_SCALAR) return; /* reported */
+    const char *text = p->override ? p->override : p->value->text;
+    strut_parameter *kept = &scene->parameters[scene->parameter_count++];
+    kept->name = strut_arena_text(&scene->arena, p->name, strlen(p->name));
+    kept->text = strut_arena_text(&scene->arena, text, strlen(text));
+    kept->value = p->text ? (double)NAN : p->quantity.value;
+    if (!kept->name || !kept->text) reader->out_of_memory = true;
+  }
+}
