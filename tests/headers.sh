@@ -3,18 +3,25 @@
 # Every header compiles alone: as C17 with all warnings, twice in one file (its guard holds), and,
 # if strut.h leads to it, as C++17 too. First proves on made-up headers that it notices.
 #
-#   sh tests/headers.sh ROOT CC CXX      (CXX may be empty: then C++ is left out)
+#   sh tests/headers.sh ROOT CC CXX [FOLDER...]
+#
+# CXX may be empty: then C++ is left out. In the folders are other libraries' headers, for ours that
+# are not public.
+# shellcheck disable=SC2086  # lists of words are meant to split
 set -eu
 root=$(cd "$1" && pwd)
 cc=$2
 cxx=$3
+shift 3
+others=
+for folder; do others="$others -isystem $folder"; done
 warnings="-Wall -Wextra -Wpedantic -Wshadow -Wundef -Werror"
 
 # compiles ROOT HEADER: says why not.
 compiles() {
   printf '#include "%s"\n#include "%s"\nextern int after;\n' "$2" "$2" |
     $cc -std=c17 -D_POSIX_C_SOURCE=200809L $warnings -Wstrict-prototypes -Wvla -I "$1" \
-      -fsyntax-only -x c -
+      $others -fsyntax-only -x c -
 }
 # strut.h lends C++ the word "restrict" for the headers below it.
 compiles_as_cxx() {
@@ -27,14 +34,14 @@ compiles_as_cxx() {
 reachable() {
   seen=
   queue=$2
-  while [ -n "$queue" ]; do
+  while [ -n "${queue# }" ]; do
     next=
     for header in $queue; do
       case " $seen " in *" $header "*) continue ;; esac
       seen="$seen $header"
       next="$next $(sed -n 's/^#include "\([^"]*\)".*/\1/p' "$1/$header")"
     done
-    queue=$(echo $next)
+    queue=${next# }
   done
   printf '%s\n' $seen | sort
 }
