@@ -20,7 +20,8 @@ static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
 typedef struct frame {
   strut_tree *node, *last; /* last child so far */
   uint64_t weight;
-  size_t anchor;   /* 1 + index, or 0 */
+  size_t anchor; /* 1 + index, or 0 */
+  bool bracketed;
   bool value_next; /* map: a key waits for its value */
 } frame;
 
@@ -226,7 +227,9 @@ static bool open_collection(reader *r, const yaml_event_t *event) {
   }
   if (r->depth == DEPTH_MOST) return over_limit(r, place, "levels of nesting", DEPTH_MOST);
   strut_tree *node = new_node(r, map ? STRUT_TREE_MAP : STRUT_TREE_LIST, place);
-  frame open = {.node = node, .weight = 1};
+  bool bracketed = map ? event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE
+                       : event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE;
+  frame open = {.node = node, .weight = 1, .bracketed = bracketed};
   if (!node || !read_anchor(r, anchor, node, &open.anchor)) return false;
   r->stack[r->depth++] = open;
   return true;
@@ -317,8 +320,10 @@ static bool read_events(reader *r) {
       fine = take_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
       yaml_event_delete(&event);
     } else {
+      const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
+      const strut_tree *bracket = open && open->bracketed ? open->node : NULL;
       fine = false;
-      if (!strut_document_syntax_error(&r->yaml, r->diagnostics)) out_of_memory(r);
+      if (!strut_document_syntax_error(&r->yaml, bracket, r->diagnostics)) out_of_memory(r);
     }
   }
   yaml_parser_delete(&r->yaml);

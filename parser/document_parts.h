@@ -18,8 +18,12 @@ uint64_t strut_text_hash(const char *text, size_t length, uint64_t seed);
 /** Finds what libyaml must not see: bad UTF-8, controls, directives. False with the messages. */
 bool strut_document_scan(strut_diagnostics *diagnostics);
 
-/** Turns libyaml's error into one located message. False: memory was out. */
-bool strut_document_syntax_error(const yaml_parser_t *parser, strut_diagnostics *diagnostics);
+/**
+ * Turns libyaml's error into one located message. `open` is the innermost bracketed list or mapping
+ * that is open, or NULL. False: memory was out.
+ */
+bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
+                                 strut_diagnostics *diagnostics);
 
 /** Anchored nodes by name. Zero-initialise; release with strut_anchors_free. */
 typedef struct strut_anchor {
