@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The equations of the paper once more: dense, slow, in long double, and sharing no code with the
+ * engine. It reads a scene's plain numbers and nothing else.
+ *
+ * Coordinates are (x1, y1, x2, y2, ...), n = 2 * node_count of them; the caller frees the arrays.
+ */
+#ifndef STRUT_TESTS_PHYSICS_SLOW_MODEL_H
+#define STRUT_TESTS_PHYSICS_SLOW_MODEL_H
+
+#include "engine/scene/scene.h"
+
+typedef struct slow_model {
+  size_t n;
+  long double *mass;              /* (n, n) of all coordinates, supports not yet eliminated */
+  long double *force;             /* (n) */
+  long double *acceleration;      /* (n) 0 where supported */
+  long double *tension;           /* (members) */
+  long double *normal, *friction; /* (contacts) */
+  long double drive, load, belt, members, contact, rubbed; /* powers [W] */
+} slow_model;
+
+/** Everything at time t [s], positions q and velocities v. */
+void slow_evaluate(slow_model *slow, const strut_scene *scene, double t, const double *q,
+                   const double *v);
+void slow_free(slow_model *slow);
+
+/** Value and rate of a signal, by its definition. */
+void slow_signal(const strut_scene *scene, int32_t signal, double t, long double *value,
+                 long double *rate);
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Scenes made by hand, thing by thing. Each function that adds returns the new thing's index.
+ *
+ * Begin with strut_scene_init and end with strut_scene_free. Things are called n1, n2, ..., m1, ...
+ * A function that is refused memory fails the test.
+ */
+#ifndef STRUT_TESTS_SUPPORT_BUILD_H
+#define STRUT_TESTS_SUPPORT_BUILD_H
+
+#include "engine/scene/scene.h"
+
+/** A free node, drawn and starting at x, y [m], without mass and at rest. */
+int32_t build_node(strut_scene *scene, double x, double y);
+/** The same with a point mass [kg]. */
+int32_t build_mass(strut_scene *scene, double x, double y, double mass);
+/** The same, supported in x and y. */
+int32_t build_support(strut_scene *scene, double x, double y);
+/** A member that is at rest as drawn: [N/m], [N s/m], [kg]. */
+int32_t build_member(strut_scene *scene, strut_member_kind kind, int32_t from, int32_t to,
+                     double stiffness, double damping, double mass);
+/** The same with a rest length [m] of its own. */
+int32_t build_sized(strut_scene *scene, strut_member_kind kind, int32_t from, int32_t to,
+                    double stiffness, double damping, double mass, double rest_length);
+int32_t build_signal(strut_scene *scene, strut_signal signal);
+int32_t build_sine(strut_scene *scene, double amplitude, double frequency);
+int32_t build_actuator(strut_scene *scene, int32_t member, int32_t signal);
+/** signal: -1 for a constant load. */
+int32_t build_load(strut_scene *scene, int32_t node, double x, double y, int32_t signal);
+/** A contact without friction; makes the ground present. Call it in the order of the nodes. */
+int32_t build_contact(strut_scene *scene, int32_t node, double stiffness, double damping);
+/** A contact with Karnopp's law. */
+int32_t build_rough_contact(strut_scene *scene, int32_t node, double stiffness, double damping,
+                            double mu_static, double mu_kinetic, double stick_velocity);
+/** A copy of count doubles that the scene owns. */
+const double *build_numbers(strut_scene *scene, const double *numbers, size_t count);
+
+#endif

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * cmocka with all that it needs, and assertions about numbers that say the numbers.
+ */
+#ifndef STRUT_TESTS_SUPPORT_CHECK_H
+#define STRUT_TESTS_SUPPORT_CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/** |actual - expected| <= tolerance; a NAN fails. */
+#define assert_near(actual, expected, tolerance)                                                   \
+  check_near((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
+/** |actual - expected| <= tolerance * |expected|. */
+#define assert_relative(actual, expected, tolerance)                                               \
+  check_relative((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
+/** low <= actual <= high. */
+#define assert_within(actual, low, high)                                                           \
+  check_within((actual), (low), (high), #actual, __FILE__, __LINE__)
+/** The same bits, so that 0 and -0 differ and a NAN equals itself. */
+#define assert_same_bits(actual, expected)                                                         \
+  check_same_bits((actual), (expected), #actual, __FILE__, __LINE__)
+
+void check_near(double actual, double expected, double tolerance, const char *what,
+                const char *file, int line);
+void check_relative(double actual, double expected, double tolerance, const char *what,
+                    const char *file, int line);
+void check_within(double actual, double low, double high, const char *what, const char *file,
+                  int line);
+void check_same_bits(double actual, double expected, const char *what, const char *file, int line);
+
+/** Least-squares slope of log2(error) over halvings of the step: the observed order. */
+double observed_order(const double *error, size_t count);
+
+#endif

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/support/motion.h"
+
+#include "engine/scene/check.h"
+#include "tests/support/check.h"
+
+static void check(const strut_scene *scene) {
+  strut_findings findings = {0};
+  strut_status status = strut_scene_check(scene, STRUT_FOR_STATICS, &findings);
+  for (size_t i = 0; i < findings.count; i++) print_error("%s\n", findings.items[i].message);
+  strut_findings_free(&findings);
+  assert_int_equal(status, STRUT_OK);
+}
+
+strut_model *motion_compile(const strut_scene *scene) {
+  strut_model *model = NULL;
+  strut_error error = {0};
+  check(scene);
+  strut_status status = strut_model_compile(scene, &model, &error);
+  if (status) print_error("%s\n", error.message);
+  assert_int_equal(status, STRUT_OK);
+  return model;
+}
+
+void motion_begin(motion *m, const strut_scene *scene, double step) {
+  m->model = motion_compile(scene);
+  assert_non_null(m->model->mass);
+  assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
+  m->method = strut_integrator_find("rk4");
+  assert_non_null(m->method);
+  m->workspace = m->method->create(m->model);
+  assert_non_null(m->workspace);
+  m->step = step;
+}
+
+void motion_steps(motion *m, int64_t count) {
+  m->method->advance(m->model, m->state, m->workspace, m->step, count);
+}
+
+void motion_end(motion *m) {
+  m->method->destroy(m->workspace);
+  strut_state_free(m->state);
+  strut_model_free(m->model);
+}
+
+void motion_experiment(strut_scene *scene, double step, double duration) {
+  scene->experiment.step = step;
+  scene->experiment.duration = duration;
+}
+
+strut_summary motion_simulate(const strut_scene *scene) {
+  strut_model *model = motion_compile(scene);
+  strut_run_options options = {0};
+  strut_summary summary;
+  strut_error error = {0};
+  strut_status status = strut_simulate(model, &options, &summary, &error);
+  if (status) print_error("%s\n", error.message);
+  assert_int_equal(status, STRUT_OK);
+  strut_model_free(model);
+  return summary;
+}
