@@ -37,8 +37,11 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
     friction = strut_friction_force(normal, slip, applied, c->mu_static[i], c->mu_kinetic[i],
                                     c->stick_velocity[i]);
   }
-  f[0] += sloped ? friction * c->tangent[0] + normal * c->normal[0] : friction;
-  f[1] += sloped ? friction * c->tangent[1] + normal * c->normal[1] : normal;
+  strut_pair reaction = {friction, normal};
+  if (sloped)
+    reaction = (strut_pair){friction * c->tangent[0] + normal * c->normal[0],
+                            friction * c->tangent[1] + normal * c->normal[1]};
+  strut_pair_store(f, strut_pair_load(f) + reaction);
   state->normal[i] = normal;
   state->friction[i] = friction;
   if (ledger) ground_ledger(state, c->belt_speed, damper, into, friction, slip);
@@ -47,14 +50,12 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
                              const double *restrict q, const double *restrict v,
                              double *restrict force, bool sloped, bool rough, bool ledger) {
-  const strut_contact_table *c = &model->contacts;
-  const int32_t count = c->count, *restrict node = c->node;
-  const double height = c->height;
-  for (int32_t i = 0; i < count; i++) {
-    int32_t at = 2 * node[i];
-    double gap = q[at + 1] - height;
-    if (sloped) gap = q[at] * c->normal[0] + gap * c->normal[1];
-    if (gap < 0.0) ground_touch(c, state, i, gap, force + at, v + at, sloped, rough, ledger);
+  const strut_contact_table c = model->contacts;
+  for (int32_t i = 0; i < c.count; i++) {
+    int32_t at = 2 * c.node[i];
+    double gap = q[at + 1] - c.height;
+    if (sloped) gap = q[at] * c.normal[0] + gap * c.normal[1];
+    if (gap < 0.0) ground_touch(&c, state, i, gap, force + at, v + at, sloped, rough, ledger);
   }
 }
 

@@ -26,11 +26,12 @@ typedef struct member_vectors {
 
 STRUT_INLINE member_vectors members_gather(const double *restrict p, const uint32_t *restrict from,
                                            const uint32_t *restrict to) {
-  strut_pair d[STRUT_LANES];
-  for (int l = 0; l < STRUT_LANES; l++)
-    d[l] = strut_pair_load(p + to[l]) - strut_pair_load(p + from[l]);
-  return (member_vectors){{d[0][0], d[1][0], d[2][0], d[3][0]},
-                          {d[0][1], d[1][1], d[2][1], d[3][1]}};
+  strut_lanes even = strut_lanes_join(p + to[0], p + to[2]) -
+                     strut_lanes_join(p + from[0], p + from[2]);
+  strut_lanes odd = strut_lanes_join(p + to[1], p + to[3]) -
+                    strut_lanes_join(p + from[1], p + from[3]);
+  return (member_vectors){__builtin_shufflevector(even, odd, 0, 4, 2, 6),
+                          __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
 }
 
 STRUT_INLINE strut_lanes members_root(strut_lanes x) {
@@ -63,9 +64,14 @@ STRUT_INLINE strut_lanes members_tension(const strut_member_table *t, const stru
   return tension;
 }
 
+STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {
+  strut_pair_store(a, strut_pair_load(a) + pull);
+  strut_pair_store(b, strut_pair_load(b) - pull);
+}
+
 /*
- * Forces of the STRUT_LANES members from j on. A member of zero length has no direction: its unit
- * vector is zero and so is its force.
+ * Forces of the STRUT_LANES members from j on. A member of zero length has no direction and
+ * no force.
  */
 STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
@@ -74,20 +80,19 @@ STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
   member_vectors d = members_gather(q, from, to);
   strut_lanes length = members_root(d.x * d.x + d.y * d.y);
-  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0});
-  strut_lanes ux = d.x * inverse, uy = d.y * inverse, rate = {0};
+  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0}), rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
     member_vectors w = members_gather(v, from, to);
-    rate = w.x * ux + w.y * uy;
+    rate = (w.x * d.x + w.y * d.y) * inverse; /* the products need not wait for the root */
   }
   strut_lanes tension = members_tension(t, state, j, terms, ledger, length, rate, powers);
-  strut_lanes px = tension * ux, py = tension * uy;
-  for (int l = 0; l < STRUT_LANES; l++) {
-    strut_pair pull = {px[l], py[l]};
-    double *a = force + from[l], *b = force + to[l];
-    strut_pair_store(a, strut_pair_load(a) + pull);
-    strut_pair_store(b, strut_pair_load(b) - pull);
-  }
+  strut_lanes density = tension * inverse, px = density * d.x, py = density * d.y;
+  strut_lanes even = __builtin_shufflevector(px, py, 0, 4, 2, 6);
+  strut_lanes odd = __builtin_shufflevector(px, py, 1, 5, 3, 7);
+  members_pull(force + from[0], force + to[0], __builtin_shufflevector(even, even, 0, 1));
+  members_pull(force + from[1], force + to[1], __builtin_shufflevector(odd, odd, 0, 1));
+  members_pull(force + from[2], force + to[2], __builtin_shufflevector(even, even, 2, 3));
+  members_pull(force + from[3], force + to[3], __builtin_shufflevector(odd, odd, 2, 3));
 }
 
 /* A block; the table is a copy in the caller's frame, so that no store can be taken to change it. */

@@ -3,12 +3,12 @@
  * The classical Runge-Kutta method of fourth order with a fixed step, as the paper uses it: the
  * force law, contact and friction included, is evaluated at every stage.
  */
+#include "engine/forces/forces_kernel.h"
 #include "engine/integrate/integrator.h"
-#include "engine/model/hot.h"
 
-/* Stage values, (length) each: v2 to v4 are the velocities, a1 to a4 the accelerations. */
+/* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
 typedef struct rk4_workspace {
-  double *q, *v2, *v3, *v4, *a1, *a2, *a3, *a4;
+  double *q, *v[4], *a[4]; /* v[0] is unused: the first stage's is the state's own */
   strut_arena arena;
 } rk4_workspace;
 
@@ -23,7 +23,7 @@ static void *rk4_create(const strut_model *model) {
   rk4_workspace *w = strut_allocate(1, sizeof *w);
   if (!w) return NULL;
   size_t both = (size_t)model->length;
-  double **all[] = {&w->q, &w->v2, &w->v3, &w->v4, &w->a1, &w->a2, &w->a3, &w->a4};
+  double **all[] = {&w->q, &w->v[1], &w->v[2], &w->v[3], &w->a[0], &w->a[1], &w->a[2], &w->a[3]};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     *all[i] = strut_arena_allocate(&w->arena, both, sizeof(double));
     if (!*all[i]) {
@@ -40,7 +40,7 @@ STRUT_INLINE void stage(int32_t n, double h, const double *restrict q0,
                         const double *restrict a, double *restrict q, double *restrict next) {
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes_store(q + i, strut_lanes_load(q0 + i) + h * strut_lanes_load(v + i));
-    strut_lanes_store(next + i, strut_lanes_load(v0 + i) + h * strut_lanes_load(a + i));
+    strut_lanes_store(next + i, strut_lanes_load(v0 + i) + h * strut_lanes_load_pairs(a + i));
   }
 }
 
@@ -51,44 +51,53 @@ STRUT_INLINE void combine(int32_t n, double h, double *restrict z, const double 
   double sixth = h / 6.0;
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes inner = strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i);
-    strut_lanes sum = strut_lanes_load(k1 + i) + 2.0 * inner + strut_lanes_load(k4 + i);
+    strut_lanes sum = strut_lanes_load(k1 + i) + 2.0 * inner + strut_lanes_load_pairs(k4 + i);
     strut_lanes_store(z + i, strut_lanes_load(z + i) + sixth * sum);
   }
 }
 
-/* Forces at a stage; with the ledger, its powers enter the works with the stage's weight. */
-STRUT_INLINE void evaluate(const strut_model *model, strut_state *state, double t,
-                           const double *restrict q, const double *restrict v, double *restrict a,
-                           double weight) {
-  strut_forces_acceleration(model, state, t, q, v, a);
-  if (!state->ledger) return;
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) state->work[p] += weight * state->power[p];
-}
-
-STRUT_CLONES
-static void run_steps(const strut_model *model, strut_state *state, const rk4_workspace *w,
-                      double dt, int64_t count) {
+/*
+ * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2)
+ * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight.
+ */
+STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
+                            double dt, int64_t count, bool ledger) {
+  static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
+  double *restrict q = state->q, *restrict v = state->v;
+  const double *const at[4] = {q, w->q, w->q, w->q};
+  const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
   int32_t n = model->length;
-  for (int64_t k = 0; k < count; k++) {
-    double step = (double)state->step;
-    double begin = step * dt, middle = (step + 0.5) * dt, end = (step + 1.0) * dt;
-    evaluate(model, state, begin, state->q, state->v, w->a1, dt / 6.0);
-    stage(n, 0.5 * dt, state->q, state->v, state->v, w->a1, w->q, w->v2);
-    evaluate(model, state, middle, w->q, w->v2, w->a2, dt / 3.0);
-    stage(n, 0.5 * dt, state->q, state->v, w->v2, w->a2, w->q, w->v3);
-    evaluate(model, state, middle, w->q, w->v3, w->a3, dt / 3.0);
-    stage(n, dt, state->q, state->v, w->v3, w->a3, w->q, w->v4);
-    evaluate(model, state, end, w->q, w->v4, w->a4, dt / 6.0);
-    combine(n, dt, state->q, state->v, w->v2, w->v3, w->v4);
-    combine(n, dt, state->v, w->a1, w->a2, w->a3, w->a4);
-    state->step++;
+  for (int64_t end = state->step + count; state->step < end; state->step++) {
+    for (int k = 0; k < 4; k++) {
+      double t = ((double)state->step + ahead[k]) * dt;
+      forces_kernel(model, state, t, at[k], speed[k], w->a[k], ledger);
+      for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+        state->work[p] += weight[k] * (dt / 6.0) * state->power[p];
+      if (k < 3) stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
+    }
+    combine(n, dt, q, v, w->v[1], w->v[2], w->v[3]);
+    combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
   }
 }
 
-/* A clone is a local function, and the table wants an ordinary one. */
+STRUT_CLONES
+static void advance_plain(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
+                          int64_t count) {
+  run_steps(model, state, w, dt, count, false);
+}
+
+STRUT_CLONES
+static void advance_with_ledger(const strut_model *model, strut_state *state, rk4_workspace *w,
+                                double dt, int64_t count) {
+  run_steps(model, state, w, dt, count, true);
+}
+
 static void rk4_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                         int64_t count) {
-  run_steps(model, state, workspace, dt, count);
+  if (state->ledger)
+    advance_with_ledger(model, state, workspace, dt, count);
+  else
+    advance_plain(model, state, workspace, dt, count);
 }
 
 const strut_integrator strut_integrator_rk4 = {

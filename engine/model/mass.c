@@ -161,7 +161,10 @@ static strut_status make_operator(strut_model *model, strut_arena *scratch, stru
   op->matrix = matrix, op->matrix_node = node, op->inverse = inverse;
   mass->matrix_nonzeros += (size_t)matrix->start[matrix->n];
   for (int32_t i = 0; i < matrix->n; i++)
-    if (s.size[s.root[i]] == 1) inverse[2 * node[i] + coordinate] = 1.0 / matrix->value[matrix->start[i]];
+    if (s.size[s.root[i]] == 1) {
+      inverse[2 * node[i] + coordinate] = 1.0 / matrix->value[matrix->start[i]];
+      mass->any_single = true;
+    }
   status = make_blocks(model, &s, op, mass, error);
   return status ? status : make_factor(model, scratch, &s, op, mass, coordinate, error);
 }

@@ -39,6 +39,7 @@ typedef struct strut_mass {
   strut_mass_operator coordinate[2]; /* x, y; the same arrays where supports are alike */
   bool shared;                       /* x and y are one and the same */
   bool diagonal;                     /* no blocks and no factor */
+  bool any_single;                   /* some node is in neither; else `inverse` is all 0 */
   const double *inverse;             /* (length) both coordinates' inverse, joined */
   size_t matrix_nonzeros, factor_nonzeros, dense_entries;
   strut_factor *owned_factor[2];
@@ -49,8 +50,8 @@ strut_status strut_mass_create(struct strut_model *model, strut_mass **mass, str
 void strut_mass_free(strut_mass *mass);
 
 /**
- * acceleration = M^-1 force for both coordinates, arrays and work are (length).
- * Supported coordinates get 0.
+ * acceleration = M^-1 force for both coordinates; all arrays are (length), work is scratch. Places
+ * of supported coordinates and of padding in `acceleration` must be 0 before and stay so.
  */
 void strut_mass_solve(const struct strut_model *model, const double *restrict force,
                       double *restrict acceleration, double *restrict work);

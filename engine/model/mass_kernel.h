@@ -56,8 +56,8 @@ STRUT_INLINE void mass_kernel(const strut_model *model, const double *restrict f
                               double *restrict a, double *restrict work) {
   const strut_mass *mass = model->mass;
   const double *restrict inverse = mass->inverse;
-  for (int32_t i = 0; i < model->length; i += STRUT_LANES)
-    strut_lanes_store(a + i, strut_lanes_load(f + i) * strut_lanes_load(inverse + i));
+  for (int32_t i = 0; i < model->length && mass->any_single; i += STRUT_LANES)
+    strut_lanes_store(a + i, strut_lanes_load_pairs(f + i) * strut_lanes_load(inverse + i));
   if (mass->diagonal) return;
   if (mass->shared) {
     mass_blocks(&mass->coordinate[0], true, f, a);

@@ -54,7 +54,7 @@ static int create_beside(const char *path, char *part, size_t room) {
   int descriptor = -1;
   for (int i = 0; i < MOST_NAMES; i++) {
     snprintf(part, room, "%s.%ld-%d", path, (long)getpid(), i);
-    descriptor = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor = open(part, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 || errno != EEXIST) break;
   }
   return descriptor;
@@ -144,6 +144,7 @@ void strut_file_abandon(strut_file *file) {
 }
 
 strut_status strut_file_trouble(const strut_file *file, strut_error *error) {
+  if (errno == ENOMEM) return no_memory(error);
   return trouble(error, "write", file->path, errno ? errno : EIO);
 }
 

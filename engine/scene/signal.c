@@ -87,7 +87,8 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
 /* Longest period among a signal's repeating parts; 0 where none repeats. */
 static double longest_period(const strut_signal *signals, int32_t index) {
   const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE) return 1.0 / s->frequency;
+  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE)
+    return 1.0 / s->frequency;
   double longest = 0.0;
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
     longest = fmax(longest, longest_period(signals, s->terms[i]));

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: the sum of the terms in a fixed order, and the acceleration it gives, as one inlined piece.
+ *
+ * An integrator includes this to have one copy in its own loop. Only what the plan names is
+ * evaluated.
+ */
+#ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
+#define STRUT_ENGINE_FORCES_FORCES_KERNEL_H
+
+#include "engine/forces/forces.h"
+#include "engine/forces/ground_kernel.h"
+#include "engine/forces/members_kernel.h"
+#include "engine/model/mass_kernel.h"
+
+STRUT_INLINE void forces_start(const strut_model *model, double *restrict force) {
+  const double *restrict constant = model->constant_force;
+  if (model->plan & STRUT_TERM_CONSTANT)
+    for (int32_t i = 0; i < model->length; i += STRUT_LANES)
+      strut_lanes_store(force + i, strut_lanes_load(constant + i));
+  else
+    for (int32_t i = 0; i < model->length; i += STRUT_LANES)
+      strut_lanes_store(force + i, (strut_lanes){0});
+}
+
+STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
+                              const double *restrict q, const double *restrict v,
+                              double *restrict force, bool ledger) {
+  member_powers powers = {0};
+  members_kernel(model, state, q, v, force, ledger, &powers);
+  for (int l = 0; l < STRUT_LANES && ledger; l++) {
+    state->power[STRUT_POWER_DRIVE] += powers.drive[l];
+    state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
+    state->power[STRUT_POWER_MOVED] += powers.moved[l] + powers.lost[l];
+  }
+}
+
+STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
+                          const double *restrict q, const double *restrict v, bool ledger) {
+  unsigned plan = model->plan;
+  double *restrict force = state->force;
+  state->evaluations++;
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
+  forces_start(model, force);
+  if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
+  if (plan & STRUT_TERM_DRIVE) strut_drive_apply(model, state, t);
+  if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
+  if (plan & STRUT_TERM_CONTACT) ground_kernel(model, state, q, v, force, ledger);
+}
+
+/* See strut_forces_acceleration. */
+STRUT_INLINE void forces_kernel(const strut_model *model, strut_state *state, double t,
+                                const double *restrict q, const double *restrict v,
+                                double *restrict a, bool ledger) {
+  forces_sum(model, state, t, q, v, ledger);
+  mass_kernel(model, state->force, a, state->scratch);
+}
+
+#endif

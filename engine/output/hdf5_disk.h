@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * An HDF5 file driver whose writing never fails; for hdf5.c alone.
+ *
+ * HDF5 1.10 cannot close a file once a write has failed: it keeps the file, complains, and crashes
+ * when the program exits. So this driver hides a full disk from the library. What did not fit is
+ * kept in memory until the file is closed, and the reason is noted here for the caller to ask for.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_HDF5_DISK_H
+#define STRUT_ENGINE_OUTPUT_HDF5_DISK_H
+
+#include <hdf5.h>
+
+/** Where one file's bytes go. Must outlive the file's closing. */
+typedef struct strut_hdf5_disk {
+  int descriptor;                 /* open for reading and writing; not owned */
+  int trouble;                    /* errno of the first failure, or 0 */
+  hid_t driver;                   /* HDF5 1.10 still looks at it after it let go of it */
+  struct strut_hdf5_piece *first; /* what could not be written, in order */
+  struct strut_hdf5_piece **last;
+} strut_hdf5_disk;
+
+/** A new HDF5 file, without times in it, on an empty file's descriptor. Negative on failure. */
+hid_t strut_hdf5_disk_create(strut_hdf5_disk *disk, int descriptor);
+/** Frees what was kept and the driver; call it after the file was closed. Zeroed: nothing to do. */
+void strut_hdf5_disk_free(strut_hdf5_disk *disk);
+
+#endif

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The pieces of an HDF5 file of results: datasets, texts, dimension scales; for hdf5.c alone.
+ *
+ * Scales follow the HDF5 Dimension Scale specification, so that netCDF-4 and xarray see named axes.
+ * The library's own H5DS functions would copy the padding of a C struct into the file, and two
+ * equal runs would differ; here the attributes are written packed. Functions return false (or a
+ * negative id) when the library fails.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_HDF5_PARTS_H
+#define STRUT_ENGINE_OUTPUT_HDF5_PARTS_H
+
+#include <hdf5.h>
+#include <stdbool.h>
+
+enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = 8 };
+
+/** HDF5's printing of errors, switched off for a while and given back. */
+typedef struct strut_hdf5_quiet {
+  H5E_auto2_t function;
+  void *data;
+} strut_hdf5_quiet;
+strut_hdf5_quiet strut_hdf5_hush(void);
+void strut_hdf5_unhush(strut_hdf5_quiet quiet);
+
+/** An attribute that holds a UTF-8 text of any length. */
+bool strut_hdf5_text(hid_t object, const char *name, const char *text);
+/** A dataset of doubles of any number of rows, in compressed chunks of the given shape. */
+hid_t strut_hdf5_series(hid_t file, const char *name, int rank, const hsize_t *shape,
+                        const hsize_t *chunk);
+/** A dataset of `count` texts. Negative also when memory is out, with ENOMEM in errno. */
+hid_t strut_hdf5_names(hid_t file, const char *name, const char *const *names, size_t count);
+
+/** A dimension scale and who uses it along which dimension. */
+typedef struct strut_hdf5_scale {
+  const char *name; /* not owned; also the dataset's name */
+  hid_t dataset;    /* owned by whoever opened it */
+  hobj_ref_t reference;
+  int user_count;
+  struct {
+    hobj_ref_t dataset;
+    int dimension;
+  } users[STRUT_HDF5_USERS];
+} strut_hdf5_scale;
+
+/** Makes a dataset a scale. */
+bool strut_hdf5_scale_begin(strut_hdf5_scale *scale, hid_t file, hid_t dataset, const char *name);
+/** Ties each dimension of a dataset to a scale; NULL: it has none. */
+bool strut_hdf5_scale_attach(hid_t file, hid_t dataset, const char *name, int rank,
+                             strut_hdf5_scale *scales[STRUT_HDF5_RANK]);
+/** Writes down who uses the scale, after the last attach. */
+bool strut_hdf5_scale_end(const strut_hdf5_scale *scale);
+
+#endif
