@@ -1,0 +1,42 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Every model says what it shows, is valid, and runs: begins with a comment, passes strut check and
+# strut run, and what strut write makes of it gives the same summary.
+#
+#   sh tests/models/models.sh ROOT STRUT
+set -eu
+root=$(cd "$1" && pwd)
+strut=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failures=0
+count=0
+fail() { echo "$*"; failures=$((failures + 1)); }
+
+# tries FILE: says what is wrong with it.
+tries() {
+  head -n 1 "$1" | grep -q '^# ' || { echo "does not begin with a comment"; return 1; }
+  "$strut" check "$1" >/dev/null || { echo "check fails"; return 1; }
+  "$strut" run "$1" --quiet -o "$scratch/first" || { echo "run fails"; return 1; }
+  "$strut" run "$scratch/first/scene.yaml" --quiet -o "$scratch/second" ||
+    { echo "its effective scene does not run"; return 1; }
+  for file in "$scratch"/first/*; do
+    case $file in */trajectory.h5) continue ;; esac # holds the scene's own text
+    cmp "$file" "$scratch/second/${file##*/}" || { echo "its effective scene differs"; return 1; }
+  done
+}
+
+# Self-test: files that must be noticed.
+printf 'strut: 1\n' >"$scratch/silent.yaml"
+printf '# says nothing\nstrut: 1\nnodes: {}\n' >"$scratch/bad.yaml"
+for bad in silent bad; do
+  ! tries "$scratch/$bad.yaml" >/dev/null 2>&1 || fail "self-test: $bad passes"
+done
+
+for model in $(find "$root/models" -name '*.yaml' | sort); do
+  count=$((count + 1))
+  tries "$model" >"$scratch/log" 2>&1 || fail "${model#"$root"/}: $(cat "$scratch/log")"
+done
+[ "$count" -ge 9 ] || fail "only $count models"
+[ "$failures" -eq 0 ] && echo "$count models run"
+exit "$((failures > 0))"

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A model file read, compiled and run in one call, with its rows kept.
+ */
+#ifndef STRUT_TESTS_MODELS_RUN_MODEL_H
+#define STRUT_TESTS_MODELS_RUN_MODEL_H
+
+#include "engine/run/recorder.h"
+#include "engine/run/simulate.h"
+#include "parser/read_scene.h"
+
+typedef struct model_run {
+  strut_scene scene;
+  strut_model *model;
+  strut_summary summary;
+  /* what was recorded */
+  strut_record_layout layout; /* its channels live as long as the run's own: copied below */
+  strut_record_channel channels[6];
+  size_t row_count, row_room;
+  double *rows; /* (row_count, layout.width) */
+} model_run;
+
+/** "a=1", "b=2", NULL as overrides. */
+#define set_none ((const char *const[]){NULL})
+#define set_to(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+/** Reads models/NAME.yaml; fails the test if it is not valid. */
+void model_read(model_run *run, const char *name, const char *const *settings);
+/** Compiles and runs what was read (and perhaps changed); fails the test unless it completes. */
+void model_simulate(model_run *run);
+/** Both. */
+void model_run_file(model_run *run, const char *name, const char *const *settings);
+void model_run_free(model_run *run);
+
+/** Position of a node at the end, [m]; fails the test if there is none of that name. */
+const double *model_position(const model_run *run, const char *node);
+/** Value in a row, e.g. (run, row, STRUT_CHANNEL_FORCE, "top", 0). */
+double model_value(const model_run *run, size_t row, strut_channel channel, const char *item,
+                   size_t component);
+
+#endif
