@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Trajectories as CSV: headers, every value's bits, full disks, no memory. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/csv.h"
+#include "tests/unit/sample.h"
+#include "tests/unit/scratch.h"
+
+static strut_status feed(const char *directory, size_t rows, strut_status run_status,
+                         strut_error *error) {
+  strut_sink *sink = strut_csv_create(directory);
+  if (!sink) return STRUT_NO_MEMORY;
+  strut_status status = sample_feed(sink, rows, run_status, error);
+  strut_csv_free(sink);
+  return status;
+}
+
+/* The file's lines, `columns` columns each, hold the sample's rows bit by bit. */
+static void assert_table(const char *name, const char *header, size_t rows, const size_t *columns,
+                         size_t column_count) {
+  size_t length = 0;
+  char *text = scratch_read(scratch_path(name), &length);
+  assert_non_null(text);
+  size_t head = strlen(header);
+  assert_true(length >= head);
+  assert_memory_equal(text, header, head);
+  char *at = text + head;
+  for (size_t row = 0; row < rows; row++) {
+    for (size_t i = 0; i <= column_count; i++) {
+      double expected = sample_value(row, i ? columns[i - 1] : 0);
+      double value = strtod(at, &at);
+      assert_memory_equal(&value, &expected, sizeof value);
+      assert_int_equal(*at, i == column_count ? '\n' : ',');
+      at++;
+    }
+  }
+  assert_int_equal(at - text, length);
+  free(text);
+}
+
+static void assert_all_tables(size_t rows) {
+  assert_table("nodes.csv",
+               "time [s],n1.x [m],n1.y [m],n1.vx [m/s],n1.vy [m/s],"
+               "\"left, \"\"upper\"\".x [m]\",\"left, \"\"upper\"\".y [m]\","
+               "\"left, \"\"upper\"\".vx [m/s]\",\"left, \"\"upper\"\".vy [m/s]\","
+               "\xc3\xa4.x [m],\xc3\xa4.y [m],\xc3\xa4.vx [m/s],\xc3\xa4.vy [m/s]\n",
+               rows, (const size_t[]){1, 2, 7, 8, 3, 4, 9, 10, 5, 6, 11, 12}, 12);
+  assert_table("members.csv", "time [s],m1.length [m],m1.force [N],m2.length [m],m2.force [N]\n",
+               rows, (const size_t[]){13, 15, 14, 16}, 4);
+  assert_table("contacts.csv",
+               "time [s],n1.normal [N],n1.friction [N],\"left, \"\"upper\"\".normal [N]\","
+               "\"left, \"\"upper\"\".friction [N]\"\n",
+               rows, (const size_t[]){17, 18, 19, 20}, 4);
+  assert_table("energy.csv", "time [s],kinetic [J],elastic [J],gravity [J]\n", rows,
+               (const size_t[]){21, 22, 23}, 3);
+}
+
+static void test_every_value_comes_back(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 1500, STRUT_OK, NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 4);
+  assert_all_tables(1500);
+  scratch_remove();
+}
+
+static void test_a_run_that_stopped_keeps_its_rows(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 7, STRUT_INTERRUPTED, NULL), STRUT_OK);
+  assert_all_tables(7);
+  assert_int_equal(feed(directory, 8, STRUT_DIVERGED, NULL), STRUT_OK);
+  assert_all_tables(8);
+  assert_int_equal(feed(directory, 0, STRUT_INTERRUPTED, NULL), STRUT_OK);
+  assert_all_tables(0);
+  scratch_remove();
+}
+
+static void test_trouble_elsewhere_removes_the_files(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 7, STRUT_FILE_TROUBLE, NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 0);
+  assert_int_equal(feed(directory, 7, STRUT_NO_MEMORY, NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 0);
+  strut_sink *sink = strut_csv_create(directory); /* begun, never ended */
+  assert_int_equal(sink->begin(sink->context, sample_layout(), NULL), STRUT_OK);
+  strut_csv_free(sink);
+  assert_int_equal(scratch_count(directory), 0);
+  scratch_remove();
+}
+
+static void test_only_files_with_channels(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  strut_record_layout layout = *sample_layout();
+  layout.channel_count = 1;
+  strut_sink *sink = strut_csv_create(directory);
+  assert_int_equal(sink->begin(sink->context, &layout, NULL), STRUT_OK);
+  assert_int_equal(sink->end(sink->context, STRUT_OK, NULL), STRUT_OK);
+  strut_csv_free(sink);
+  assert_int_equal(scratch_count(directory), 1);
+  assert_true(scratch_exists(scratch_path("nodes.csv")));
+  scratch_remove();
+}
+
+static void test_numbers_that_are_none(void **unused) {
+  (void)unused;
+  size_t length;
+  const char *directory = scratch_make();
+  strut_record_layout layout = *sample_layout();
+  layout.channels = &layout.channels[5];
+  layout.channel_count = 1;
+  double row[24] = {1.0};
+  row[21] = NAN, row[22] = INFINITY, row[23] = -INFINITY;
+  strut_sink *sink = strut_csv_create(directory);
+  assert_int_equal(sink->begin(sink->context, &layout, NULL), STRUT_OK);
+  assert_int_equal(sink->rows(sink->context, row, 1, NULL), STRUT_OK);
+  assert_int_equal(sink->end(sink->context, STRUT_DIVERGED, NULL), STRUT_OK);
+  strut_csv_free(sink);
+  char *text = scratch_read(scratch_path("energy.csv"), &length);
+  assert_string_equal(text, "time [s],kinetic [J],elastic [J],gravity [J]\n1,nan,inf,-inf\n");
+  free(text);
+  scratch_remove();
+}
+
+static void test_a_full_disk(void **unused) {
+  (void)unused;
+  const char *disk = scratch_make();
+  int failures = 0;
+  for (int kilobytes = 4; kilobytes <= 2048; kilobytes *= 2) {
+    strut_error error = {0};
+    if (!scratch_mount_small_disk(disk, kilobytes)) {
+      scratch_remove();
+      skip();
+    }
+    strut_status status = feed(disk, 1500, STRUT_OK, &error);
+    int left = scratch_count(disk);
+    scratch_unmount(disk);
+    if (status == STRUT_OK) {
+      assert_int_equal(left, 4);
+    } else {
+      failures++;
+      assert_int_equal(status, STRUT_FILE_TROUBLE);
+      assert_int_equal(left, 0);
+      assert_non_null(strstr(error.message, "No space left on device"));
+    }
+  }
+  assert_in_range(failures, 4, 9);
+  scratch_remove();
+}
+
+static void test_no_memory(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status != STRUT_OK; n++) {
+    strut_fail_allocation_after(n);
+    status = feed(directory, 5, STRUT_OK, NULL);
+    strut_fail_allocation_after(-1);
+    if (status == STRUT_OK) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_int_equal(scratch_count(directory), 0);
+  }
+  assert_true(n > 10);
+  scratch_remove();
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_value_comes_back),
+      cmocka_unit_test(test_a_run_that_stopped_keeps_its_rows),
+      cmocka_unit_test(test_trouble_elsewhere_removes_the_files),
+      cmocka_unit_test(test_only_files_with_channels),
+      cmocka_unit_test(test_numbers_that_are_none),
+      cmocka_unit_test(test_a_full_disk),
+      cmocka_unit_test(test_no_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

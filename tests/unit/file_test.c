@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that appear whole or not at all, and directories of them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+#include "tests/unit/scratch.h"
+
+static void assert_content(const char *path, const char *expected) {
+  size_t length = 0;
+  char *text = scratch_read(path, &length);
+  assert_non_null(text);
+  assert_string_equal(text, expected);
+  free(text);
+}
+
+static void test_a_file_appears_on_commit_only(void **unused) {
+  (void)unused;
+  strut_file file = {0};
+  strut_error error = {0};
+  const char *directory = scratch_make();
+  assert_int_equal(strut_file_open(&file, directory, "a.txt", &error), STRUT_OK);
+  fputs("hello\n", file.stream);
+  fflush(file.stream);
+  assert_false(scratch_exists(scratch_path("a.txt")));
+  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(strut_file_commit(&file, &error), STRUT_OK);
+  assert_content(scratch_path("a.txt"), "hello\n");
+  assert_int_equal(scratch_count(directory), 1);
+  assert_null(file.stream);
+  strut_file_abandon(&file); /* nothing happens */
+  assert_true(scratch_exists(scratch_path("a.txt")));
+  scratch_remove();
+}
+
+static void test_abandon_keeps_the_old_file(void **unused) {
+  (void)unused;
+  strut_file file = {0};
+  const char *directory = scratch_make();
+  assert_int_equal(strut_file_write_text(directory, "a.txt", "old", NULL), STRUT_OK);
+  assert_int_equal(strut_file_open(&file, directory, "a.txt", NULL), STRUT_OK);
+  fputs("new", file.stream);
+  strut_file_abandon(&file);
+  assert_content(scratch_path("a.txt"), "old");
+  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(strut_file_write_text(directory, "a.txt", "new", NULL), STRUT_OK);
+  assert_content(scratch_path("a.txt"), "new");
+  scratch_remove();
+}
+
+static void test_permissions_follow_the_umask(void **unused) {
+  (void)unused;
+  struct stat found;
+  const char *directory = scratch_make();
+  mode_t before = umask(027);
+  assert_int_equal(strut_file_write_text(directory, "a.txt", "x", NULL), STRUT_OK);
+  umask(before);
+  assert_int_equal(stat(scratch_path("a.txt"), &found), 0);
+  assert_int_equal(found.st_mode & 0777, 0640);
+  scratch_remove();
+}
+
+static void test_two_writers_do_not_meet(void **unused) {
+  (void)unused;
+  strut_file first = {0}, second = {0};
+  const char *directory = scratch_make();
+  assert_int_equal(strut_file_open(&first, directory, "a.txt", NULL), STRUT_OK);
+  assert_int_equal(strut_file_open(&second, directory, "a.txt", NULL), STRUT_OK);
+  fputs("first", first.stream);
+  fputs("second", second.stream);
+  assert_int_equal(strut_file_commit(&first, NULL), STRUT_OK);
+  assert_int_equal(strut_file_commit(&second, NULL), STRUT_OK);
+  assert_content(scratch_path("a.txt"), "second");
+  assert_int_equal(scratch_count(directory), 1);
+  scratch_remove();
+}
+
+static void test_messages_name_the_file_and_the_reason(void **unused) {
+  (void)unused;
+  strut_file file = {0};
+  strut_error error = {0};
+  scratch_make();
+  assert_int_equal(strut_file_open(&file, scratch_path("no"), "a.txt", &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "no/a.txt': No such file or directory"));
+  assert_int_equal(mkdir(scratch_path("a.txt"), 0777), 0);
+  assert_int_equal(strut_file_open(&file, scratch_path("."), "a.txt", &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "Is a directory"));
+  assert_int_equal(error.status, STRUT_FILE_TROUBLE);
+  scratch_remove();
+}
+
+static void test_directories(void **unused) {
+  (void)unused;
+  strut_error error = {0};
+  scratch_make();
+  assert_int_equal(strut_directory_create(scratch_path("a/b//c/"), &error), STRUT_OK);
+  assert_int_equal(scratch_count(scratch_path("a/b/c")), 0);
+  assert_int_equal(strut_directory_create(scratch_path("a/b"), &error), STRUT_OK);
+  assert_int_equal(strut_file_write_text(scratch_path("a"), "f", "x", NULL), STRUT_OK);
+  assert_int_equal(strut_directory_create(scratch_path("a/f"), &error), STRUT_FILE_TROUBLE);
+  assert_int_equal(strut_directory_create(scratch_path("a/f/g"), &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "cannot create directory"));
+  assert_int_equal(strut_directory_create("", &error), STRUT_FILE_TROUBLE);
+  scratch_remove();
+}
+
+static void test_a_full_disk_leaves_nothing(void **unused) {
+  (void)unused;
+  strut_error error = {0};
+  const char *disk = scratch_make();
+  if (!scratch_mount_small_disk(disk, 16)) {
+    scratch_remove();
+    skip();
+  }
+  char *text = calloc(100001, 1);
+  memset(text, 'x', 100000);
+  assert_int_equal(strut_file_write_text(disk, "big", text, &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "No space left on device"));
+  assert_int_equal(scratch_count(disk), 0);
+  strut_file file = {0};
+  assert_int_equal(strut_file_open(&file, disk, "small", &error), STRUT_OK);
+  text[20000] = '\0';
+  for (int i = 0; i < 5; i++) fputs(text, file.stream);
+  error = (strut_error){0};
+  assert_int_equal(strut_file_commit(&file, &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "cannot write"));
+  assert_int_equal(scratch_count(disk), 0);
+  free(text);
+  scratch_unmount(disk);
+  scratch_remove();
+}
+
+static void test_no_memory_leaves_nothing(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status != STRUT_OK; n++) {
+    strut_fail_allocation_after(n);
+    status = strut_file_write_text(directory, "a", "text", NULL);
+    strut_fail_allocation_after(-1);
+    if (status != STRUT_OK) {
+      assert_int_equal(status, STRUT_NO_MEMORY);
+      assert_int_equal(scratch_count(directory), 0);
+    }
+  }
+  assert_true(n > 3);
+  scratch_remove();
+}
+
+static void write_results(strut_results *results, const char *directory, const char *text,
+                          bool energy) {
+  assert_int_equal(strut_results_begin(results, directory, NULL), STRUT_OK);
+  assert_int_equal(strut_file_write_text(results->stage, "summary.json", text, NULL), STRUT_OK);
+  if (energy) {
+    assert_int_equal(strut_file_write_text(results->stage, "energy.csv", text, NULL), STRUT_OK);
+  }
+}
+
+static void test_results_appear_together(void **unused) {
+  (void)unused;
+  strut_results results = {0};
+  scratch_make();
+  write_results(&results, scratch_path("out/one"), "1", true);
+  assert_false(scratch_exists(scratch_path("out/one/summary.json")));
+  assert_int_equal(strut_results_commit(&results, NULL), STRUT_OK);
+  assert_int_equal(scratch_count(scratch_path("out/one")), 2);
+  assert_content(scratch_path("out/one/energy.csv"), "1");
+
+  write_results(&results, scratch_path("out/one"), "2", false); /* a failure keeps the old ones */
+  strut_results_abandon(&results);
+  assert_int_equal(scratch_count(scratch_path("out/one")), 2);
+  assert_content(scratch_path("out/one/summary.json"), "1");
+
+  assert_int_equal(strut_file_write_text(scratch_path("out/one"), "mine", "m", NULL), STRUT_OK);
+  write_results(&results, scratch_path("out/one"), "3", false); /* no mix of two runs */
+  assert_int_equal(strut_results_commit(&results, NULL), STRUT_OK);
+  assert_content(scratch_path("out/one/summary.json"), "3");
+  assert_false(scratch_exists(scratch_path("out/one/energy.csv")));
+  assert_content(scratch_path("out/one/mine"), "m");
+  assert_int_equal(scratch_count(scratch_path("out/one")), 2);
+  scratch_remove();
+}
+
+static void test_abandoned_results_leave_no_directory(void **unused) {
+  (void)unused;
+  strut_results results = {0};
+  scratch_make();
+  write_results(&results, scratch_path("new"), "1", true);
+  strut_results_abandon(&results);
+  assert_int_equal(scratch_count(scratch_path("new")), -1);
+  strut_results_abandon(&results);
+  scratch_remove();
+}
+
+static void test_results_know_early_what_will_fail(void **unused) {
+  (void)unused;
+  strut_results results = {0};
+  strut_error error = {0};
+  scratch_make();
+  assert_int_equal(strut_directory_create(scratch_path("out/nodes.csv"), NULL), STRUT_OK);
+  assert_int_equal(strut_results_begin(&results, scratch_path("out"), &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "out/nodes.csv': Is a directory"));
+  assert_int_equal(scratch_count(scratch_path("out")), 1);
+  assert_int_equal(strut_results_begin(&results, "/proc/strut", &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "/proc/strut"));
+  assert_int_equal(strut_results_begin(&results, "/proc", &error), STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "'/proc'"));
+  scratch_remove();
+}
+
+static void test_results_without_memory(void **unused) {
+  (void)unused;
+  strut_results results = {0};
+  scratch_make();
+  strut_status status = STRUT_NO_MEMORY;
+  for (int64_t n = 0; status != STRUT_OK; n++) {
+    strut_fail_allocation_after(n);
+    status = strut_results_begin(&results, scratch_path("out"), NULL);
+    if (status == STRUT_OK) status = strut_results_commit(&results, NULL);
+    strut_fail_allocation_after(-1);
+    if (status != STRUT_OK) assert_false(scratch_exists(scratch_path("out")));
+    assert_true(n < 200);
+  }
+  scratch_remove();
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_file_appears_on_commit_only),
+      cmocka_unit_test(test_abandon_keeps_the_old_file),
+      cmocka_unit_test(test_permissions_follow_the_umask),
+      cmocka_unit_test(test_two_writers_do_not_meet),
+      cmocka_unit_test(test_messages_name_the_file_and_the_reason),
+      cmocka_unit_test(test_directories),
+      cmocka_unit_test(test_a_full_disk_leaves_nothing),
+      cmocka_unit_test(test_no_memory_leaves_nothing),
+      cmocka_unit_test(test_results_appear_together),
+      cmocka_unit_test(test_abandoned_results_leave_no_directory),
+      cmocka_unit_test(test_results_know_early_what_will_fail),
+      cmocka_unit_test(test_results_without_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

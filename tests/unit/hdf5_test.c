@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Trajectories as HDF5: read back through the library, equal bytes, full disks, silence. */
+#include <fcntl.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/hdf5.h"
+#include "tests/unit/sample.h"
+#include "tests/unit/scratch.h"
+
+static strut_status feed(const char *directory, size_t rows, strut_status run_status,
+                         const char *scene, strut_error *error) {
+  strut_sink *sink = strut_hdf5_create(directory, scene);
+  if (!sink) return STRUT_NO_MEMORY;
+  strut_status status = sample_feed(sink, rows, run_status, error);
+  strut_hdf5_free(sink);
+  return status;
+}
+
+static void assert_text_attribute(hid_t object, const char *name, const char *expected) {
+  char *text = NULL;
+  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  assert_true(attribute >= 0);
+  hid_t type = H5Aget_type(attribute);
+  assert_true(H5Tis_variable_str(type) > 0);
+  assert_true(H5Aread(attribute, type, &text) >= 0);
+  assert_string_equal(text, expected);
+  H5free_memory(text);
+  H5Tclose(type);
+  H5Aclose(attribute);
+}
+
+static void assert_unit_and_values(hid_t file, const strut_record_channel *channel, size_t rows) {
+  hid_t dataset = H5Dopen2(file, channel->name, H5P_DEFAULT);
+  assert_true(dataset >= 0);
+  assert_text_attribute(dataset, "units", channel->unit);
+  hid_t space = H5Dget_space(dataset);
+  hsize_t shape[3] = {0};
+  assert_int_equal(H5Sget_simple_extent_ndims(space), 3);
+  H5Sget_simple_extent_dims(space, shape, NULL);
+  assert_int_equal(shape[0], rows);
+  assert_int_equal(shape[1], channel->items);
+  assert_int_equal(shape[2], channel->components);
+  size_t size = channel->items * channel->components;
+  double *values = calloc(rows * size + 1, sizeof *values);
+  assert_true(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+  for (size_t row = 0; row < rows; row++) {
+    for (size_t i = 0; i < size; i++) {
+      double expected = sample_value(row, channel->offset + i);
+      assert_memory_equal(&values[row * size + i], &expected, sizeof expected);
+    }
+  }
+  free(values);
+  H5Sclose(space);
+  H5Dclose(dataset);
+}
+
+static void assert_scale(hid_t file, const char *dataset, unsigned dimension, const char *scale) {
+  char name[64] = "";
+  hid_t user = H5Dopen2(file, dataset, H5P_DEFAULT), used = H5Dopen2(file, scale, H5P_DEFAULT);
+  assert_true(user >= 0 && used >= 0);
+  assert_int_equal(H5DSis_scale(used), 1);
+  assert_int_equal(H5DSis_attached(user, used, dimension), 1);
+  assert_int_equal(H5DSget_num_scales(user, dimension), 1);
+  assert_true(H5DSget_scale_name(used, name, sizeof name) > 0);
+  assert_string_equal(name, scale);
+  H5Dclose(user);
+  H5Dclose(used);
+}
+
+static void assert_scales(hid_t file) {
+  static const char *const names[][3] = {
+      {"position", "node", "axis"},
+      {"velocity", "node", "axis"},
+      {"length", "member", NULL},
+      {"force", "member", NULL},
+      {"contact", "contact_node", "contact_component"},
+      {"energy", "system", "energy_component"},
+  };
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    assert_scale(file, names[i][0], 0, "time");
+    assert_scale(file, names[i][0], 1, names[i][1]);
+    if (names[i][2]) assert_scale(file, names[i][0], 2, names[i][2]);
+  }
+}
+
+static void assert_names(hid_t file, const char *name, const char *const *expected, size_t count) {
+  hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), type = H5Tcopy(H5T_C_S1);
+  char texts[4][64] = {{0}};
+  H5Tset_size(type, 64);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  hid_t space = H5Dget_space(dataset);
+  assert_int_equal(H5Sget_simple_extent_npoints(space), count);
+  assert_true(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) >= 0);
+  for (size_t i = 0; i < count; i++) assert_string_equal(texts[i], expected[i]);
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Dclose(dataset);
+}
+
+static void assert_file(size_t rows, const char *status, const char *scene) {
+  const strut_record_layout *layout = sample_layout();
+  hid_t file = H5Fopen(scratch_path("trajectory.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
+  assert_true(file >= 0);
+  assert_text_attribute(file, "status", status);
+  assert_text_attribute(file, "strut_version", STRUT_VERSION);
+  assert_text_attribute(file, "scene", scene);
+  for (size_t i = 0; i < layout->channel_count; i++) {
+    assert_unit_and_values(file, &layout->channels[i], rows);
+  }
+  double *time = calloc(rows + 1, sizeof *time);
+  assert_true(H5LTread_dataset_double(file, "time", time) >= 0);
+  for (size_t row = 0; row < rows; row++) {
+    double expected = sample_value(row, 0);
+    assert_memory_equal(&time[row], &expected, sizeof expected);
+  }
+  free(time);
+  assert_scales(file);
+  assert_names(file, "node", layout->channels[0].item_names, 3);
+  assert_names(file, "contact_component", layout->channels[4].component_names, 2);
+  assert_true(H5Fclose(file) >= 0);
+}
+
+static void test_every_value_comes_back(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 1500, STRUT_OK, "strut: 1\n", NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 1);
+  assert_file(1500, "completed", "strut: 1\n");
+  scratch_remove();
+}
+
+static void test_a_run_that_stopped_is_marked(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 7, STRUT_INTERRUPTED, "s", NULL), STRUT_OK);
+  assert_file(7, "interrupted", "s");
+  assert_int_equal(feed(directory, 41, STRUT_DIVERGED, "s", NULL), STRUT_OK);
+  assert_file(41, "diverged", "s");
+  assert_int_equal(feed(directory, 0, STRUT_INTERRUPTED, "s", NULL), STRUT_OK);
+  assert_file(0, "interrupted", "s");
+  scratch_remove();
+}
+
+static void test_a_long_scene_fits(void **unused) {
+  (void)unused;
+  enum { LENGTH = 3000000 };
+  const char *directory = scratch_make();
+  char *scene = calloc(LENGTH + 1, 1);
+  for (size_t i = 0; i < LENGTH; i++) scene[i] = (char)('a' + i % 23);
+  assert_int_equal(feed(directory, 3, STRUT_OK, scene, NULL), STRUT_OK);
+  assert_file(3, "completed", scene);
+  free(scene);
+  scratch_remove();
+}
+
+static void test_equal_runs_give_equal_bytes(void **unused) {
+  (void)unused;
+  size_t first_length, second_length;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 500, STRUT_OK, "scene", NULL), STRUT_OK);
+  char *first = scratch_read(scratch_path("trajectory.h5"), &first_length);
+  for (int i = 0; i < 5; i++) {
+    for (size_t size = 16; size < 20000; size += 24 + size / 4) { /* other garbage in the heap */
+      char *block = malloc(size);
+      memset(block, 0x31 * (i + 1) + (int)size, size);
+      free(block);
+    }
+    if (i == 2) sleep(1); /* another second, another time stamp if there were one */
+    assert_int_equal(feed(directory, 500, STRUT_OK, "scene", NULL), STRUT_OK);
+    char *second = scratch_read(scratch_path("trajectory.h5"), &second_length);
+    assert_int_equal(second_length, first_length);
+    assert_memory_equal(second, first, first_length);
+    free(second);
+  }
+  free(first);
+  scratch_remove();
+}
+
+static void test_rows_longer_than_a_chunk(void **unused) {
+  (void)unused;
+  enum { NODES = 50000, ROWS = 3 };
+  static const char *const axes[] = {"x", "y"};
+  const char *directory = scratch_make();
+  const char **names = calloc(NODES, sizeof *names);
+  for (size_t i = 0; i < NODES; i++) names[i] = "n";
+  strut_record_channel channel = {
+      STRUT_CHANNEL_POSITION, "position", "m", NODES, 2, 1, names, axes};
+  strut_record_layout layout = {1 + 2 * NODES, 1, &channel, ROWS};
+  double *rows = sample_rows(&layout, 0, ROWS);
+  strut_sink *sink = strut_hdf5_create(directory, "");
+  assert_int_equal(sink->begin(sink->context, &layout, NULL), STRUT_OK);
+  assert_int_equal(sink->rows(sink->context, rows, ROWS, NULL), STRUT_OK);
+  assert_int_equal(sink->end(sink->context, STRUT_OK, NULL), STRUT_OK);
+  strut_hdf5_free(sink);
+  hid_t file = H5Fopen(scratch_path("trajectory.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
+  assert_unit_and_values(file, &channel, ROWS);
+  H5Fclose(file);
+  free(rows);
+  free(names);
+  scratch_remove();
+}
+
+static void test_trouble_elsewhere_removes_the_file(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  assert_int_equal(feed(directory, 7, STRUT_FILE_TROUBLE, "", NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 0);
+  strut_sink *sink = strut_hdf5_create(directory, ""); /* begun, never ended */
+  assert_int_equal(sink->begin(sink->context, sample_layout(), NULL), STRUT_OK);
+  strut_hdf5_free(sink);
+  assert_int_equal(scratch_count(directory), 0);
+  scratch_remove();
+}
+
+static herr_t note_error(hid_t stack, void *data) {
+  (void)stack, (void)data;
+  return 0;
+}
+
+static void test_the_host_keeps_its_error_handler(void **unused) {
+  (void)unused;
+  H5E_auto2_t before = NULL, after = NULL;
+  void *before_data = NULL, *after_data = NULL;
+  int mine = 0;
+  const char *directory = scratch_make();
+  H5Eget_auto2(H5E_DEFAULT, &before, &before_data);
+  H5Eset_auto2(H5E_DEFAULT, note_error, &mine);
+  assert_int_equal(feed(directory, 7, STRUT_OK, "", NULL), STRUT_OK);
+  H5Eget_auto2(H5E_DEFAULT, &after, &after_data);
+  H5Eset_auto2(H5E_DEFAULT, before, before_data);
+  assert_true(after == note_error && after_data == &mine);
+  scratch_remove();
+}
+
+/* In a process of its own, to its very end: HDF5 may complain when the program exits. */
+static void feed_in_child(const char *disk, size_t rows, const char *errors) {
+  int descriptor = open(errors, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  strut_error error = {0};
+  dup2(descriptor, STDERR_FILENO);
+  dup2(descriptor, STDOUT_FILENO);
+  strut_status status = feed(disk, rows, STRUT_OK, "scene", &error);
+  if (status == STRUT_OK) exit(0);
+  bool right = status == STRUT_FILE_TROUBLE && strstr(error.message, "No space left on device");
+  if (!right) fprintf(stderr, "%d %s\n", (int)status, error.message);
+  exit(right ? 4 : 1);
+}
+
+static void test_a_full_disk_is_an_error_and_silent(void **unused) {
+  (void)unused;
+  int failures = 0, successes = 0, result = 0;
+  scratch_make();
+  const char *disk = scratch_path("disk"), *errors = scratch_path("errors");
+  assert_int_equal(strut_directory_create(disk, NULL), STRUT_OK);
+  for (int kilobytes = 4; kilobytes <= 1024; kilobytes += kilobytes < 64 ? 4 : kilobytes / 4) {
+    size_t length = 0;
+    if (!scratch_mount_small_disk(disk, kilobytes)) {
+      scratch_remove();
+      skip();
+    }
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) feed_in_child(disk, 2000, errors);
+    waitpid(child, &result, 0);
+    int left = scratch_count(disk);
+    scratch_unmount(disk);
+    char *printed = scratch_read(errors, &length);
+    assert_string_equal(printed, "");
+    free(printed);
+    assert_true(WIFEXITED(result));
+    if (WEXITSTATUS(result) == 0) {
+      successes++;
+      assert_int_equal(left, 1);
+    } else {
+      failures++;
+      assert_int_equal(WEXITSTATUS(result), 4);
+      assert_int_equal(left, 0);
+    }
+  }
+  assert_true(failures > 5);
+  assert_true(successes > 0);
+  scratch_remove();
+}
+
+static void test_no_memory(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status != STRUT_OK; n++) {
+    strut_fail_allocation_after(n);
+    status = feed(directory, 5, STRUT_OK, "scene", NULL);
+    strut_fail_allocation_after(-1);
+    if (status == STRUT_OK) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_int_equal(scratch_count(directory), 0);
+  }
+  assert_true(n > 15);
+  scratch_remove();
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_value_comes_back),
+      cmocka_unit_test(test_a_run_that_stopped_is_marked),
+      cmocka_unit_test(test_a_long_scene_fits),
+      cmocka_unit_test(test_equal_runs_give_equal_bytes),
+      cmocka_unit_test(test_rows_longer_than_a_chunk),
+      cmocka_unit_test(test_trouble_elsewhere_removes_the_file),
+      cmocka_unit_test(test_the_host_keeps_its_error_handler),
+      cmocka_unit_test(test_a_full_disk_is_an_error_and_silent),
+      cmocka_unit_test(test_no_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

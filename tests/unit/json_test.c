@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A run's summary as JSON, read back with cJSON bit by bit, and as a table for people. */
+#include <locale.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <cjson/cJSON.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/json.h"
+#include "engine/output/quantity_text.h"
+
+static strut_node node = {.name = "n1"};
+static strut_parameter parameters[] = {
+    {"frequency", "10 Hz", 10.0}, {"amplitude", "0.1 mm", 1e-4}, {"start", "I", NAN}};
+static const char *names[] = {"n1", "a \"b\"\\\n"};
+static double positions[] = {0.1 + 0.2, -1e-300, 5e-324, 1.7976931348623157e308};
+static strut_contact_summary contacts[] = {{"n1", 1.0 / 3.0, 1.1e-3}};
+
+static strut_scene make_scene(void) {
+  strut_scene scene = {.name = "Cr\xc3\xa4wler", .description = "", .source = ""};
+  scene.nodes = &node;
+  scene.node_count = 1;
+  scene.parameters = parameters;
+  scene.parameter_count = 3;
+  scene.experiment.measure_node = -1;
+  return scene;
+}
+
+static strut_summary make_summary(void) {
+  return (strut_summary){.status = STRUT_OK,
+                         .velocity = 9.7812345678901234e-3,
+                         .velocity_spread = NAN,
+                         .window_start = 100.0,
+                         .duration = 110.0,
+                         .settle_time = 0.7,
+                         .steps = INT64_C(9007199254740993), /* not a double */
+                         .force_evaluations = 4400000,
+                         .step = 1e-4,
+                         .step_limit = INFINITY,
+                         .wall_time = 0.25,
+                         .node_count = 2,
+                         .contact_count = 1,
+                         .node_names = names,
+                         .positions = positions,
+                         .contacts = contacts,
+                         .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, -1e-17, 13}};
+}
+
+static const cJSON *at(const cJSON *from, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(from, key);
+  if (!item) fail_msg("no '%s'", key);
+  return item;
+}
+
+static void assert_number(const cJSON *from, const char *key, double expected) {
+  const cJSON *item = at(from, key);
+  assert_true(cJSON_IsNumber(item));
+  assert_memory_equal(&item->valuedouble, &expected, sizeof expected);
+}
+
+static void assert_text(const cJSON *from, const char *key, const char *expected) {
+  assert_string_equal(cJSON_GetStringValue(at(from, key)), expected);
+}
+
+static void assert_energy(const cJSON *energy, const strut_energy *e) {
+  const struct {
+    const char *key;
+    double value;
+  } fields[] = {
+      {"kinetic", e->kinetic},
+      {"elastic", e->elastic},
+      {"gravity", e->gravity},
+      {"contact", e->contact},
+      {"drive_work", e->drive_work},
+      {"load_work", e->load_work},
+      {"belt_work", e->belt_work},
+      {"dissipated_members", e->dissipated_members},
+      {"dissipated_contact", e->dissipated_contact},
+      {"dissipated_friction", e->dissipated_friction},
+      {"initial", e->initial},
+      {"residual", e->residual},
+      {"moved", e->moved},
+  };
+  for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+    assert_number(energy, fields[i].key, fields[i].value);
+  }
+  assert_int_equal(cJSON_GetArraySize(energy), sizeof fields / sizeof fields[0]);
+}
+
+static void test_every_field(void **unused) {
+  (void)unused;
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  char *text = strut_summary_json(&summary, &scene, true);
+  assert_non_null(strstr(text, "\"steps\":\t9007199254740993,")); /* all digits */
+  cJSON *json = cJSON_Parse(text);
+  assert_non_null(json);
+  assert_text(json, "name", scene.name);
+  assert_text(json, "strut_version", STRUT_VERSION);
+  assert_number(json, "language", 1.0);
+  assert_text(json, "status", "completed");
+  assert_true(cJSON_IsNull(at(json, "reason")));
+  assert_number(json, "velocity", summary.velocity);
+  assert_true(cJSON_IsNull(at(json, "velocity_spread")));
+  assert_number(json, "window_start", 100.0);
+  assert_number(json, "duration", 110.0);
+  assert_number(json, "settle_time", 0.7);
+  assert_number(json, "force_evaluations", 4400000.0);
+  assert_number(json, "step", 1e-4);
+  assert_true(cJSON_IsNull(at(json, "step_limit")));
+  assert_number(json, "wall_time", 0.25);
+  assert_number(at(json, "parameters"), "amplitude", 1e-4);
+  assert_text(at(json, "parameters"), "start", "I");
+  for (int i = 0; i < 2; i++) {
+    const cJSON *position = at(at(at(json, "nodes"), names[i]), "position");
+    assert_int_equal(cJSON_GetArraySize(position), 2);
+    assert_memory_equal(&cJSON_GetArrayItem(position, 0)->valuedouble, &positions[2 * i], 8);
+    assert_memory_equal(&cJSON_GetArrayItem(position, 1)->valuedouble, &positions[2 * i + 1], 8);
+  }
+  assert_number(at(at(json, "contacts"), "n1"), "duty", 1.0 / 3.0);
+  assert_number(at(at(json, "contacts"), "n1"), "max_height", 1.1e-3);
+  assert_energy(at(json, "energy"), &summary.energy);
+  cJSON_Delete(json);
+  strut_release(text);
+}
+
+static void test_files_know_no_wall_time(void **unused) {
+  (void)unused;
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  char *first = strut_summary_json(&summary, &scene, false);
+  summary.wall_time = 17.0;
+  char *second = strut_summary_json(&summary, &scene, false);
+  assert_null(strstr(first, "wall_time"));
+  assert_string_equal(first, second);
+  strut_release(first);
+  strut_release(second);
+}
+
+static void test_a_run_that_stopped_says_why(void **unused) {
+  (void)unused;
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  summary.status = STRUT_DIVERGED;
+  strcpy(summary.reason, "node 'n1' left at t = 0.5 s");
+  summary.velocity = -INFINITY;
+  char *text = strut_summary_json(&summary, &scene, false);
+  cJSON *json = cJSON_Parse(text);
+  assert_text(json, "status", "diverged");
+  assert_text(json, "reason", "node 'n1' left at t = 0.5 s");
+  assert_true(cJSON_IsNull(at(json, "velocity")));
+  cJSON_Delete(json);
+  strut_release(text);
+  summary.status = STRUT_INTERRUPTED;
+  text = strut_summary_json(&summary, &scene, false);
+  assert_non_null(strstr(text, "\"interrupted\""));
+  strut_release(text);
+}
+
+/* cJSON's memory fails as ours does: no leak, no half text. */
+static void *counted_allocate(size_t size) { return strut_allocate(size, 1); }
+
+static void test_no_memory(void **unused) {
+  (void)unused;
+  cJSON_Hooks hooks = {counted_allocate, strut_release};
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  cJSON_InitHooks(&hooks);
+  char *expected = strut_summary_json(&summary, &scene, true), *text = NULL;
+  int64_t n = 0;
+  for (; !text; n++) {
+    strut_fail_allocation_after(n);
+    text = strut_summary_json(&summary, &scene, true);
+    strut_fail_allocation_after(-1);
+  }
+  assert_string_equal(text, expected);
+  assert_true(n > 100);
+  strut_release(text);
+  for (text = NULL, n = 0; !text; n++) {
+    strut_fail_allocation_after(n);
+    text = strut_summary_table(&summary, &scene);
+    strut_fail_allocation_after(-1);
+  }
+  assert_true(n > 1);
+  strut_release(text);
+  strut_release(expected);
+  cJSON_InitHooks(NULL);
+}
+
+static void test_the_table(void **unused) {
+  (void)unused;
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  summary.steps = 1100000;
+  summary.step_limit = 5.123456e-4;
+  summary.velocity_spread = 2e-6;
+  char *text = strut_summary_table(&summary, &scene);
+  static const char *const expected[] = {
+      "Cr\xc3\xa4wler: completed\n",
+      "  velocity    9.781 mm/s of the centre of mass, spread 2 um/s, from 100 s on\n",
+      "  duration    110 s, 1100000 steps, after 700 ms of settling\n",
+      "  step        100 us, stable up to 512.3 us\n",
+      "  computed    4400000 forces in 250 ms, 227.3 ns per step\n",
+      "  n1                       300 mm",
+      "  n1                       33.3 %         1.1 mm\n",
+      "  kinetic                142.9 mJ\n",
+      "  lost to friction           10 J\n",
+  };
+  for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+    if (!strstr(text, expected[i])) fail_msg("'%s' is not in:\n%s", expected[i], text);
+  }
+  strut_release(text);
+}
+
+static void test_a_long_table_is_cut(void **unused) {
+  (void)unused;
+  enum { NODES = 5000 };
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  const char **many = calloc(NODES, sizeof *many);
+  double *places = calloc(2 * NODES, sizeof *places);
+  for (size_t i = 0; i < NODES; i++) many[i] = "n";
+  summary.node_names = many;
+  summary.positions = places;
+  summary.node_count = NODES;
+  char *text = strut_summary_table(&summary, &scene);
+  assert_non_null(strstr(text, "  ... and 4990 more\n"));
+  int lines = 0;
+  for (const char *c = text; *c; c++) lines += *c == '\n';
+  assert_in_range(lines, 20, 45);
+  strut_release(text);
+  free(many);
+  free(places);
+}
+
+static void test_quantities(void **unused) {
+  (void)unused;
+  static const struct {
+    double value;
+    int digits;
+    const char *unit, *text;
+  } cases[] = {
+      {0.0, 4, "m", "0 m"},
+      {1.0, 4, "m", "1 m"},
+      {0.99996, 4, "m", "1 m"},
+      {0.9999, 4, "m", "999.9 mm"},
+      {1000.0, 4, "N/m", "1 kN/m"},
+      {999.96, 4, "N/m", "1 kN/m"},
+      {-9.78123e-3, 3, "m/s", "-9.78 mm/s"},
+      {1e-6, 4, "s", "1 us"},
+      {1e-3, 4, "s", "1 ms"},
+      {123456789.0, 4, "N/m", "123.5 MN/m"},
+      {3e-20, 4, "J", "3e-05 fJ"},
+      {5e12, 4, "J", "5000 GJ"},
+      {NAN, 4, "m", "none"},
+      {INFINITY, 4, "s", "no limit"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[STRUT_QUANTITY_TEXT];
+    assert_string_equal(strut_quantity_text(cases[i].value, cases[i].digits, cases[i].unit, text),
+                        cases[i].text);
+  }
+}
+
+/* A comma as decimal point must not come through; where no such locale is installed, skip. */
+static void test_the_locale_does_not_matter(void **unused) {
+  (void)unused;
+  strut_scene scene = make_scene();
+  strut_summary summary = make_summary();
+  char *json = strut_summary_json(&summary, &scene, true);
+  char *table = strut_summary_table(&summary, &scene);
+  if (!setlocale(LC_ALL, "de_DE.UTF-8") && !setlocale(LC_ALL, "fr_FR.UTF-8")) {
+    strut_release(json);
+    strut_release(table);
+    skip();
+  }
+  char *json_there = strut_summary_json(&summary, &scene, true);
+  char *table_there = strut_summary_table(&summary, &scene);
+  setlocale(LC_ALL, "C");
+  assert_string_equal(json_there, json);
+  assert_string_equal(table_there, table);
+  strut_release(json);
+  strut_release(table);
+  strut_release(json_there);
+  strut_release(table_there);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_field),
+      cmocka_unit_test(test_files_know_no_wall_time),
+      cmocka_unit_test(test_a_run_that_stopped_says_why),
+      cmocka_unit_test(test_no_memory),
+      cmocka_unit_test(test_the_table),
+      cmocka_unit_test(test_a_long_table_is_cut),
+      cmocka_unit_test(test_quantities),
+      cmocka_unit_test(test_the_locale_does_not_matter),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/unit/scratch.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char directory[64];
+
+const char *scratch_make(void) {
+  strcpy(directory, "/tmp/strut-test-XXXXXX");
+  if (!mkdtemp(directory)) abort();
+  return directory;
+}
+
+void scratch_remove(void) {
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf '%s'", directory);
+  if (system(command) != 0) abort();
+}
+
+const char *scratch_path(const char *name) {
+  static char paths[4][512];
+  static int next;
+  char *path = paths[next++ % 4];
+  snprintf(path, sizeof paths[0], "%s/%s", directory, name);
+  return path;
+}
+
+int scratch_count(const char *path) {
+  DIR *open = opendir(path);
+  if (!open) return -1;
+  int count = -2; /* . and .. */
+  while (readdir(open)) count++;
+  closedir(open);
+  return count;
+}
+
+bool scratch_exists(const char *path) { return access(path, F_OK) == 0; }
+
+char *scratch_read(const char *path, size_t *length) {
+  struct stat found;
+  FILE *stream = fopen(path, "rb");
+  if (!stream) return NULL;
+  if (fstat(fileno(stream), &found) != 0) abort();
+  char *text = calloc((size_t)found.st_size + 1, 1);
+  *length = fread(text, 1, (size_t)found.st_size, stream);
+  fclose(stream);
+  return text;
+}
+
+bool scratch_mount_small_disk(const char *path, int kilobytes) {
+  char command[700];
+  if (geteuid() != 0) return false;
+  snprintf(command, sizeof command, "mount -t tmpfs -o size=%dk none '%s' 2>/dev/null", kilobytes,
+           path);
+  return system(command) == 0;
+}
+
+void scratch_unmount(const char *path) {
+  char command[700];
+  snprintf(command, sizeof command, "umount '%s'", path);
+  if (system(command) != 0) abort();
+}
