@@ -161,17 +161,22 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
                         strut_owner owner) {
   const strut_slot *slot = strut_slot_of(fields, group_key);
   strut_group *groups[STRUT_MOST_GROUPS];
-  if (slot->state == STRUT_BROKEN) strut_excuse(fields);
+  if (slot->state == STRUT_BROKEN) {
+    reader->groups_unknown = true;
+    strut_excuse(fields);
+  }
   if (slot->state != STRUT_GIVEN) return;
   bool fine = check_names(reader, slot->value, strut_key_at(group_key)->name, owner);
   size_t count = strut_groups_named(reader, slot->value, groups);
   while (count > 0) apply_group(reader, fields, groups[--count], owner);
   if (fine) return;
+  reader->groups_unknown = true;
   fields->broken = true; /* what the unknown group would have given is not missing */
   strut_excuse(fields);
 }
 
 void strut_report_unused_groups(strut_reader *reader) {
+  if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used) continue;

@@ -8,8 +8,6 @@
 
 enum { DEEPEST = 200 };
 
-static const strut_place NOWHERE = {0, 0, 0}; /* the file as a whole */
-
 const char *strut_parameter_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   return i < reader->parameter_count ? reader->parameters[i].name : NULL;
@@ -21,8 +19,15 @@ strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *na
 }
 
 /* The place of the expression that is being evaluated, for errors that its text does not show. */
-static strut_place asking_place(const strut_reader *reader) {
-  return reader->asking_set || !reader->asking ? NOWHERE : reader->asking->place;
+static strut_place asking_place(strut_reader *reader) {
+  if (reader->asking_set) return strut_parameter_find(reader, reader->asking_set)->key->place;
+  return reader->asking->place;
+}
+
+/* Where to report about parameters as a whole. */
+static strut_place section_place(strut_reader *reader) {
+  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
+  return slot->key ? slot->key->place : strut_root_place(reader);
 }
 
 /* Reports the circle that leads back to p, which is being read. */
@@ -43,7 +48,8 @@ static bool evaluate(strut_reader *reader, strut_parameter_state *p, const char 
   bool fine = strut_expression_evaluate(set, &scope, quantity, &error);
   reader->asking_set = before;
   if (!fine && error.message[0])
-    strut_say(reader, NOWHERE, "--set %s=%s: %s", p->name, strut_shown(reader, set), error.message);
+    strut_say(reader, p->key->place, "--set %s=%s: %s", p->name, strut_shown(reader, set),
+              error.message);
   return fine;
 }
 
@@ -56,7 +62,7 @@ static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_qu
     p->quantity.dimension = declared->dimension;
   }
   if (strut_dimension_equal(p->quantity.dimension, declared->dimension)) return true;
-  strut_say(reader, NOWHERE, "--set %s=%s: expected %s, found %s", p->name,
+  strut_say(reader, p->key->place, "--set %s=%s: expected %s, found %s", p->name,
             strut_shown(reader, p->override),
             strut_expected_number(declared->dimension, expected, sizeof expected),
             strut_dimension_name(p->quantity.dimension, found, sizeof found));
@@ -146,12 +152,12 @@ static void declare(strut_reader *reader, const strut_tree *key, strut_parameter
 static void override(strut_reader *reader, const strut_override *set) {
   strut_parameter_state *p = strut_parameter_find(reader, set->name);
   if (!p) {
-    strut_say(reader, NOWHERE, "--set %s=%s: the scene has no parameter '%s'%s",
+    strut_say(reader, section_place(reader), "--set %s=%s: the scene has no parameter '%s'%s",
               strut_shown(reader, set->name), strut_shown(reader, set->value),
               strut_shown(reader, set->name),
               strut_hint(reader, set->name, strut_parameter_name, reader, reader->parameter_count));
   } else if (p->override) {
-    strut_say(reader, NOWHERE, "--set %s is given twice", p->name);
+    strut_say(reader, p->key->place, "--set %s is given twice", p->name);
   } else {
     p->override = set->value;
   }

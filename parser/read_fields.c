@@ -171,6 +171,7 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
       return strut_read_number(reader, value, key->name, owner, dimension, key->range,
                                &slot->number[0]);
     case STRUT_TYPE_PAIR:
+      if (key->room == STRUT_ROOM_SCENE) return true; /* its parameters are not read yet */
       return strut_read_pair(reader, value, key->name, owner, dimension, slot->number);
     case STRUT_TYPE_WORD:
       return read_word(reader, key, value, owner, &slot->word);
@@ -222,6 +223,19 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
   if (slot->state == STRUT_BROKEN) fields->broken = true;
 }
 
+/* Of friction: `mu` says both coefficients. */
+static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
+  const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
+  const strut_slot *rival = statics->key ? statics : kinetics;
+  if (!mu->key || !rival->key) return;
+  strut_say(reader, mu->key->place,
+            "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
+            strut_owner_text(reader, owner), rival->key->text);
+  fields->broken = true;
+}
+
 void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *map,
                        strut_owner owner, strut_fields *fields) {
   *fields = (strut_fields){.room = room, .map = map};
@@ -234,6 +248,7 @@ void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *
   }
   for (const strut_tree *k = map->first; k; k = k->next->next)
     read_pair_of_map(reader, fields, k, owner);
+  if (room == STRUT_ROOM_FRICTION) check_rivals(reader, fields, owner);
 }
 
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,

@@ -65,6 +65,11 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
   return kept(reader, strut_arena_format(&reader->scratch, "; did you mean '%s'?", near));
 }
 
+strut_place strut_root_place(const strut_reader *reader) {
+  strut_place place = reader->document.root->place;
+  return (strut_place){place.line, place.column, 1};
+}
+
 bool strut_is_null(const strut_tree *value) {
   static const char *const nulls[] = {"", "~", "null", "Null", "NULL"};
   if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;

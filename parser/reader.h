@@ -117,6 +117,7 @@ typedef struct strut_reader {
   size_t suggestions;       /* names compared so far, to bound the effort */
   bool ends_unknown;        /* some member or load could not be tied to its nodes */
   bool masses_unknown;      /* some mass could not be read */
+  bool groups_unknown;      /* somebody's groups could not be read */
   bool failed, out_of_memory;
 } strut_reader;
 
@@ -134,6 +135,8 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
                        const void *context, size_t count);
 /** "a list", "a mapping", "nothing", "'text'": what a value is instead; lives in scratch. */
 const char *strut_found(strut_reader *reader, const strut_tree *value);
+/** The beginning of the file, for what is about all of it. */
+strut_place strut_root_place(const strut_reader *reader);
 /** True for a plain empty scalar, ~ and null. */
 bool strut_is_null(const strut_tree *value);
 /** Is it a scalar that is not null? If not, that is reported. */

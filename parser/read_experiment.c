@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Configurations and the initial state; solver, run and output. See reader.h. */
+#include <string.h>
+
+#include "parser/reader.h"
+
+static void take_start(strut_reader *reader, int32_t node, const double pair[2],
+                       const strut_tree *value) {
+  (void)value;
+  memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
+}
+
+static void take_velocity(strut_reader *reader, int32_t node, const double pair[2],
+                          const strut_tree *value) {
+  (void)value;
+  memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
+}
+
+static const char *configuration_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->configuration_count ? reader->configurations[i].key->text : NULL;
+}
+
+/* Which configuration the scene starts from; -1: none. */
+static int32_t find_configuration(strut_reader *reader) {
+  const strut_slot *slot = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_CONFIGURATION);
+  strut_owner owner = {"the initial state", NULL};
+  if (slot->state != STRUT_GIVEN) return -1;
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
+  const strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
+  int32_t direct = strut_name_map_find(&reader->configuration_names, slot->value->text);
+  if (!p || !p->text)
+    return strut_read_reference(reader, slot->value, "configuration", owner, "configuration",
+                                &reader->configuration_names, configuration_name,
+                                reader->configuration_count);
+  if (direct >= 0) {
+    strut_say(reader, slot->value->place,
+              "'%s' is both a configuration and a text parameter; rename one of them", p->name);
+    return -1;
+  }
+  const char *text = p->override ? p->override : p->value->text;
+  int32_t index = strut_name_map_find(&reader->configuration_names, text);
+  strut_place place = p->override ? p->key->place : p->value->place;
+  if (index < 0)
+    strut_say(reader, place, "unknown configuration '%s' in parameter '%s'%s",
+              strut_shown(reader, text), p->name,
+              strut_hint(reader, text, configuration_name, reader, reader->configuration_count));
+  return index;
+}
+
+static void read_configurations(strut_reader *reader) {
+  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_CONFIGURATIONS);
+  if (!map) return;
+  reader->configurations =
+      strut_take(reader, &reader->scratch, map->count, sizeof *reader->configurations);
+  for (const strut_tree *key = map->first; key && reader->configurations; key = key->next->next) {
+    strut_owner owner = {"configuration", key->text};
+    reader->configurations[reader->configuration_count] = (strut_source){key, key->next, false};
+    strut_add_name(reader, &reader->configuration_names, key->text, reader->configuration_count++);
+    strut_read_name(reader, key, "configuration");
+    if (key->next->kind == STRUT_TREE_MAP) {
+      strut_read_node_pairs(reader, key->next, "configurations", owner, STRUT_DIM_LENGTH, NULL);
+      continue;
+    }
+    strut_say(reader, key->next->place,
+              "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
+              strut_owner_text(reader, owner), strut_found(reader, key->next));
+  }
+}
+
+static void read_settle(strut_reader *reader, const strut_slot *slot) {
+  strut_settle *settle = &reader->scene->settle;
+  strut_owner owner = {"settle", NULL};
+  settle->wanted = true;
+  if (slot->value->kind == STRUT_TREE_SCALAR) {
+    settle->wanted = strcmp(slot->value->text, "true") == 0;
+    if (!slot->value->quoted && (settle->wanted || strcmp(slot->value->text, "false") == 0)) return;
+    strut_say(reader, slot->value->place,
+              "expected true, or a mapping such as {limit: 100 s}, for 'settle' of the initial "
+              "state, found %s",
+              strut_found(reader, slot->value));
+    return;
+  }
+  strut_read_fields(reader, STRUT_ROOM_SETTLE, slot->value, owner, &reader->settle);
+  settle->speed = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_SPEED, settle->speed);
+  settle->acceleration =
+      strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
+  settle->limit = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_LIMIT, settle->limit);
+}
+
+/* Positions and velocities: the general first, then what is said of single nodes. */
+static void read_state(strut_reader *reader, int32_t configuration) {
+  strut_scene *scene = reader->scene;
+  strut_owner owner = {"the initial state", NULL};
+  const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
+  const strut_slot *velocities = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
+  const strut_slot *velocity = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITY);
+  bool told = reader->failed; /* the configuration has been read once already */
+  if (configuration >= 0 && !told)
+    strut_read_node_pairs(reader, reader->configurations[configuration].value, "configurations",
+                          owner, STRUT_DIM_LENGTH, take_start);
+  if (positions->state == STRUT_GIVEN)
+    strut_read_node_pairs(reader, positions->value, "positions", owner, STRUT_DIM_LENGTH,
+                          take_start);
+  if (velocity->state == STRUT_GIVEN)
+    for (size_t i = 0; i < scene->node_count; i++)
+      for (int c = 0; c < 2; c++)
+        scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
+  if (velocities->state == STRUT_GIVEN)
+    strut_read_node_pairs(reader, velocities->value, "velocities", owner, STRUT_DIM_VELOCITY,
+                          take_velocity);
+}
+
+void strut_read_initial(strut_reader *reader) {
+  read_configurations(reader);
+  if (!strut_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
+                     &reader->initial))
+    return;
+  read_state(reader, find_configuration(reader));
+  const strut_slot *settle = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE);
+  if (settle->state == STRUT_GIVEN) read_settle(reader, settle);
+}
+
+/* What `of` names: an actuator, a load or a signal. */
+static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
+  const strut_scene *scene = reader->scene;
+  int32_t a = strut_name_map_find(&reader->actuator_names, value->text);
+  int32_t l = strut_name_map_find(&reader->load_names, value->text);
+  int32_t s = strut_name_map_find(&reader->signal_names, value->text);
+  int32_t found[3], count = 0;
+  if (a >= 0) found[count++] = scene->actuators[a].signal;
+  if (l >= 0 && (scene->loads[l].signal >= 0 || reader->load_source[l].broken || a < 0))
+    found[count++] = scene->loads[l].signal;
+  if (s >= 0) found[count++] = reader->named[s].index;
+  *broken = true;
+  if (!count) {
+    const int sections[] = {STRUT_KEY_SCENE_ACTUATORS, STRUT_KEY_SCENE_LOADS,
+                            STRUT_KEY_SCENE_SIGNALS};
+    for (int i = 0; i < 3; i++)
+      if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
+    strut_say(reader, value->place, "unknown actuator, load or signal '%s' in 'of' of the run",
+              strut_shown(reader, value->text));
+    return -1;
+  }
+  for (int32_t i = 1; i < count; i++)
+    if (found[i] != found[0] && found[i] >= 0 && found[0] >= 0) {
+      strut_say(reader, value->place,
+                "'%s' names several things with different signals; rename one of them",
+                strut_shown(reader, value->text));
+      return -1;
+    }
+  if (found[0] < 0 && l >= 0 && a < 0 && !reader->load_source[l].broken) {
+    strut_say(reader, value->place, "load '%s' has no signal whose periods could be counted",
+              strut_shown(reader, value->text));
+    return -1;
+  }
+  *broken = found[0] < 0;
+  return found[0];
+}
+
+static void read_of(strut_reader *reader) {
+  strut_experiment *e = &reader->scene->experiment;
+  const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
+  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
+  bool broken = false;
+  if (of->state == STRUT_GIVEN && periods->state == STRUT_ABSENT) {
+    strut_say(reader, of->key->place, "the run gives 'of' without 'periods'");
+    reader->run.broken = true;
+  } else if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
+    strut_say(reader, top->key->place,
+              "the run lacks 'of', expected the actuator, load or signal whose periods count");
+    reader->run.broken = true;
+  } else if (of->state == STRUT_GIVEN) {
+    e->period_signal = find_signal_of(reader, of->value, &broken);
+    e->period_of =
+        strut_arena_text(&reader->scene->arena, of->value->text, strlen(of->value->text));
+    if (!e->period_of) reader->out_of_memory = true;
+    if (broken) reader->run.broken = true;
+  }
+}
+
+/* A window: in periods where the run is, else in seconds; skipped where that is unknown. */
+static void read_last(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+                      double *last) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  const strut_slot *duration = strut_slot_of(&reader->run, STRUT_KEY_RUN_DURATION);
+  if (slot->state != STRUT_GIVEN) return;
+  if (!periods->key && !duration->key) {
+    fields->broken = true;
+    if (reader->purpose == STRUT_FOR_STATICS) /* else what is missing is about to be said */
+      strut_say(reader, slot->key->place, "'last' of %s needs a run with a duration or periods",
+                owner.kind);
+    return;
+  }
+  strut_dimension dimension = periods->key ? STRUT_DIM_NONE : STRUT_DIM_TIME;
+  if (!strut_read_number(reader, slot->value, "last", owner, dimension, STRUT_RANGE_ABOVE_ZERO,
+                         last))
+    fields->broken = true;
+}
+
+static void read_run(strut_reader *reader) {
+  strut_experiment *e = &reader->scene->experiment;
+  strut_owner owner = {"the measuring window", NULL};
+  reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
+  if (!strut_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run)) return;
+  read_of(reader);
+  e->duration = strut_number_or(&reader->run, STRUT_KEY_RUN_DURATION, 0.0);
+  e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
+  const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
+  if (measure->state == STRUT_GIVEN) {
+    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value, (strut_owner){"measure", NULL},
+                      &reader->measure);
+    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
+    const strut_slot *node = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_NODE);
+    bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+    if (node->state == STRUT_GIVEN && known)
+      e->measure_node =
+          strut_read_reference(reader, node->value, "node", (strut_owner){"measure", NULL}, "node",
+                               &reader->node_names, strut_node_name, reader->scene->node_count);
+  }
+  if (reader->measure.broken) reader->run.broken = true;
+  if (reader->run.broken) e->duration = e->periods = 0.0;
+}
+
+void strut_read_experiment(strut_reader *reader) {
+  strut_experiment *e = &reader->scene->experiment;
+  read_run(reader);
+  if (strut_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
+                    &reader->solver))
+    e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
+  if (!strut_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
+                     &reader->output))
+    return;
+  e->output_every = strut_number_or(&reader->output, STRUT_KEY_OUTPUT_EVERY, 0.0);
+  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, (strut_owner){"the output", NULL},
+            &e->output_last);
+  const strut_slot *channels = strut_slot_of(&reader->output, STRUT_KEY_OUTPUT_CHANNELS);
+  if (channels->state == STRUT_GIVEN) e->channels = (unsigned)channels->word;
+}
