@@ -46,11 +46,11 @@ static void pendulum(void **unused) {
     model_run_file(&run, "basics/pendulum", set_to(stiffness[i]));
     const double *tip = model_position(&run, "tip");
     error[i] = hypot(tip[0], tip[1] + 1);
-    assert_relative(run.summary.velocity, -4 * 1.0 / period, 1e-4);
+    assert_relative(run.summary.velocity, -4 * 1.0 / period, 2e-4);
     assert_relative(run.summary.energy.kinetic, 0.5 * G, 1e-4);
     model_run_free(&run);
   }
-  assert_true(error[0] < 1e-3); /* the rigid rod's answer, to the bar's own give, ... */
+  assert_true(error[0] < 2e-4); /* the rigid rod's answer, to the bar's own give, ... */
   assert_within(error[0] / error[1], 7, 13); /* ... which falls as 1 / stiffness */
 }
 
@@ -63,7 +63,7 @@ static void spinning_bar(void **unused) {
   const double *a = model_position(&run, "a"), *b = model_position(&run, "b");
   assert_near(0.5 * (a[0] + b[0]), speed * time, 1e-11);
   assert_near(0.5 * (a[1] + b[1]), -0.5 * G * time * time, 1e-10);
-  assert_relative(hypot(b[0] - a[0], b[1] - a[1]), length, 1e-9);
+  assert_relative(hypot(b[0] - a[0], b[1] - a[1]), length, 1e-10);
   assert_near(atan2(b[1] - a[1], b[0] - a[0]), 0, 1e-8); /* whole turns */
   assert_relative(run.summary.velocity, speed, 1e-12);
   model_run_free(&run);
@@ -217,7 +217,7 @@ static void belt(void **unused) {
     assert_near(high, middle + reach, 0.02 * reach);
     model_run_free(&run);
   }
-  assert_near(error[0], 0, 3e-3);
+  assert_near(error[0], 0, 2e-4);
   assert_true(fabs(error[1]) < fabs(error[0]) / 4);
 }
 
