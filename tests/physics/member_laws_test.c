@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Members at the edges of their law: of no length, slack, driven slack. */
+#include <math.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/oscillation.h"
+
+static const double STEP = 1e-3;
+
+/* A mass on a spring of no rest length: an isotropic oscillator, each coordinate by itself. */
+static void orbit(double x, double y, double vx, double vy) {
+  const double k = 50, mass = 2, omega = sqrt(k / mass);
+  const int64_t count = 10000;
+  strut_scene scene;
+  motion m;
+  double re, im, size = hypot(x, y) + hypot(vx, vy) / omega;
+  strut_scene_init(&scene);
+  int32_t pivot = build_support(&scene, 0.3, -0.2);
+  int32_t body = build_mass(&scene, 0.3 + x, -0.2 + y, mass);
+  build_sized(&scene, STRUT_SPRING, pivot, body, k, 0, 0, 0);
+  scene.nodes[body].velocity[0] = vx, scene.nodes[body].velocity[1] = vy;
+  motion_begin(&m, &scene, STEP);
+  motion_steps(&m, count);
+  rk4_oscillation(omega * STEP, count, &re, &im);
+  assert_near(m.state->q[2], 0.3 + re * x + im * vx / omega, 1e-12 * size);
+  assert_near(m.state->q[3], -0.2 + re * y + im * vy / omega, 1e-12 * size);
+  assert_near(m.state->v[2], re * vx - im * omega * x, 1e-12 * size * omega);
+  assert_near(m.state->v[3], re * vy - im * omega * y, 1e-12 * size * omega);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void test_a_spring_of_no_rest_length_makes_an_ellipse(void **unused) {
+  (void)unused;
+  orbit(0.4, 0, 0, 1.5);
+  orbit(0.3, 0.4, 2, -1);
+}
+
+static void test_the_ellipse_may_be_as_narrow_as_one_likes(void **unused) {
+  (void)unused;
+  orbit(0.4, 0, 0, 1e-9);
+  orbit(0.3, 0.4, 1e-14, 0);
+  orbit(0.3, 0.4, 0, 0);
+  orbit(0, 0, 1, 0.5); /* starts where the spring has no direction */
+}
+
+/* Forces on the free end at stretch [m] and speed of lengthening [m/s]. */
+static double pull(strut_member_kind kind, double stretch, double rate) {
+  strut_scene scene;
+  motion m;
+  double length, tension;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, 1);
+  build_member(&scene, kind, 0, 1, 100, 5, 0);
+  scene.nodes[1].start[0] = 1 + stretch;
+  scene.nodes[1].velocity[0] = rate;
+  motion_begin(&m, &scene, STEP);
+  strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
+  strut_members_measure(m.model, m.state, &length, &tension);
+  double force = -m.state->force[2];
+  assert_near(tension, force, 1e-14 * fabs(force)); /* so slack: exactly 0 */
+  assert_true(length == 1 + stretch);
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return force;
+}
+
+static void test_a_slack_cable_carries_nothing(void **unused) {
+  (void)unused;
+  assert_true(pull(STRUT_CABLE, -0.125, 0) == 0);
+  assert_true(pull(STRUT_CABLE, -0.125, 4) == 0); /* lengthens, but is slack: no damper either */
+  assert_true(pull(STRUT_CABLE, -0.125, -4) == 0);
+  assert_true(pull(STRUT_CABLE, 0.125, -4) == 0); /* taut, but its damper would push */
+  assert_relative(pull(STRUT_CABLE, 0.125, -2), 2.5, 1e-14);
+  assert_relative(pull(STRUT_CABLE, 0.125, 2), 22.5, 1e-14);
+  assert_true(pull(STRUT_CABLE, 0, 2) == 0);
+  for (int kind = STRUT_BAR; kind <= STRUT_SPRING; kind++) {
+    assert_relative(pull((strut_member_kind)kind, -0.125, 4), 7.5, 1e-14);
+    assert_relative(pull((strut_member_kind)kind, -0.125, -4), -32.5, 1e-14);
+    assert_relative(pull((strut_member_kind)kind, 0.125, -4), -7.5, 1e-14);
+  }
+}
+
+/* A ball thrown at the cable's anchor flies on freely, passes by and is caught on the other side. */
+static void test_a_ball_flies_freely_until_its_cable_is_taut(void **unused) {
+  (void)unused;
+  const double k = 400, mass = 0.5, speed = 2, omega = sqrt(k / mass);
+  strut_scene scene;
+  motion m;
+  double re, im;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, mass);
+  build_sized(&scene, STRUT_CABLE, 0, 1, k, 0, 0, 1);
+  scene.nodes[1].velocity[0] = -speed;
+  motion_begin(&m, &scene, STEP);
+  motion_steps(&m, 999);
+  assert_true(m.state->v[2] == -speed);
+  assert_near(m.state->q[2], 1 - speed * 0.999, 1e-13);
+  motion_steps(&m, 1);
+  double stretch = -1 - m.state->q[2]; /* a rounding's worth, taut or not */
+  motion_steps(&m, 100);
+  rk4_oscillation(omega * STEP, 100, &re, &im);
+  assert_near(stretch, 0, 1e-13);
+  assert_near(m.state->q[2], -1 - im * speed / omega, 1e-10);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+/* An actuator that lengthens a cable lets it go slack; the rate of the drive pulls through k only
+   while it is taut. */
+static void test_a_driven_cable_goes_slack(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, 1);
+  strut_signal ramp = strut_signal_default(STRUT_RAMP);
+  ramp.amplitude = 0.5, ramp.start = -1, ramp.stop = 1; /* 0.25 m/s, 0.25 m at t = 0 */
+  int32_t cable = build_sized(&scene, STRUT_CABLE, 0, 1, 100, 8, 0, 0.5);
+  build_actuator(&scene, cable, build_signal(&scene, ramp));
+  motion_begin(&m, &scene, STEP);
+  strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
+  assert_true(m.state->force[2] == -(100 * 0.25 - 8 * 0.25));
+  strut_forces_evaluate(m.model, m.state, 1, m.state->q, m.state->v);
+  assert_true(m.state->force[2] == 0);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_spring_of_no_rest_length_makes_an_ellipse),
+      cmocka_unit_test(test_the_ellipse_may_be_as_narrow_as_one_likes),
+      cmocka_unit_test(test_a_slack_cable_carries_nothing),
+      cmocka_unit_test(test_a_ball_flies_freely_until_its_cable_is_taut),
+      cmocka_unit_test(test_a_driven_cable_goes_slack),
+  };
+  return cmocka_run_group_tests_name("member_laws", tests, NULL, NULL);
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A free bar and a free frame: lengths, frequencies, centre of mass and angular momentum. */
+#include <math.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/oscillation.h"
+#include "tests/support/structures.h"
+
+static const double K = 1000, MASS = 0.1, L0 = 0.5;
+
+/*
+ * A bar that starts too short and is damped finds the steady length of its own spin: the mass terms
+ * of both ends, m W^2/12 (consistent) or m W^2/4 (lumped) per unit of length, against the spring.
+ */
+static void steady_length(strut_mass_model mass_model, double share) {
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  scene.mass_model = mass_model;
+  int32_t a = build_node(&scene, -L0 / 2, 0), b = build_node(&scene, L0 / 2, 0);
+  build_member(&scene, STRUT_BAR, a, b, K, 2, MASS);
+  structure_throw(&scene, 3, -1, 40);
+  motion_begin(&m, &scene, 2e-5);
+  motion_steps(&m, 100000);
+  const double *q = m.state->q, *v = m.state->v;
+  double x = q[2] - q[0], y = q[3] - q[1], vx = v[2] - v[0], vy = v[3] - v[1];
+  double length = hypot(x, y), spin = (x * vy - y * vx) / (length * length);
+  assert_near((x * vx + y * vy) / length, 0, 1e-9);
+  assert_relative(length, L0 / (1 - share * MASS * spin * spin / K), 1e-10);
+  assert_true(length > 1.005 * L0);
+  assert_near(v[0] + v[2], 2 * 3.0, 1e-10);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void test_a_consistent_bar_spins_at_its_steady_length(void **unused) {
+  (void)unused;
+  steady_length(STRUT_MASS_CONSISTENT, 1.0 / 12);
+}
+
+static void test_a_lumped_bar_spins_at_its_steady_length(void **unused) {
+  (void)unused;
+  steady_length(STRUT_MASS_LUMPED, 1.0 / 4);
+}
+
+/* Along its axis a bar is a linear oscillator, so every step of RK4 is known. */
+static void vibrate(strut_mass_model mass_model, double factor) {
+  strut_scene scene;
+  motion m;
+  double omega = sqrt(factor * K / MASS), step = 0.05 / omega, re, im, stretch = 0.01;
+  strut_scene_init(&scene);
+  scene.mass_model = mass_model;
+  int32_t a = build_node(&scene, 0, 0), b = build_node(&scene, 0.3, 0.4);
+  build_member(&scene, STRUT_BAR, a, b, K, 0, MASS);
+  scene.nodes[1].start[0] += 0.6 * stretch;
+  scene.nodes[1].start[1] += 0.8 * stretch;
+  motion_begin(&m, &scene, step);
+  motion_steps(&m, 5000);
+  const double *q = m.state->q;
+  rk4_oscillation(step * omega, 5000, &re, &im);
+  assert_near(hypot(q[2] - q[0], q[3] - q[1]), 0.5 + stretch * re, 1e-13);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void test_a_free_bar_vibrates_at_its_frequency(void **unused) {
+  (void)unused;
+  vibrate(STRUT_MASS_CONSISTENT, 12);
+  vibrate(STRUT_MASS_LUMPED, 4);
+}
+
+static void tumbling_frame(strut_scene *scene, strut_mass_model mass_model, double damping) {
+  x_frame frame = {.side = 1,
+                   .cable_stiffness = 400,
+                   .bar_stiffness = 2000,
+                   .force_density = 60,
+                   .cable_mass = 0.05,
+                   .bar_mass = 0.4,
+                   .cable_damping = damping,
+                   .bar_damping = 0.1 * damping};
+  strut_scene_init(scene);
+  scene->mass_model = mass_model;
+  structure_x_frame(scene, &frame);
+  scene->nodes[2].mass = 0.3; /* so that the middle is nowhere special */
+  structure_throw(scene, 2, 5, 6);
+  scene->nodes[0].velocity[0] += 1;
+}
+
+/* Point masses and both halves of every member. */
+static void centre(const strut_scene *scene, const double *p, double out[2]) {
+  double total = 0, sum[2] = {0, 0};
+  for (size_t i = 0; i < scene->node_count; i++) {
+    total += scene->nodes[i].mass;
+    for (size_t c = 0; c < 2; c++) sum[c] += scene->nodes[i].mass * p[2 * i + c];
+  }
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *member = &scene->members[j];
+    total += member->mass;
+    for (size_t c = 0; c < 2; c++)
+      for (int e = 0; e < 2; e++) sum[c] += 0.5 * member->mass * p[2 * (size_t)member->node[e] + c];
+  }
+  for (size_t c = 0; c < 2; c++) out[c] = sum[c] / total;
+}
+
+static void follow_the_parabola(strut_mass_model mass_model) {
+  strut_scene scene;
+  motion m;
+  double at[2], speed[2], end[2], step = 1e-3;
+  tumbling_frame(&scene, mass_model, 2);
+  scene.gravity[0] = 0.5, scene.gravity[1] = -9.81;
+  motion_begin(&m, &scene, step);
+  centre(&scene, m.state->q, at);
+  centre(&scene, m.state->v, speed);
+  for (int n = 1; n <= 10; n++) {
+    double t = step * 1000 * n, path = hypot(speed[0] * t, speed[1] * t) + 0.5 * 9.81 * t * t;
+    motion_steps(&m, 1000);
+    centre(&scene, m.state->q, end);
+    for (int c = 0; c < 2; c++)
+      assert_near(end[c], at[c] + t * (speed[c] + 0.5 * t * scene.gravity[c]), 1e-12 * path);
+  }
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void test_the_centre_of_mass_follows_its_parabola(void **unused) {
+  (void)unused;
+  follow_the_parabola(STRUT_MASS_CONSISTENT);
+  follow_the_parabola(STRUT_MASS_LUMPED);
+}
+
+/* About the origin: of rods (m/6)(2 a x va + 2 b x vb + a x vb + b x va), lumped m/2 at each end. */
+static double angular_momentum(const strut_scene *scene, const double *q, const double *v) {
+  bool lumped = scene->mass_model == STRUT_MASS_LUMPED;
+  double sum = 0;
+  for (size_t i = 0; i < scene->node_count; i++)
+    sum += scene->nodes[i].mass * (q[2 * i] * v[2 * i + 1] - q[2 * i + 1] * v[2 * i]);
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *member = &scene->members[j];
+    for (int e = 0; e < 2; e++)
+      for (int f = 0; f < 2; f++) {
+        const double *a = q + 2 * member->node[e], *b = v + 2 * member->node[f];
+        double share = lumped ? (e == f ? 0.5 : 0) : (e == f ? 1.0 / 3 : 1.0 / 6);
+        sum += share * member->mass * (a[0] * b[1] - a[1] * b[0]);
+      }
+  }
+  return sum;
+}
+
+static void keep_turning(strut_mass_model mass_model) {
+  double error[5];
+  for (int k = 0; k < 5; k++) {
+    strut_scene scene;
+    motion m;
+    tumbling_frame(&scene, mass_model, 0.5);
+    motion_begin(&m, &scene, ldexp(2e-3, -k));
+    double before = angular_momentum(&scene, m.state->q, m.state->v);
+    motion_steps(&m, 1000 << k);
+    error[k] = fabs(angular_momentum(&scene, m.state->q, m.state->v) / before - 1);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+  assert_true(error[0] < 1e-3 && error[4] < 1e-8);
+  assert_true(observed_order(error, 5) > 3.9);
+}
+
+static void test_angular_momentum_is_conserved_at_order_four(void **unused) {
+  (void)unused;
+  keep_turning(STRUT_MASS_CONSISTENT);
+  keep_turning(STRUT_MASS_LUMPED);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_consistent_bar_spins_at_its_steady_length),
+      cmocka_unit_test(test_a_lumped_bar_spins_at_its_steady_length),
+      cmocka_unit_test(test_a_free_bar_vibrates_at_its_frequency),
+      cmocka_unit_test(test_the_centre_of_mass_follows_its_parabola),
+      cmocka_unit_test(test_angular_momentum_is_conserved_at_order_four),
+  };
+  return cmocka_run_group_tests_name("spinning_bar", tests, NULL, NULL);
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/support/structures.h"
+
+#include "tests/support/build.h"
+
+static int32_t with_density(strut_scene *scene, int32_t member, double density) {
+  scene->members[member].rest_kind = STRUT_REST_FORCE_DENSITY;
+  scene->members[member].rest_value = density;
+  return member;
+}
+
+void structure_x_frame(strut_scene *scene, const x_frame *f) {
+  double h = 0.5 * f->side, corner[4][2] = {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
+  for (int i = 0; i < 4; i++) build_node(scene, corner[i][0], corner[i][1]);
+  for (int i = 0; i < 4; i++)
+    with_density(scene,
+                 build_member(scene, STRUT_CABLE, i, (i + 1) % 4, f->cable_stiffness,
+                              f->cable_damping, f->cable_mass),
+                 f->force_density);
+  for (int i = 0; i < 2; i++)
+    with_density(
+        scene,
+        build_member(scene, STRUT_BAR, i, i + 2, f->bar_stiffness, f->bar_damping, f->bar_mass),
+        -f->force_density);
+}
+
+void structure_throw(strut_scene *scene, double x, double y, double spin) {
+  for (size_t i = 0; i < scene->node_count; i++) {
+    strut_node *node = &scene->nodes[i];
+    node->velocity[0] = x - spin * node->start[1];
+    node->velocity[1] = y + spin * node->start[0];
+  }
+}
+
+void structure_crawler(strut_scene *scene, double frequency, double amplitude, double mu,
+                       bool mirrored) {
+  static const double drawn[5][2] = {{0, 0},
+                                     {0.0965109, 0.0238714},
+                                     {0.0526668, 0.0283691},
+                                     {0.0602933, 0},
+                                     {0.0434758, 0.0106875}};
+  static const struct {
+    int i1, i2;
+    double rest, stiffness, mass;
+  } table1[9] = {{1, 2, 0.10, 1e6, 0.1}, {3, 5, 0.02, 1e6, 0.02}, {4, 5, 0.02, 1e6, 0.02},
+                 {1, 3, 0.02, 3000, 0},  {2, 3, 0.02, 3000, 0},   {2, 4, 0.02, 3000, 0},
+                 {1, 4, 0.02, 3000, 0},  {1, 5, 0.01, 1e4, 0},    {2, 5, 0.01, 1e4, 0}};
+  for (int i = 0; i < 5; i++) build_node(scene, mirrored ? -drawn[i][0] : drawn[i][0], drawn[i][1]);
+  for (int j = 0; j < 9; j++)
+    build_sized(scene, table1[j].mass > 0 ? STRUT_BAR : STRUT_SPRING, table1[j].i1 - 1,
+                table1[j].i2 - 1, table1[j].stiffness, 0.2, table1[j].mass, table1[j].rest);
+  for (int i = 0; i < 5; i++) build_rough_contact(scene, i, 1e5, 100, mu, mu, 1e-4);
+  build_actuator(scene, 7, build_sine(scene, amplitude, frequency));
+  scene->gravity[1] = -9.81;
+}
+
+void structure_chain(strut_scene *scene, size_t frames, strut_mass_model mass_model) {
+  const double side = 0.1;
+  scene->mass_model = mass_model;
+  for (size_t i = 0; i <= frames; i++)
+    for (int top = 0; top < 2; top++) build_node(scene, side * (double)i, top ? side : 0);
+  for (int i = 0; i < 2; i++) scene->nodes[i].fixed[0] = scene->nodes[i].fixed[1] = true;
+  for (int32_t low = 0; low < 2 * (int32_t)frames; low += 2) {
+    build_member(scene, STRUT_BAR, low, low + 3, 1e5, 0.2, 0.1);
+    build_member(scene, STRUT_BAR, low + 1, low + 2, 1e5, 0.2, 0.1);
+    build_sized(scene, STRUT_CABLE, low, low + 2, 3000, 0.2, 0, 0.98 * side);
+    build_sized(scene, STRUT_CABLE, low + 1, low + 3, 3000, 0.2, 0, 0.98 * side);
+    build_sized(scene, STRUT_CABLE, low + 2, low + 3, 3000, 0.2, 0, 0.98 * side);
+  }
+}

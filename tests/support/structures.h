@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The structures that several tests look at.
+ */
+#ifndef STRUT_TESTS_SUPPORT_STRUCTURES_H
+#define STRUT_TESTS_SUPPORT_STRUCTURES_H
+
+#include "engine/scene/scene.h"
+
+/** Snelson's X-frame: a square with four cables as sides and two bars as diagonals. */
+typedef struct x_frame {
+  double side;                           /* [m] */
+  double cable_stiffness, bar_stiffness; /* [N/m] */
+  double force_density;                  /* of the cables [N/m]; the bars' is the opposite */
+  double cable_mass, bar_mass;           /* [kg] */
+  double cable_damping, bar_damping;     /* [N s/m] */
+} x_frame;
+
+/** Stands free and square about the origin; nodes 0 to 3 anticlockwise from lower left. */
+void structure_x_frame(strut_scene *scene, const x_frame *frame);
+
+/** All nodes get the velocity of a rigid body: at the origin (x, y) [m/s], spin [rad/s]. */
+void structure_throw(strut_scene *scene, double x, double y, double spin);
+
+/**
+ * The paper's crawler in state I, or for `mirrored` its mirror image in x with nodes and members in
+ * the same order; member 8 (index 7) is driven by amplitude [m] and frequency [Hz].
+ */
+void structure_crawler(strut_scene *scene, double frequency, double amplitude, double mu,
+                       bool mirrored);
+
+/**
+ * `frames` X-frames in a row, 5 members each, held at the left end: masses in the bars only, so a
+ * consistent mass needs the sparse factor as soon as there are more than 8 nodes.
+ */
+void structure_chain(strut_scene *scene, size_t frames, strut_mass_model mass_model);
+
+#endif
