@@ -67,8 +67,16 @@ double strut_energy_of_loads(const strut_model *model, const strut_state *state)
     if (load->signal >= 0) continue;
     for (int c = 0; c < 2; c++) {
       int32_t at = 2 * load->node + c;
-      sum += load->force[c] * (state->q[at] - model->start[at]);
+      sum += load->force[c] * state->q[at];
     }
   }
   return sum;
+}
+
+double strut_energy_load_work(const strut_model *model, const strut_state *state) {
+  return strut_energy_of_loads(model, state) - state->load_mark;
+}
+
+void strut_energy_mark(const strut_model *model, strut_state *state) {
+  state->load_mark = strut_energy_of_loads(model, state);
 }

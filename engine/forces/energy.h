@@ -18,7 +18,12 @@ typedef struct strut_stored {
 /** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
 STRUT_API strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t);
 
-/** Work of the constant loads (gravity is not one) since the start [J]. */
+/** Sum of constant load times position [J]: its change is the work of the loads (gravity is none). */
 STRUT_API double strut_energy_of_loads(const strut_model *model, const strut_state *state);
+
+/** Work of the constant loads since strut_energy_mark, which must have been called [J]. */
+STRUT_API double strut_energy_load_work(const strut_model *model, const strut_state *state);
+/** Makes the state's present positions those from which the loads' work counts. */
+STRUT_API void strut_energy_mark(const strut_model *model, strut_state *state);
 
 #endif

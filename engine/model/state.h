@@ -28,6 +28,7 @@ typedef struct strut_state {
   double *q;     /* positions [m] */
   double *v;     /* velocities [m/s] */
   double work[STRUT_POWER_COUNT]; /* powers integrated since t = 0 [J] */
+  double load_mark;               /* strut_energy_mark: where the works count from [J] */
   int64_t evaluations;            /* of the forces since the reset */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */

@@ -128,7 +128,7 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
       double values[] = {stored.kinetic,           stored.elastic,
                          stored.gravity,           stored.contact,
                          w[STRUT_POWER_DRIVE],     w[STRUT_POWER_LOAD] +
-                                                       strut_energy_of_loads(model, state),
+                                                       strut_energy_load_work(model, state),
                          w[STRUT_POWER_BELT],      w[STRUT_POWER_MEMBERS],
                          w[STRUT_POWER_CONTACT],   w[STRUT_POWER_FRICTION]};
       memcpy(out, values, sizeof values);

@@ -91,6 +91,7 @@ static strut_status prepare(run *r) {
                                    &r->summary->settle_time, r->error)))
     return status;
   r->state->ledger = true;
+  strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, 0.0);
   return strut_recording_create(r->model, r->dt, r->options->sinks, r->options->sink_count,
                                 &r->recording, r->error);
@@ -177,7 +178,7 @@ static void fill_energy(run *r) {
   strut_stored end = strut_energy_stored(r->model, r->state, (double)r->state->step * r->dt);
   const strut_stored *begin = &r->initial;
   strut_energy *e = &r->summary->energy;
-  double loads = strut_energy_of_loads(r->model, r->state);
+  double loads = strut_energy_load_work(r->model, r->state);
   e->kinetic = end.kinetic, e->elastic = end.elastic, e->gravity = end.gravity;
   e->contact = end.contact;
   e->drive_work = w[STRUT_POWER_DRIVE];
