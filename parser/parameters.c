@@ -6,8 +6,6 @@
 #include "parser/quantity.h"
 #include "parser/reader.h"
 
-enum { DEEPEST = 200 };
-
 const char *strut_parameter_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   return i < reader->parameter_count ? reader->parameters[i].name : NULL;
@@ -30,9 +28,16 @@ static strut_place section_place(strut_reader *reader) {
   return slot->key ? slot->key->place : strut_root_place(reader);
 }
 
+static const char *stacked_name(strut_reader *reader, size_t i) {
+  return reader->parameter_stack[i]->name;
+}
+
 /* Reports the circle that leads back to p, which is being read. */
 static void report_circle(strut_reader *reader, const strut_parameter_state *p) {
-  strut_say(reader, p->key->place, "parameter '%s' depends on itself", p->name);
+  size_t first = 0;
+  while (reader->parameter_stack[first] != p) first++;
+  strut_say(reader, p->key->place, "parameter '%s' depends on itself: %s", p->name,
+            strut_circle(reader, stacked_name, first, reader->parameter_depth));
 }
 
 /* An expression of a parameter: from the file, or from --set. */
@@ -71,12 +76,13 @@ static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_qu
 
 static void resolve(strut_reader *reader, strut_parameter_state *p) {
   if (p->state != STRUT_UNREAD) return;
-  if (reader->parameter_depth >= DEEPEST) {
-    strut_say(reader, p->key->place, "parameters depend on each other more than %d deep", DEEPEST);
+  if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
+    strut_say(reader, p->key->place, "parameters depend on each other more than %d deep",
+              STRUT_DEEPEST_PARAMETER);
     p->state = STRUT_FAILED;
     return;
   }
-  reader->parameter_depth++;
+  reader->parameter_stack[reader->parameter_depth++] = p;
   p->state = STRUT_READING;
   strut_quantity declared;
   bool fine = evaluate(reader, p, NULL, &declared);

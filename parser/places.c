@@ -99,7 +99,9 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
   switch (finding->subject) {
     case STRUT_ON_GROUND:
       fields = &reader->ground, section = STRUT_KEY_SCENE_GROUND;
-      broken = fields->broken;
+      broken = key && strcmp(key, "slope") == 0 /* on its own */
+                   ? strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state != STRUT_GIVEN
+                   : fields->broken;
       break;
     case STRUT_ON_INITIAL:
       fields = &reader->settle, section = STRUT_KEY_SCENE_INITIAL;

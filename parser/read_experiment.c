@@ -121,6 +121,17 @@ void strut_read_initial(strut_reader *reader) {
   if (settle->state == STRUT_GIVEN) read_settle(reader, settle);
 }
 
+/* Actuators, loads and signals, one after the other, for suggestions. */
+static const char *driver_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  const strut_scene *scene = reader->scene;
+  if (i < scene->actuator_count) return scene->actuators[i].name;
+  i -= scene->actuator_count;
+  if (i < scene->load_count) return scene->loads[i].name;
+  i -= scene->load_count;
+  return i < reader->named_count ? reader->named[i].name : NULL;
+}
+
 /* What `of` names: an actuator, a load or a signal. */
 static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
   const strut_scene *scene = reader->scene;
@@ -138,8 +149,10 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
                             STRUT_KEY_SCENE_SIGNALS};
     for (int i = 0; i < 3; i++)
       if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
-    strut_say(reader, value->place, "unknown actuator, load or signal '%s' in 'of' of the run",
-              strut_shown(reader, value->text));
+    size_t names = scene->actuator_count + scene->load_count + reader->named_count;
+    strut_say(reader, value->place, "unknown actuator, load or signal '%s' in 'of' of the run%s",
+              strut_shown(reader, value->text),
+              strut_hint(reader, value->text, driver_name, reader, names));
     return -1;
   }
   for (int32_t i = 1; i < count; i++)

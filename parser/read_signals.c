@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals, and what they drive: actuators and loads. See reader.h. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "parser/reader.h"
-
-enum { DEEPEST = 64 };
 
 static const double TWO_PI = 6.283185307179586476925;
 
@@ -60,9 +57,8 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
 }
 
 /* A sine, half-sine, square or ramp. The keys of their rooms have the same names. */
-static bool read_wave(strut_reader *reader, strut_room room, const strut_tree *map, meaning *m,
-                      strut_signal *signal) {
-  strut_owner owner = {strut_room_name(room), NULL};
+static bool read_wave(strut_reader *reader, strut_room room, const strut_tree *map,
+                      strut_owner owner, meaning *m, strut_signal *signal) {
   strut_fields fields;
   strut_read_fields(reader, room, map, owner, &fields);
   strut_require(reader, &fields, owner, map->place);
@@ -86,9 +82,8 @@ static bool read_wave(strut_reader *reader, strut_room room, const strut_tree *m
   return fine;
 }
 
-static bool read_table(strut_reader *reader, const strut_tree *list, meaning *m,
+static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
                        strut_signal *signal) {
-  strut_owner owner = {"a signal", NULL};
   double *time = strut_take(reader, &reader->scene->arena, list->count, sizeof *time);
   double *value = strut_take(reader, &reader->scene->arena, list->count, sizeof *value);
   bool fine = true;
@@ -96,8 +91,8 @@ static bool read_table(strut_reader *reader, const strut_tree *list, meaning *m,
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
       strut_say(reader, point->place,
-                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s", owner.kind,
-                strut_found(reader, point));
+                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
+                strut_owner_text(reader, owner), strut_found(reader, point));
       fine = false;
       continue;
     }
@@ -115,9 +110,8 @@ static bool read_table(strut_reader *reader, const strut_tree *list, meaning *m,
 static int32_t read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                            strut_owner owner, const strut_dimension *expected);
 
-static bool read_sum(strut_reader *reader, const strut_tree *list, meaning *m,
+static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
                      strut_signal *signal) {
-  strut_owner owner = {"a signal", NULL};
   int32_t *terms = strut_take(reader, &reader->scene->arena, list->count, sizeof *terms);
   bool fine = terms != NULL;
   for (const strut_tree *item = terms ? list->first : NULL; item; item = item->next) {
@@ -143,15 +137,11 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   static const strut_room rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
                                      STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
   meaning m = {expected, STRUT_DIM_NONE, true};
-  strut_owner within = {"the signal of", NULL};
-  char kind[200];
-  snprintf(kind, sizeof kind, "the signal of %.150s", strut_owner_text(reader, owner));
-  within.kind = kind;
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, within, &fields);
+  strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, owner, &fields);
   if (map->count != 1 && !fields.broken)
-    strut_say(reader, map->place, "expected one kind of signal for %s, found %u", kind,
-              (unsigned)map->count);
+    strut_say(reader, map->place, "expected one kind of signal for %s, found %u",
+              strut_owner_text(reader, owner), (unsigned)map->count);
   if (map->count != 1 || fields.broken) return -1;
   int chosen = 0;
   while (fields.slot[chosen].state != STRUT_GIVEN) chosen++;
@@ -159,33 +149,42 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
   bool fine;
   if (signal.kind == STRUT_CONSTANT)
-    fine = read_value(reader, value, "constant", within, &m, &signal.amplitude);
+    fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude);
   else if (signal.kind == STRUT_TABLE)
-    fine = read_table(reader, value, &m, &signal);
+    fine = read_table(reader, value, owner, &m, &signal);
   else if (signal.kind == STRUT_SUM)
-    fine = read_sum(reader, value, &m, &signal);
+    fine = read_sum(reader, value, owner, &m, &signal);
   else
-    fine = read_wave(reader, rooms[chosen], value, &m, &signal);
+    fine = read_wave(reader, rooms[chosen], value, owner, &m, &signal);
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
+}
+
+static const char *stacked_name(strut_reader *reader, size_t i) {
+  return reader->signal_stack[i]->name;
 }
 
 /* The signal of that number among the named ones, read when it is first needed. */
 static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   strut_owner owner = {"signal", named->name};
   if (named->state == STRUT_SIGNAL_READ) return named->index;
-  if (named->state == STRUT_SIGNAL_READING || reader->signal_depth >= DEEPEST) {
-    strut_say(reader, named->key->place,
-              named->state == STRUT_SIGNAL_READING ? "%s contains itself"
-                                                   : "%s is more than 64 signals deep",
-              strut_owner_text(reader, owner));
-    return named->index = -1;
+  if (named->state == STRUT_SIGNAL_READING) {
+    size_t first = 0;
+    while (reader->signal_stack[first] != named) first++;
+    strut_say(reader, named->key->place, "signal '%s' contains itself: %s", named->name,
+              strut_circle(reader, stacked_name, first, reader->signal_depth));
+    return -1;
+  }
+  if (reader->signal_depth >= STRUT_DEEPEST_SIGNAL) {
+    strut_say(reader, named->key->place, "signals contain each other more than %d deep",
+              STRUT_DEEPEST_SIGNAL);
+    return -1;
   }
   named->state = STRUT_SIGNAL_READING;
-  reader->signal_depth++;
+  reader->signal_stack[reader->signal_depth++] = named;
   const strut_tree *value = named->key->next;
   bool fine = strut_read_name(reader, named->key, "signal");
-  int32_t index = read_signal(reader, value, named->name, (strut_owner){"signals", NULL}, NULL);
+  int32_t index = read_signal(reader, value, named->name, owner, NULL);
   if (index >= 0 && value->kind == STRUT_TREE_SCALAR) {
     /* Another name for a signal: a sum of one term. */
     int32_t *term = strut_take(reader, &reader->scene->arena, 1, sizeof *term);
@@ -238,7 +237,10 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
 
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected) {
-  return read_signal(reader, value, key, owner, expected);
+  char text[200];
+  snprintf(text, sizeof text, "the signal of %.150s", strut_owner_text(reader, owner));
+  strut_owner within = value->kind == STRUT_TREE_MAP ? (strut_owner){text, NULL} : owner;
+  return read_signal(reader, value, key, within, expected);
 }
 
 void strut_read_signals(strut_reader *reader) {

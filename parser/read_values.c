@@ -70,6 +70,19 @@ strut_place strut_root_place(const strut_reader *reader) {
   return (strut_place){place.line, place.column, 1};
 }
 
+const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
+                         size_t first, size_t depth) {
+  const char *text = "";
+  for (size_t i = first; i < depth; i++) {
+    bool shown = depth - first <= 8 || i - first < 4 || depth - i <= 3;
+    if (shown)
+      text = kept(reader, strut_arena_format(&reader->scratch, "%s%s -> ", text, name(reader, i)));
+    else if (i - first == 4)
+      text = kept(reader, strut_arena_format(&reader->scratch, "%s... -> ", text));
+  }
+  return kept(reader, strut_arena_format(&reader->scratch, "%s%s", text, name(reader, first)));
+}
+
 bool strut_is_null(const strut_tree *value) {
   static const char *const nulls[] = {"", "~", "null", "Null", "NULL"};
   if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;

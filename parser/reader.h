@@ -90,6 +90,9 @@ typedef struct strut_named_signal {
   int32_t index; /* into the signals; -1: it could not be read */
 } strut_named_signal;
 
+/** How many parameters may wait for each other, and how many signals. */
+enum { STRUT_DEEPEST_PARAMETER = 200, STRUT_DEEPEST_SIGNAL = 64 };
+
 typedef struct strut_reader {
   strut_scene *scene;
   strut_diagnostics *diagnostics;
@@ -103,9 +106,11 @@ typedef struct strut_reader {
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
+  strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source;
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
+  strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
   strut_signal *signals; /* strut_allocate; moves to the scene at the end */
   strut_signal_state *signal_state;
   size_t signal_count;
@@ -137,6 +142,9 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
 const char *strut_found(strut_reader *reader, const strut_tree *value);
 /** The beginning of the file, for what is about all of it. */
 strut_place strut_root_place(const strut_reader *reader);
+/** "a -> b -> a" from the names of a stack, shortened in the middle; lives in scratch. */
+const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
+                         size_t first, size_t depth);
 /** True for a plain empty scalar, ~ and null. */
 bool strut_is_null(const strut_tree *value);
 /** Is it a scalar that is not null? If not, that is reported. */
