@@ -20,6 +20,7 @@ static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
 typedef struct frame {
   strut_tree *node, *last; /* last child so far */
   uint64_t weight;
+  size_t height; /* of the highest child so far */
   size_t anchor; /* 1 + index, or 0 */
   bool bracketed;
   bool value_next; /* map: a key waits for its value */
@@ -102,7 +103,7 @@ static strut_tree *new_node(reader *r, strut_tree_kind kind, strut_place place) 
 }
 
 /* Links a node to the open list or map, or makes it the root. */
-static void attach(reader *r, strut_tree *node, uint64_t weight) {
+static void attach(reader *r, strut_tree *node, uint64_t weight, size_t height) {
   if (!r->depth) {
     r->document->root = node;
     return;
@@ -114,6 +115,7 @@ static void attach(reader *r, strut_tree *node, uint64_t weight) {
     open->node->first = node;
   open->last = node;
   open->weight += weight;
+  if (open->height < height) open->height = height;
   if (open->node->kind == STRUT_TREE_LIST || open->value_next) open->node->count++;
   if (open->node->kind == STRUT_TREE_MAP) open->value_next = !open->value_next;
 }
@@ -182,7 +184,7 @@ static bool read_scalar(reader *r, const yaml_event_t *event) {
   node->text = keep_text(r, text, length);
   if (!node->text) return out_of_memory(r);
   if (anchor) r->anchors.items[anchor - 1].weight = 1;
-  attach(r, node, 1);
+  attach(r, node, 1, 0);
   return true;
 }
 
@@ -203,12 +205,14 @@ static bool read_alias(reader *r, const yaml_event_t *event) {
   r->expanded += anchor->weight;
   if (r->expanded > EXPANDED_MOST)
     return over_limit(r, place, "values repeated by aliases", EXPANDED_MOST);
+  if (r->depth + anchor->height > DEPTH_MOST)
+    return over_limit(r, place, "levels of nesting", DEPTH_MOST);
   strut_tree *node = new_node(r, STRUT_TREE_SCALAR, place);
   if (!node) return false;
   *node = *anchor->node;
   node->place = place;
   node->next = NULL;
-  attach(r, node, anchor->weight);
+  attach(r, node, anchor->weight, anchor->height);
   return true;
 }
 
@@ -245,8 +249,12 @@ static bool close_collection(reader *r, const yaml_event_t *event) {
     node->place.length = (uint32_t)column - node->place.column;
   if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, &r->keys, r->diagnostics))
     return out_of_memory(r);
-  if (closed.anchor) r->anchors.items[closed.anchor - 1].weight = closed.weight;
-  attach(r, node, closed.weight);
+  if (closed.anchor) {
+    strut_anchor *anchor = &r->anchors.items[closed.anchor - 1];
+    anchor->weight = closed.weight;
+    anchor->height = closed.height + 1;
+  }
+  attach(r, node, closed.weight, closed.height + 1);
   return true;
 }
 

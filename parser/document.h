@@ -5,7 +5,7 @@
  * libyaml's events become nodes in one arena. Nothing is interpreted here: scalars stay text. Limits
  * (depth, bytes, nodes, anchors, expansion of aliases) are enforced while reading, so that a hostile
  * text is refused at once. An alias is a copy of the anchored node that shares its children: branches
- * may be shared but there is no cycle.
+ * may be shared but there is no cycle, and no way down has more than 64 levels.
  */
 #ifndef STRUT_PARSER_DOCUMENT_H
 #define STRUT_PARSER_DOCUMENT_H

@@ -35,7 +35,7 @@ strut_anchor *strut_anchors_add(strut_anchors *anchors, const char *name, strut_
   if (!anchors->items || !anchors->slots) return NULL;
   size_t slot = anchor_slot(anchors, name);
   strut_anchor *anchor = &anchors->items[anchors->count++];
-  *anchor = (strut_anchor){name, node, 0};
+  *anchor = (strut_anchor){.name = name, .node = node};
   anchors->slots[slot] = (uint16_t)anchors->count;
   return anchor;
 }

@@ -30,6 +30,7 @@ typedef struct strut_anchor {
   const char *name;
   strut_tree *node;
   uint64_t weight; /* nodes it stands for, aliases inside counted in full; 0: still open */
+  size_t height;   /* levels of lists and mappings in it, aliases inside counted in full */
 } strut_anchor;
 
 enum { STRUT_ANCHOR_MOST = 1000 };
