@@ -16,7 +16,7 @@
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, false, 0, "", "", "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, false, 0, "", "an expression or a quoted text", "Named values that expressions may use and `--set` may change.") \
   X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, false, 0, "", "keys of a member, a node or a contact", "Defaults that members, nodes and contacts share. Own keys win.") \
-  X(SCENE, NODES, "nodes", THINGS, NONE, ANY, true, 0, "", "[x, y] or the keys of a node", "The points of the structure.") \
+  X(SCENE, NODES, "nodes", THINGS, NONE, ANY, true, 0, "", "`[x, y]` or the keys of a node", "The points of the structure.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, false, 0, "", "the keys of a member", "What joins the nodes.") \
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, false, 0, "consistent", "consistent|lumped", "How a member's mass acts: as of a uniform rod (the paper's), or half at each end.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, false, 0, "[0, 0]", "", "Acceleration of free fall.") \
@@ -24,16 +24,16 @@
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, false, 0, "", "the keys of an actuator", "Members whose rest length a signal changes. Several on one member add up.") \
   X(SCENE, LOADS, "loads", THINGS, NONE, ANY, false, 0, "", "the keys of a load", "Forces on nodes.") \
   X(SCENE, SIGNALS, "signals", THINGS, NONE, ANY, false, 0, "", "a signal", "Signals with a name, for use in several places.") \
-  X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, false, 0, "", "{NODE: [x, y], ...}", "Named sets of positions to start from. A node that is not listed stays as drawn.") \
+  X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, false, 0, "", "`{NODE: [x, y], ...}`", "Named sets of positions to start from. A node that is not listed stays as drawn.") \
   X(SCENE, INITIAL, "initial", MAP, NONE, ANY, false, 0, "", "", "The state at t = 0. Without it: at rest, as drawn.") \
   X(SCENE, SOLVER, "solver", MAP, NONE, ANY, false, 0, "", "", "How to integrate. A run needs it.") \
   X(SCENE, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "How long, and what to measure. A run needs it.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "What to record.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, true, 0, "", "", "Where the node is drawn.") \
-  X(NODE, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "A group, or a list of groups of which the later wins.") \
+  X(NODE, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "Where its defaults come from; the later group wins.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, false, 0, "0", "", "Point mass, besides what its members bring.") \
   X(NODE, FIXED, "fixed", FIXED, NONE, ANY, false, 0, "none", "none|x|y|both", "Supports; also as a list, `[x, y]`.") \
-  X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "A group, or a list of groups of which the later wins.") \
+  X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "Where its defaults come from; the later group wins.") \
   X(MEMBER, NODES, "nodes", NODE_PAIR, NONE, ANY, true, 0, "", "", "The two nodes it joins.") \
   X(MEMBER, KIND, "kind", WORD, NONE, ANY, true, 0, "", "bar|spring|cable", "A bar and a spring pull and push; a cable only pulls, and carries nothing while slack.") \
   X(MEMBER, STIFFNESS, "stiffness", NUMBER, STIFFNESS, NOT_NEGATIVE, false, 1, "0", "", "Force for each length of stretch.") \
@@ -57,7 +57,7 @@
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sticking.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sliding.") \
   X(FRICTION, STICK_VELOCITY, "stick_velocity", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "", "", "Half the width of the stick band. Karnopp's law needs it.") \
-  X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "A group, or a list of groups of which the later wins.") \
+  X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "Where its defaults come from; the later group wins.") \
   X(CONTACT, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, false, 0, "the ground's", "", "Instead of the ground's.") \
   X(CONTACT, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, false, 0, "the ground's", "", "Instead of the ground's.") \
   X(CONTACT, FRICTION, "friction", MAP, NONE, ANY, false, 0, "the ground's", "", "Overrides the ground's key by key.") \
@@ -90,8 +90,8 @@
   X(RAMP, START, "start", NUMBER, TIME, ANY, false, 0, "0", "", "When it leaves 0.") \
   X(RAMP, STOP, "stop", NUMBER, TIME, ANY, true, 0, "", "", "When it reaches amplitude.") \
   X(INITIAL, CONFIGURATION, "configuration", NAME, NONE, ANY, false, 0, "", "", "A configuration, or a text parameter that names one.") \
-  X(INITIAL, POSITIONS, "positions", THINGS, NONE, ANY, false, 0, "", "[x, y]", "Positions of single nodes; they win over the configuration.") \
-  X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, false, 0, "", "[vx, vy]", "Velocities of single nodes.") \
+  X(INITIAL, POSITIONS, "positions", THINGS, NONE, ANY, false, 0, "", "`[x, y]`", "Positions of single nodes; they win over the configuration.") \
+  X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, false, 0, "", "`[vx, vy]`", "Velocities of single nodes.") \
   X(INITIAL, VELOCITY, "velocity", PAIR, VELOCITY, ANY, false, 0, "[0, 0]", "", "Velocity of every other node, where it is free.") \
   X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, false, 0, "false", "", "Come to rest before t = 0, with actuators, driven loads, belt and friction off: `true`, or a mapping.") \
   X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "1e-8", "", "At rest when every node is slower,") \
