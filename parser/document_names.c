@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "parser/document_parts.h"
+#include "parser/text.h"
 
 enum { SLOT_COUNT = 2048, FEW_KEYS = 8 };
 
@@ -85,7 +86,7 @@ static bool refused(strut_tree *key, strut_tree *earlier, strut_diagnostics *dia
                    "'<<' is not allowed; use groups to share keys between things");
   else if (earlier)
     strut_diagnose(diagnostics, key->place, "duplicate key '%.*s'; the first one is in line %u",
-                   SHOWN_MOST, key->text, earlier->place.line);
+                   strut_text_cut(key->text, SHOWN_MOST), key->text, earlier->place.line);
   else
     return false;
   return true;

@@ -97,6 +97,12 @@ bool strut_expression_unknown_name(strut_expression_reader *r, size_t begin, siz
 }
 
 bool strut_expression_unknown_function(strut_expression_reader *r, size_t begin, size_t length) {
+  strut_quantity ignored;
+  if (strut_expression_reserved(r->text + begin, length) ||
+      strut_expression_lookup(r, r->text + begin, length, &ignored) != 0)
+    return strut_expression_fail(r, begin, begin + length,
+                                 "'%.*s' is no function; write '*' to multiply",
+                                 length > SHOWN_MOST ? SHOWN_MOST : (int)length, r->text + begin);
   return fail_with_hint(r, begin, length, "function", false, true, false);
 }
 

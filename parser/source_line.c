@@ -65,17 +65,23 @@ typedef struct window {
   uint32_t points, first, end;
 } window;
 
-static window choose(const strut_cursor *line, strut_place place) {
+static bool at_line_end(const strut_cursor *cursor) {
+  return cursor->offset >= cursor->length ||
+         strut_text_break(cursor->text + cursor->offset, cursor->length - cursor->offset) > 0;
+}
+
+static window choose(strut_cursor *line, strut_place place) {
+  while (place.column > SHOWN_MOST && line->column <= place.column - SHOWN_BEFORE &&
+         !at_line_end(line))
+    strut_cursor_step(line);
   strut_cursor cursor = *line;
-  window shown = {0};
-  while (cursor.offset < cursor.length &&
-         !strut_text_break(cursor.text + cursor.offset, cursor.length - cursor.offset)) {
+  window shown = {.points = line->column - 1, .first = line->column - 1};
+  while (!at_line_end(&cursor) && shown.points <= place.column + SHOWN_MOST) {
     strut_cursor_step(&cursor);
     shown.points++;
-    if (shown.points > place.column && shown.points - place.column > SHOWN_MOST) break;
   }
   shown.end = shown.points;
-  if (shown.points > SHOWN_MOST && place.column > SHOWN_BEFORE)
+  if (!shown.first && shown.points > SHOWN_MOST && place.column > SHOWN_BEFORE)
     shown.first = place.column - SHOWN_BEFORE;
   if (shown.end - shown.first > SHOWN_MOST) shown.end = shown.first + SHOWN_MOST;
   return shown;
@@ -83,7 +89,7 @@ static window choose(const strut_cursor *line, strut_place place) {
 
 /* Calls for each shown character: the source itself, or what stands below it up to the place. */
 static void append_source(strut_text_builder *out, strut_cursor cursor, window shown) {
-  for (uint32_t i = 0; i < shown.end; i++) {
+  for (uint32_t i = cursor.column - 1; i < shown.end; i++) {
     uint32_t code;
     const char *here = cursor.text + cursor.offset;
     size_t size = strut_text_decode(here, cursor.length - cursor.offset, &code);
@@ -100,7 +106,7 @@ static void append_caret(strut_text_builder *out, strut_cursor cursor, window sh
                          strut_place place) {
   uint32_t from = place.column ? place.column - 1 : 0, length = place.length ? place.length : 1;
   uint32_t to = length > shown.end || from > shown.end - length ? shown.end : from + length;
-  for (uint32_t i = 0; i < shown.end && i < to; i++) {
+  for (uint32_t i = cursor.column - 1; i < shown.end && i < to; i++) {
     uint32_t code;
     strut_text_decode(cursor.text + cursor.offset, cursor.length - cursor.offset, &code);
     strut_cursor_step(&cursor);
@@ -113,8 +119,7 @@ static void append_caret(strut_text_builder *out, strut_cursor cursor, window sh
   if (from >= shown.end) append_bytes(out, "^", 1); /* behind the line's last character */
 }
 
-void strut_source_line_show(strut_text_builder *out, const strut_cursor *cursor,
-                            strut_place place) {
+void strut_source_line_show(strut_text_builder *out, strut_cursor *cursor, strut_place place) {
   window shown = choose(cursor, place);
   if (!shown.points) return;
   const char *before = shown.first ? "..." : "", *after = shown.end < shown.points ? "..." : "";

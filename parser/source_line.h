@@ -22,7 +22,10 @@ typedef struct strut_text_builder {
 void strut_text_append(strut_text_builder *out, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/** Appends the line at whose beginning the cursor stands, and the caret line below it. */
-void strut_source_line_show(strut_text_builder *out, const strut_cursor *cursor, strut_place place);
+/**
+ * Appends the line in which the cursor stands, at or before the place, and the caret line below it.
+ * The cursor moves on to where the shown stretch begins: places in order cost one walk of a line.
+ */
+void strut_source_line_show(strut_text_builder *out, strut_cursor *cursor, strut_place place);
 
 #endif

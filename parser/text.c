@@ -42,6 +42,13 @@ size_t strut_text_points(const char *text, size_t length) {
   return points;
 }
 
+int strut_text_cut(const char *text, int most) {
+  int length = (int)strnlen(text, (size_t)most + 1);
+  if (length <= most) return length;
+  for (length = most; length && continues((unsigned char)text[length]); length--) continue;
+  return length;
+}
+
 size_t strut_text_mark(const char *text, size_t length) {
   return length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
