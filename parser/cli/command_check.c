@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_check.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+#include "engine/run/plan.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/streams.h"
+
+enum { MOST_MEMBERS = 40, DIGITS = 5 };
+
+static const double TURN = 6.283185307179586476925;
+
+static const strut_option options[] = {
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+typedef struct quantity {
+  char text[STRUT_QUANTITY_TEXT];
+} quantity;
+
+static quantity in(double value, const char *unit) {
+  quantity q;
+  strut_quantity_text(value, DIGITS, unit, q.text);
+  return q;
+}
+
+static const char *kind_name(strut_member_kind kind) {
+  static const char *const names[] = {"bar", "spring", "cable"};
+  return names[kind];
+}
+
+static void print_things(const strut_plan *plan) {
+  size_t members = plan->bars + plan->springs + plan->cables;
+  printf("  nodes              %zu, with %zu degrees of freedom\n", plan->nodes,
+         plan->degrees_of_freedom);
+  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members, plan->bars,
+         plan->springs, plan->cables);
+  printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
+         plan->contacts, plan->actuators, plan->loads);
+  printf("  memory             %s\n", in((double)plan->bytes, "B").text);
+}
+
+static void print_run(const strut_plan *plan, const strut_scene *scene) {
+  if (!plan->runnable) {
+    printf("  no run             some node that can move has no mass: statics only\n");
+    return;
+  }
+  double step = scene->experiment.step, hertz = plan->largest_frequency / TURN;
+  printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
+         plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
+  printf("  highest frequency  %s, undamped, all contacts closed\n", in(hertz, "Hz").text);
+  printf("  largest step       %s for rk4, contacts and damping counted (%s)\n",
+         in(plan->step_limit, "s").text,
+         plan->step_limit_exact ? "from all eigenvalues" : "estimated");
+  if (step > plan->step_limit) {
+    printf("  step               %s: too large, strut run will refuse it\n", in(step, "s").text);
+  } else if (step > 0) {
+    printf("  step               %s\n", in(step, "s").text);
+  }
+}
+
+static void print_terms(const strut_plan *plan, bool wanted, const char *title) {
+  bool any = false;
+  for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
+    const strut_plan_term *term = &plan->terms[i];
+    if (term->in != wanted) continue;
+    if (!any) printf("\n%s\n", title);
+    any = true;
+    printf("  %-18s %s %s\n", term->name, wanted ? "for" : "needs", term->why);
+  }
+}
+
+/* Every member's rest length, said in the four ways of the field. */
+static void print_members(const strut_scene *scene) {
+  if (scene->member_count == 0) return;
+  printf("\n  %-12s %-6s %12s %12s %10s %12s %13s %12s\n", "member", "kind", "drawn", "rest length",
+         "ratio", "pretension", "force density", "stiffness");
+  for (size_t i = 0; i < scene->member_count && i < MOST_MEMBERS; i++) {
+    strut_rest rest;
+    const strut_member *member = &scene->members[i];
+    if (!strut_member_rest(scene, i, &rest)) continue;
+    printf("  %-12s %-6s %12s %12s %10.5g %12s %13s %12s\n", member->name, kind_name(member->kind),
+           in(rest.drawn_length, "m").text, in(rest.length, "m").text, rest.ratio,
+           in(rest.pretension, "N").text, in(rest.force_density, "N/m").text,
+           in(rest.stiffness, "N/m").text);
+  }
+  if (scene->member_count > MOST_MEMBERS) {
+    printf("  ... and %zu more; --json lists all\n", scene->member_count - MOST_MEMBERS);
+  }
+}
+
+static void print_plan(const strut_plan *plan, const strut_scene *scene) {
+  printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
+  print_things(plan);
+  print_run(plan, scene);
+  print_terms(plan, true, "each step evaluates");
+  print_terms(plan, false, "left out, for nothing asks for it");
+  print_members(scene);
+}
+
+static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene *scene) {
+  struct cJSON *root = json->root;
+  strut_json_text(json, root, "name", scene->name);
+  strut_json_text(json, root, "strut_version", STRUT_VERSION);
+  strut_json_integer(json, root, "language", STRUT_LANGUAGE_VERSION);
+  strut_json_integer(json, root, "nodes", (int64_t)plan->nodes);
+  strut_json_integer(json, root, "degrees_of_freedom", (int64_t)plan->degrees_of_freedom);
+  strut_json_integer(json, root, "bars", (int64_t)plan->bars);
+  strut_json_integer(json, root, "springs", (int64_t)plan->springs);
+  strut_json_integer(json, root, "cables", (int64_t)plan->cables);
+  strut_json_integer(json, root, "contacts", (int64_t)plan->contacts);
+  strut_json_integer(json, root, "actuators", (int64_t)plan->actuators);
+  strut_json_integer(json, root, "loads", (int64_t)plan->loads);
+  strut_json_integer(json, root, "mass_nonzeros", (int64_t)plan->mass_nonzeros);
+  strut_json_integer(json, root, "factor_nonzeros", (int64_t)plan->factor_nonzeros);
+  strut_json_integer(json, root, "dense_entries", (int64_t)plan->dense_entries);
+  strut_json_integer(json, root, "bytes", (int64_t)plan->bytes);
+  strut_json_bool(json, root, "runnable", plan->runnable);
+  strut_json_number(json, root, "largest_frequency",
+                    plan->runnable ? plan->largest_frequency / TURN : (double)NAN);
+  strut_json_number(json, root, "step", scene->experiment.step);
+  strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
+  strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);
+}
+
+static void add_terms(strut_json *json, const strut_plan *plan) {
+  struct cJSON *terms = strut_json_object(json, json->root, "terms");
+  for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
+    strut_json_bool(json, terms, plan->terms[i].name, plan->terms[i].in);
+  }
+}
+
+static void add_members(strut_json *json, const strut_scene *scene) {
+  struct cJSON *members = strut_json_object(json, json->root, "members");
+  for (size_t i = 0; i < scene->member_count; i++) {
+    strut_rest rest;
+    const strut_member *member = &scene->members[i];
+    if (!strut_member_rest(scene, i, &rest)) continue;
+    struct cJSON *row = strut_json_object(json, members, member->name);
+    strut_json_text(json, row, "kind", kind_name(member->kind));
+    strut_json_number(json, row, "drawn_length", rest.drawn_length);
+    strut_json_number(json, row, "rest_length", rest.length);
+    strut_json_number(json, row, "rest_length_ratio", rest.ratio);
+    strut_json_number(json, row, "pretension", rest.pretension);
+    strut_json_number(json, row, "force_density", rest.force_density);
+    strut_json_number(json, row, "stiffness", rest.stiffness);
+  }
+}
+
+static strut_status print_json(const strut_plan *plan, const strut_scene *scene) {
+  strut_json json = strut_json_begin();
+  add_plan(&json, plan, scene);
+  add_terms(&json, plan);
+  add_members(&json, scene);
+  char *text = strut_json_end(&json);
+  if (!text) return strut_complain_of_memory();
+  fputs(text, stdout);
+  strut_release(text);
+  return STRUT_OK;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_plan plan;
+  strut_model *model = NULL;
+  strut_error error = {0};
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
+  if (status != STRUT_OK) {
+    strut_complain(&error);
+  } else if (arguments->json) {
+    status = print_json(&plan, &scene);
+  } else {
+    print_plan(&plan, &scene);
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_check = {
+    .name = "check",
+    .model = "MODEL",
+    .summary = "checks a model and says what running it will take",
+    .details =
+        "\nPrints what the model consists of, the terms of the equations that its step\n"
+        "evaluates and those it leaves out, the largest stable step, and for every member\n"
+        "the rest length in each of the four ways to give one.\n",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_run.h"
+
+#include <stdio.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/csv.h"
+#include "engine/output/file.h"
+#include "engine/output/hdf5.h"
+#include "engine/output/json.h"
+#include "engine/output/results.h"
+#include "engine/run/simulate.h"
+#include "parser/cli/interrupt.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/progress.h"
+#include "parser/cli/streams.h"
+#include "parser/write_scene.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write summary, scene and trajectories into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
+    {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
+    {STRUT_OPTION_FORCE, "force", NULL, "run even where the step is above the stability limit"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+/* What -o DIR needs. All zero without it. */
+typedef struct kept {
+  strut_results results;
+  char *scene_text; /* the effective scene */
+  strut_sink *sinks[2];
+  size_t sink_count;
+} kept;
+
+static bool began(strut_status status) {
+  return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
+}
+
+static strut_status begin_results(const strut_arguments *arguments, const strut_scene *scene,
+                                  kept *keep, strut_error *error) {
+  if (!arguments->output) return STRUT_OK;
+  strut_status status = strut_results_begin(&keep->results, arguments->output, error);
+  if (status != STRUT_OK) return status;
+  keep->scene_text = strut_scene_write(scene);
+  if (keep->scene_text) {
+    keep->sinks[0] = strut_csv_create(keep->results.stage);
+    keep->sinks[1] = strut_hdf5_create(keep->results.stage, keep->scene_text);
+    keep->sink_count = 2;
+  }
+  if (keep->sinks[0] && keep->sinks[1]) return STRUT_OK;
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+}
+
+/* Adds what is known at the end only, and lets all files appear. */
+static strut_status complete_results(kept *keep, const strut_summary *summary,
+                                     const strut_scene *scene, strut_error *error) {
+  if (!keep->results.stage) return STRUT_OK;
+  const char *stage = keep->results.stage;
+  char *json = strut_summary_json(summary, scene, false);
+  if (!json) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = strut_file_write_text(stage, "summary.json", json, error);
+  strut_release(json);
+  if (status == STRUT_OK) {
+    status = strut_file_write_text(stage, "scene.yaml", keep->scene_text, error);
+  }
+  return status == STRUT_OK ? strut_results_commit(&keep->results, error) : status;
+}
+
+static void free_results(kept *keep) {
+  strut_csv_free(keep->sinks[0]);
+  strut_hdf5_free(keep->sinks[1]);
+  strut_release(keep->scene_text);
+  strut_results_abandon(&keep->results); /* nothing where they are complete */
+}
+
+static strut_status simulate(const strut_model *model, const strut_arguments *arguments, kept *keep,
+                             strut_summary *summary, strut_error *error) {
+  strut_progress progress = strut_progress_begin(arguments->quiet);
+  const strut_run_options run = {
+      .force = arguments->force,
+      .interrupt = strut_interrupt_watch(),
+      .progress = progress.wanted ? strut_progress_show : NULL,
+      .progress_context = &progress,
+      .sinks = keep->sinks,
+      .sink_count = keep->sink_count,
+  };
+  strut_status status = begin_results(arguments, model->scene, keep, error);
+  if (status == STRUT_OK) status = strut_simulate(model, &run, summary, error);
+  strut_progress_end(&progress);
+  return status;
+}
+
+static strut_status print_summary(const strut_arguments *arguments, const strut_summary *summary,
+                                  const strut_scene *scene) {
+  if (arguments->quiet && !arguments->json) return STRUT_OK;
+  char *text = arguments->json ? strut_summary_json(summary, scene, true)
+                               : strut_summary_table(summary, scene);
+  if (!text) return strut_complain_of_memory();
+  fputs(text, stdout);
+  strut_release(text);
+  return STRUT_OK;
+}
+
+static strut_status run_model(const strut_arguments *arguments, const strut_model *model) {
+  kept keep = {0};
+  strut_summary summary = {0};
+  strut_error error = {0}, late = {0};
+  strut_status status = simulate(model, arguments, &keep, &summary, &error);
+  if (status != STRUT_OK) strut_complain(&error);
+  if (began(status)) {
+    strut_status written = complete_results(&keep, &summary, model->scene, &late);
+    if (written != STRUT_OK) {
+      strut_complain(&late);
+      status = written;
+    }
+    strut_status printed = print_summary(arguments, &summary, model->scene);
+    if (status == STRUT_OK) status = printed;
+  }
+  strut_summary_free(&summary);
+  free_results(&keep);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_model *model = NULL;
+  strut_error error = {0};
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) {
+    status = run_model(arguments, model);
+  } else {
+    strut_complain(&error);
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_run = {
+    .name = "run",
+    .model = "MODEL",
+    .summary = "runs the experiment of a model",
+    .details =
+        "\nThe end prints a short table, or with --json the whole summary. With -o, DIR gets\n"
+        "summary.json, scene.yaml (the scene as it was run: running it gives the same bits),\n"
+        "trajectory.h5 and, as CSV, nodes, members, contacts and energy as far as the scene\n"
+        "records them: all of them or, where something fails, none.\n"
+        "Ctrl-C stops the run and keeps what it has so far; a second one kills.\n",
+    .options = options,
+    .run = run,
+};

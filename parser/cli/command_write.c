@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_write.h"
+
+#include <stdio.h>
+
+#include "engine/base/memory.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/streams.h"
+#include "parser/write_scene.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  char *text = strut_scene_write(&scene);
+  if (text) {
+    fputs(text, stdout);
+  } else {
+    status = strut_complain_of_memory();
+  }
+  strut_release(text);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_write = {
+    .name = "write",
+    .model = "MODEL",
+    .summary = "prints a model as it would be run",
+    .details =
+        "\nParameters, groups and units are resolved: every value stands where it is used,\n"
+        "in SI units, and running the text gives the same bits.\n",
+    .options = options,
+    .run = run,
+};

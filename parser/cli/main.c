@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The program strut: finds the command, lets it run, and says with its exit code how it went. */
+#include <gsl/gsl_errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/cli/command_check.h"
+#include "parser/cli/command_keys.h"
+#include "parser/cli/command_run.h"
+#include "parser/cli/command_write.h"
+#include "parser/cli/options.h"
+#include "parser/cli/streams.h"
+
+static const strut_command *const commands[] = {&strut_command_run, &strut_command_check,
+                                                &strut_command_write, &strut_command_keys, NULL};
+
+const strut_command *strut_command_at(size_t i) { return commands[i]; }
+
+static strut_status run_command(const strut_command *command, int argc, char **argv) {
+  strut_arguments arguments;
+  strut_status status = strut_arguments_read(command, argc, argv, &arguments);
+  if (status == STRUT_OK && arguments.help) {
+    strut_command_help(command);
+  } else if (status == STRUT_OK) {
+    status = command->run(&arguments);
+  }
+  strut_arguments_free(&arguments);
+  return status;
+}
+
+/* strut help [COMMAND] */
+static strut_status help(int argc, char **argv) {
+  if (argc <= 1) {
+    strut_program_help();
+    return STRUT_OK;
+  }
+  const strut_command *command = strut_command_find(argv[1]);
+  if (!command) return STRUT_USAGE;
+  strut_command_help(command);
+  return STRUT_OK;
+}
+
+static strut_status run_program(int argc, char **argv) {
+  const char *first = argc > 1 ? argv[1] : NULL;
+  if (!first) {
+    fprintf(stderr, "strut: a command is missing; 'strut help' lists them\n");
+    return STRUT_USAGE;
+  }
+  if (strcmp(first, "--version") == 0) {
+    printf("strut %s\n", STRUT_VERSION);
+    return STRUT_OK;
+  }
+  bool asked = strcmp(first, "help") == 0 || strcmp(first, "--help") == 0;
+  if (asked || strcmp(first, "-h") == 0) return help(argc - 1, argv + 1);
+  const strut_command *command = strut_command_find(first);
+  return command ? run_command(command, argc - 1, argv + 1) : STRUT_USAGE;
+}
+
+int main(int argc, char **argv) {
+  strut_streams_open();
+  gsl_set_error_handler_off(); /* GSL reports by its return values; it must not abort */
+  return strut_streams_close(run_program(argc, argv));
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What every command with a MODEL begins with: the scene, or all that is wrong with it.
+ */
+#ifndef STRUT_PARSER_CLI_OPEN_MODEL_H
+#define STRUT_PARSER_CLI_OPEN_MODEL_H
+
+#include "engine/scene/check.h"
+#include "engine/scene/scene.h"
+#include "parser/cli/options.h"
+
+/** How a command wants its scene. */
+typedef enum strut_open_purpose {
+  STRUT_OPEN_FOR_RUN,
+  STRUT_OPEN_FOR_ANY /* for a run if the file says anything about one, else for statics */
+} strut_open_purpose;
+
+/** Reads the model that the arguments name; messages go to stderr. strut_scene_free frees it. */
+strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
+                              strut_scene *scene);
+
+#endif

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "parser/diagnostics.h"
+
+enum { MOST_OPTIONS = 16, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
+
+static const strut_option help_option = {STRUT_OPTION_HELP, "help", NULL, "print this help"};
+
+/* The i-th option of a command, with --help as the last; NULL after it. */
+static const strut_option *option_at(const strut_command *command, size_t i) {
+  size_t count = 0;
+  while (command->options && command->options[count].id != STRUT_OPTION_END) count++;
+  if (i < count) return &command->options[i];
+  return i == count ? &help_option : NULL;
+}
+
+static const char *option_name_at(const void *context, size_t i) {
+  const strut_option *option = option_at(context, i);
+  return option ? option->name : NULL;
+}
+
+static const char *command_name_at(const void *context, size_t i) {
+  (void)context;
+  const strut_command *command = strut_command_at(i);
+  return command ? command->name : NULL;
+}
+
+const strut_command *strut_command_find(const char *name) {
+  for (size_t i = 0; strut_command_at(i); i++) {
+    if (strcmp(strut_command_at(i)->name, name) == 0) return strut_command_at(i);
+  }
+  const char *near = strut_did_you_mean(name, command_name_at, NULL);
+  fprintf(stderr, "strut: unknown command '%s'", name);
+  if (near) fprintf(stderr, "; did you mean '%s'?", near);
+  fprintf(stderr, "\n'strut help' lists the commands\n");
+  return NULL;
+}
+
+static strut_status wrong(const strut_command *command) {
+  fprintf(stderr, "'strut %s --help' lists the options\n", command->name);
+  return STRUT_USAGE;
+}
+
+/* `word` begins with its dashes; a name that getopt took as an abbreviation is the suggestion. */
+static strut_status unknown_option(const strut_command *command, const char *word,
+                                   const char *meant) {
+  int length = (int)strcspn(word, "=");
+  char name[64];
+  snprintf(name, sizeof name, "%.*s", length > 2 ? length - 2 : 0, word + 2);
+  if (!meant) meant = strut_did_you_mean(name, option_name_at, command);
+  fprintf(stderr, "strut %s: unknown option '%.*s'", command->name, length, word);
+  if (meant) fprintf(stderr, "; did you mean '--%s'?", meant);
+  fputc('\n', stderr);
+  return wrong(command);
+}
+
+/* getopt has refused argv[optind - 1], or a letter in it. */
+static strut_status refuse(const strut_command *command, int code, char **argv) {
+  const char *word = argv[optind - 1];
+  bool letter = strncmp(word, "--", 2) != 0;
+  if (code == ':' && letter) {
+    fprintf(stderr, "strut %s: option '-%c' needs a value\n", command->name, optopt);
+  } else if (code == ':') {
+    fprintf(stderr, "strut %s: option '%s' needs a value\n", command->name, word);
+  } else if (letter) {
+    fprintf(stderr, "strut %s: unknown option '-%c'\n", command->name, optopt);
+  } else if (optopt) {
+    int length = (int)strcspn(word, "=");
+    fprintf(stderr, "strut %s: option '%.*s' takes no value\n", command->name, length, word);
+  } else {
+    return unknown_option(command, word, NULL);
+  }
+  return wrong(command);
+}
+
+/* One --set: splits NAME=VALUE in place. */
+static strut_status take_override(const strut_command *command, char *text, strut_arguments *to) {
+  char *equals = strchr(text, '=');
+  if (!equals || equals == text) {
+    fprintf(stderr, "strut %s: --set expects NAME=VALUE, not '%s'\n", command->name, text);
+    return wrong(command);
+  }
+  *equals = '\0';
+  to->overrides[to->override_count++] = (strut_override){text, equals + 1};
+  return STRUT_OK;
+}
+
+static strut_status take_model(const strut_command *command, const char *text,
+                               strut_arguments *to) {
+  if (!command->model || to->model) {
+    fprintf(stderr, "strut %s: what is '%s' for?\n", command->name, text);
+    return wrong(command);
+  }
+  to->model = text;
+  return STRUT_OK;
+}
+
+static strut_status take(const strut_command *command, int id, strut_arguments *to) {
+  switch (id) {
+    case POSITIONAL:
+      return take_model(command, optarg, to);
+    case STRUT_OPTION_SET:
+      return take_override(command, optarg, to);
+    case STRUT_OPTION_OUTPUT:
+      to->output = optarg;
+      break;
+    case STRUT_OPTION_JSON:
+      to->json = true;
+      break;
+    case STRUT_OPTION_QUIET:
+      to->quiet = true;
+      break;
+    case STRUT_OPTION_FORCE:
+      to->force = true;
+      break;
+    case STRUT_OPTION_HELP:
+      to->help = true;
+      break;
+    default:
+      break;
+  }
+  return STRUT_OK;
+}
+
+/* The table as getopt wants it. "-" hands out positional arguments in order, ":" stays silent. */
+static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTIONS + 3],
+                        struct option rows[MOST_OPTIONS + 1]) {
+  char *at = letters;
+  *at++ = '-';
+  *at++ = ':';
+  for (size_t i = 0; i < MOST_OPTIONS && option_at(command, i); i++) {
+    const strut_option *option = option_at(command, i);
+    int needs = option->argument ? required_argument : no_argument;
+    rows[i] = (struct option){option->name, needs, NULL, (int)option->id};
+    if ((int)option->id >= FIRST_WITHOUT_LETTER) continue;
+    *at++ = (char)option->id;
+    if (option->argument) *at++ = ':';
+  }
+  *at = '\0';
+}
+
+/* The word in which getopt found a long option, to be compared with the name it found. */
+static bool abbreviated(char **argv, const struct option *row) {
+  const char *word = argv[optind - 1];
+  if (row->has_arg && optarg == word) word = argv[optind - 2];
+  size_t length = strcspn(word, "=");
+  return length != strlen(row->name) + 2 || strncmp(word + 2, row->name, length - 2) != 0;
+}
+
+strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
+                                  strut_arguments *arguments) {
+  char letters[2 * MOST_OPTIONS + 3];
+  struct option rows[MOST_OPTIONS + 1] = {{0}};
+  fill_getopt(command, letters, rows);
+  *arguments = (strut_arguments){0};
+  arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
+  if (!arguments->overrides) {
+    fprintf(stderr, "strut %s: out of memory\n", command->name);
+    return STRUT_NO_MEMORY;
+  }
+  strut_status status = STRUT_OK;
+  opterr = 0;
+  while (status == STRUT_OK) {
+    int row = -1, id = getopt_long(argc, argv, letters, rows, &row);
+    if (id == -1) break;
+    if (id == '?' || id == ':') {
+      status = refuse(command, id, argv);
+    } else if (row >= 0 && abbreviated(argv, &rows[row])) {
+      const char *word = argv[optind - (rows[row].has_arg && optarg == argv[optind - 1] ? 2 : 1)];
+      status = unknown_option(command, word, rows[row].name);
+    } else {
+      status = take(command, id, arguments);
+    }
+  }
+  for (; status == STRUT_OK && optind < argc; optind++) { /* behind "--" */
+    status = take_model(command, argv[optind], arguments);
+  }
+  bool missing = command->model && !command->model_optional && !arguments->model;
+  if (status == STRUT_OK && missing && !arguments->help) {
+    fprintf(stderr, "strut %s: %s is missing\n", command->name, command->model);
+    status = wrong(command);
+  }
+  return status;
+}
+
+void strut_arguments_free(strut_arguments *arguments) {
+  strut_release(arguments->overrides);
+  *arguments = (strut_arguments){0};
+}
+
+static void print_option(const strut_option *option) {
+  char left[64], letter[8] = "    ";
+  if ((int)option->id < FIRST_WITHOUT_LETTER) {
+    snprintf(letter, sizeof letter, "-%c, ", (char)option->id);
+  }
+  snprintf(left, sizeof left, "%s--%s%s%s", letter, option->name, option->argument ? " " : "",
+           option->argument ? option->argument : "");
+  printf("  %-*s %s\n", COLUMN, left, option->help);
+}
+
+void strut_command_help(const strut_command *command) {
+  printf("usage: strut %s", command->name);
+  if (command->options) printf(" [OPTION]...");
+  if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
+  printf("\n\nstrut %s: %s.\n", command->name, command->summary);
+  if (command->details) printf("%s", command->details);
+  printf("\nOptions:\n");
+  for (size_t i = 0; option_at(command, i); i++) print_option(option_at(command, i));
+}
+
+void strut_program_help(void) {
+  printf("strut %s: structures of bars, springs and cables, described in YAML\n\n", STRUT_VERSION);
+  printf("usage: strut COMMAND [OPTION]... [MODEL]\n\nCommands:\n");
+  for (size_t i = 0; strut_command_at(i); i++) {
+    printf("  %-8s %s\n", strut_command_at(i)->name, strut_command_at(i)->summary);
+  }
+  printf(
+      "\n'strut COMMAND --help' explains one of them; 'strut --version' prints the version.\n"
+      "MODEL is a file in strut's language ('strut keys' explains it), or - for the standard "
+      "input.\n\n"
+      "Exit code: 0 done, 1 wrong use, 2 the scene is not valid, 3 the computation failed,\n"
+      "4 trouble with files or memory, 130 interrupted.\n");
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Commands and their options: one table per command, from which the reading of the command line
+ * and the help both come.
+ *
+ * Only whole names are options: an abbreviation that works today would forbid a new option
+ * tomorrow.
+ */
+#ifndef STRUT_PARSER_CLI_OPTIONS_H
+#define STRUT_PARSER_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/base/status.h"
+#include "parser/read_scene.h"
+
+/** What an option sets in the arguments below; also its letter where it has one. */
+typedef enum strut_option_id {
+  STRUT_OPTION_END = 0,
+  STRUT_OPTION_HELP = 'h',
+  STRUT_OPTION_OUTPUT = 'o',
+  STRUT_OPTION_QUIET = 'q',
+  STRUT_OPTION_SET = 256, /* no letters from here on */
+  STRUT_OPTION_JSON,
+  STRUT_OPTION_FORCE
+} strut_option_id;
+
+/** One row of a command's table; the last has the id STRUT_OPTION_END. */
+typedef struct strut_option {
+  strut_option_id id;
+  const char *name;     /* without the two dashes */
+  const char *argument; /* what the help calls it; NULL: it takes none */
+  const char *help;
+} strut_option;
+
+/** A command line as read. Texts belong to argv. Zero-initialise. */
+typedef struct strut_arguments {
+  const char *model; /* NULL where the command takes none or none is given */
+  const char *output;
+  bool help, json, quiet, force;
+  strut_override *overrides; /* (override_count) */
+  size_t override_count;
+} strut_arguments;
+
+/** A command: the whole of what the program knows about it. */
+typedef struct strut_command {
+  const char *name;
+  const char *model; /* its one argument, such as "MODEL"; NULL: none */
+  bool model_optional;
+  const char *summary;         /* half a sentence for the list of commands */
+  const char *details;         /* lines for its own help; may be NULL */
+  const strut_option *options; /* besides --help, which every command has */
+  strut_status (*run)(const strut_arguments *arguments);
+} strut_command;
+
+/** All commands; NULL after the last. Defined beside main. */
+const strut_command *strut_command_at(size_t i);
+/** The command of that name, or NULL with the reason and a suggestion on stderr. */
+const strut_command *strut_command_find(const char *name);
+
+/** Reads argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
+strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
+                                  strut_arguments *arguments);
+void strut_arguments_free(strut_arguments *arguments);
+
+/** The help of a command, and of the program as a whole, on stdout. */
+void strut_command_help(const strut_command *command);
+void strut_program_help(void);
+
+#endif

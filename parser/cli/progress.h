@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A bar with the time left, on a terminal only.
+ */
+#ifndef STRUT_PARSER_CLI_PROGRESS_H
+#define STRUT_PARSER_CLI_PROGRESS_H
+
+#include <stdbool.h>
+
+typedef struct strut_progress {
+  bool wanted;  /* stderr is a terminal and nobody asked for quiet */
+  bool colour;  /* the terminal knows escape sequences and NO_COLOR is not set */
+  bool shown;   /* there is a bar to erase */
+  double start; /* [s] of the monotonic clock */
+} strut_progress;
+
+strut_progress strut_progress_begin(bool quiet);
+/** Draws; `context` is the strut_progress, fraction 0 to 1. */
+void strut_progress_show(void *context, double fraction);
+/** Erases the bar. */
+void strut_progress_end(strut_progress *progress);
+
+#endif

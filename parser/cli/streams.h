@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The standard streams, from their state at the start to the last byte that must arrive.
+ */
+#ifndef STRUT_PARSER_CLI_STREAMS_H
+#define STRUT_PARSER_CLI_STREAMS_H
+
+#include "engine/base/status.h"
+
+/** Takes the place of streams that are closed, so that no file of results lands in it. */
+void strut_streams_open(void);
+/**
+ * Makes sure that all of stdout has been written; the message is on stderr where it was not.
+ * Returns the program's exit code: that of `status`, or of file trouble instead of 0.
+ */
+int strut_streams_close(strut_status status);
+/** Prints a sentence on stderr as the program's error. */
+void strut_complain(const strut_error *error);
+/** The same for memory, which has nothing else to say; returns STRUT_NO_MEMORY. */
+strut_status strut_complain_of_memory(void);
+
+#endif
