@@ -6,7 +6,6 @@
 
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   const strut_drive_table *d = &model->drives;
-  if (t == state->drive_time) return;
   state->drive_time = t;
   for (int32_t i = 0; i < d->count; i++) {
     state->rest[d->member[i]] = model->members.rest[d->member[i]];

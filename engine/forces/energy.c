@@ -46,9 +46,9 @@ static double contact(const strut_model *model, const double *q) {
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
   for (int32_t i = 0; i < c->count; i++) {
-    int32_t n = c->node[i];
-    double gap = q[2 * n] * c->normal[0] + (q[2 * n + 1] - c->height) * c->normal[1];
-    if (gap < 0.0) sum += 0.5 * c->stiffness[i] * gap * gap;
+    uint32_t at = c->at[i];
+    double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
+    if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
   return sum;
 }

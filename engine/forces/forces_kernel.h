@@ -43,7 +43,7 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
   forces_start(model, force);
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
-  if (plan & STRUT_TERM_DRIVE) strut_drive_apply(model, state, t);
+  if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
   if (plan & STRUT_TERM_CONTACT) ground_kernel(model, state, q, v, force, ledger);
 }

@@ -6,7 +6,7 @@
 #define STRUT_ENGINE_FORCES_FRICTION_H
 
 /** x with its sign only: -1, 0 or 1. */
-static inline double strut_sign(double x) { return (double)((x > 0.0) - (x < 0.0)); }
+static inline double strut_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 /**
  * Coulomb's law with Karnopp's band, equation (9) as printed. normal [N] > 0, slip: speed along the

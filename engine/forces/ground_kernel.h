@@ -27,21 +27,23 @@ STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double da
 STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state, int32_t i,
                                double gap, double *restrict f, const double *restrict v,
                                bool sloped, bool rough, bool ledger) {
+  const strut_contact_entry *e = &c->entry[i];
+  strut_pair sum = strut_pair_load(f), reaction;
   double into = sloped ? v[0] * c->normal[0] + v[1] * c->normal[1] : v[1];
   double along = sloped ? v[0] * c->tangent[0] + v[1] * c->tangent[1] : v[0];
-  double damper = into < 0.0 ? -c->damping[i] * into : 0.0;
-  double normal = -c->stiffness[i] * gap + damper;
-  double slip = along - c->belt_speed, friction = 0.0;
+  double damper = into < 0.0 ? -e->damping * into : 0.0, slip = along - c->belt_speed;
+  double normal = -e->stiffness * gap + damper, friction = 0.0;
   if (rough) {
-    double applied = sloped ? f[0] * c->tangent[0] + f[1] * c->tangent[1] : f[0];
-    friction = strut_friction_force(normal, slip, applied, c->mu_static[i], c->mu_kinetic[i],
-                                    c->stick_velocity[i]);
+    double applied = sloped ? sum[0] * c->tangent[0] + sum[1] * c->tangent[1] : sum[0];
+    friction = strut_friction_force(normal, slip, applied, e->mu_static, e->mu_kinetic,
+                                    e->stick_velocity);
   }
-  strut_pair reaction = {friction, normal};
   if (sloped)
     reaction = (strut_pair){friction * c->tangent[0] + normal * c->normal[0],
                             friction * c->tangent[1] + normal * c->normal[1]};
-  strut_pair_store(f, strut_pair_load(f) + reaction);
+  else
+    reaction = (strut_pair){friction, normal};
+  strut_pair_store(f, sum + reaction);
   state->normal[i] = normal;
   state->friction[i] = friction;
   if (ledger) ground_ledger(state, c->belt_speed, damper, into, friction, slip);
@@ -50,12 +52,14 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
                              const double *restrict q, const double *restrict v,
                              double *restrict force, bool sloped, bool rough, bool ledger) {
-  const strut_contact_table c = model->contacts;
-  for (int32_t i = 0; i < c.count; i++) {
-    int32_t at = 2 * c.node[i];
-    double gap = q[at + 1] - c.height;
-    if (sloped) gap = q[at] * c.normal[0] + gap * c.normal[1];
-    if (gap < 0.0) ground_touch(&c, state, i, gap, force + at, v + at, sloped, rough, ledger);
+  const strut_contact_table *c = &model->contacts;
+  const uint32_t *restrict at = c->at;
+  const double height = c->height;
+  for (int32_t i = 0, count = c->count; i < count; i++) {
+    double gap = q[at[i] + 1] - height;
+    if (sloped) gap = q[at[i]] * c->normal[0] + gap * c->normal[1];
+    if (gap < 0.0)
+      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, ledger);
   }
 }
 

@@ -42,15 +42,16 @@ static void add_contacts(const strut_model *model, const double *q, strut_closed
                          strut_triplets *damping) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count && closed != STRUT_CLOSED_NONE; i++) {
-    int32_t n = c->node[i], row[2] = {row_of[2 * n], row_of[2 * n + 1]};
-    double gap = q[2 * n] * c->normal[0] + (q[2 * n + 1] - c->height) * c->normal[1];
+    uint32_t at = c->at[i];
+    int32_t row[2] = {row_of[at], row_of[at + 1]};
+    double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
     if (closed == STRUT_CLOSED_TOUCHING && !(gap < 0)) continue;
     for (int a = 0; a < 2; a++)
       for (int b = 0; b <= a; b++) {
         if (row[a] < 0 || row[b] < 0) continue;
         double nn = c->normal[a] * c->normal[b];
-        strut_triplets_add(stiffness, row[a], row[b], c->stiffness[i] * nn);
-        strut_triplets_add(damping, row[a], row[b], c->damping[i] * nn);
+        strut_triplets_add(stiffness, row[a], row[b], c->entry[i].stiffness * nn);
+        strut_triplets_add(damping, row[a], row[b], c->entry[i].damping * nn);
       }
   }
 }

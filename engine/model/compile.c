@@ -151,23 +151,23 @@ static void compile_contacts(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->contact_count;
   strut_contact_table *t = &model->contacts;
-  int32_t *node = indices(model, count, failed);
-  double *stiffness = doubles(model, count, failed), *damping = doubles(model, count, failed);
-  double *mu_static = doubles(model, count, failed), *mu_kinetic = doubles(model, count, failed);
-  double *stick = doubles(model, count, failed);
+  uint32_t *at = strut_arena_allocate(&model->arena, count, sizeof *at);
+  strut_contact_entry *entry = strut_arena_allocate(&model->arena, count, sizeof *entry);
+  if (!at || !entry) *failed = true;
   if (*failed || !scene->ground.present || !count) return;
   for (size_t i = 0; i < count; i++) {
     const strut_contact *contact = &scene->contacts[i];
-    node[i] = contact->node;
-    stiffness[i] = contact->stiffness, damping[i] = contact->damping;
+    at[i] = 2 * (uint32_t)contact->node;
+    entry[i] = (strut_contact_entry){.node = contact->node,
+                                     .stiffness = contact->stiffness,
+                                     .damping = contact->damping};
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
-    mu_static[i] = contact->friction.mu_static;
-    mu_kinetic[i] = contact->friction.mu_kinetic;
-    stick[i] = contact->friction.stick_velocity;
+    entry[i].mu_static = contact->friction.mu_static;
+    entry[i].mu_kinetic = contact->friction.mu_kinetic;
+    entry[i].stick_velocity = contact->friction.stick_velocity;
     model->plan |= STRUT_TERM_FRICTION;
   }
-  *t = (strut_contact_table){(int32_t)count, node, stiffness, damping, mu_static, mu_kinetic,
-                             stick, {1, 0}, {0, 1}, scene->ground.height,
+  *t = (strut_contact_table){(int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height,
                              scene->ground.belt_speed};
   model->plan |= STRUT_TERM_CONTACT;
   if (scene->ground.slope == 0.0) return;

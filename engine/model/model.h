@@ -49,13 +49,18 @@ typedef struct strut_member_table {
   const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
 } strut_member_table;
 
-/** Contact tables, one entry for each node that may touch. */
+/** One node that may touch: a record, because most of them are only asked whether they do. */
+typedef struct strut_contact_entry {
+  int32_t node;
+  double stiffness, damping;    /* c_g [N/m], k_g [N s/m] */
+  double mu_static, mu_kinetic; /* mu_0, mu [1]; 0 without friction */
+  double stick_velocity;        /* delta [m/s] */
+} strut_contact_entry;
+
 typedef struct strut_contact_table {
   int32_t count;
-  const int32_t *node;
-  const double *stiffness, *damping;      /* c_g [N/m], k_g [N s/m] */
-  const double *mu_static, *mu_kinetic;   /* mu_0, mu [1]; 0 without friction */
-  const double *stick_velocity;           /* delta [m/s] */
+  const uint32_t *at;               /* where its x stands in coordinate arrays: 2 * node */
+  const strut_contact_entry *entry; /* (count) */
   double tangent[2], normal[2];           /* unit vectors along and out of the ground */
   double height;                          /* at x = 0 [m] */
   double belt_speed;                      /* [m/s] */

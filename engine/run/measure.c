@@ -75,9 +75,9 @@ static void count_contacts(const strut_model *model, const strut_state *state, s
   const strut_contact_table *c = &model->contacts;
   m->window_steps++;
   for (int32_t i = 0; i < c->count; i++) {
-    int32_t n = c->node[i];
-    double up = state->q[2 * n + 1] - c->height;
-    double gap = c->normal[0] == 0.0 ? up : state->q[2 * n] * c->normal[0] + up * c->normal[1];
+    const double *q = state->q + c->at[i];
+    double up = q[1] - c->height;
+    double gap = c->normal[0] == 0.0 ? up : q[0] * c->normal[0] + up * c->normal[1];
     if (gap < 0.0) m->contact_steps[i]++;
     if (gap > m->max_height[i]) m->max_height[i] = gap;
   }

@@ -60,7 +60,7 @@ static strut_status fill_names(run *r) {
   s->contact_count = contacts;
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
   for (size_t i = 0; i < contacts; i++)
-    s->contacts[i].node = scene->nodes[r->model->contacts.node[i]].name;
+    s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
   return STRUT_OK;
 }
 
