@@ -107,13 +107,13 @@ static void test_a_falling_rod_does_not_move_sideways(void **unused) {
   build_contact(&scene, 0, K, 10);
   build_contact(&scene, 1, K, 10);
   motion_begin(&m, &scene, 1e-4);
-  bool hit = false;
+  bool fell = false;
   for (int i = 0; i < 1000; i++) {
     motion_steps(&m, 10);
-    hit |= m.state->q[3] < 0;
+    fell |= m.state->q[3] < 0;
     assert_near(m.state->q[0] + m.state->q[2], 0.3, 1e-13);
   }
-  assert_true(hit && fabs(m.state->q[2] - m.state->q[0]) > 0.35); /* it has fallen over */
+  assert_true(fell && fabs(m.state->q[2] - m.state->q[0]) > 0.35); /* it has fallen over */
   motion_end(&m);
   strut_scene_free(&scene);
 }

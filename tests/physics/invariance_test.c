@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Changes of a scene whose effect is known without any oracle: other units, mirror, other order. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/integrate/step_limit.h"
+#include "tests/physics/random_scene.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/structures.h"
+
+enum { RANDOM_SCENES = 60 };
+static const double FACTOR = 1024;
+
+/* Case 0 is the crawler, the others are random scenes; each gets an initial motion. */
+static void make(strut_scene *scene, uint64_t number) {
+  if (number == 0) {
+    strut_scene_init(scene);
+    structure_crawler(scene, 10, 1e-4, 0.1, false);
+    return;
+  }
+  random_scene(scene, number);
+  double *q = calloc(4 * scene->node_count, sizeof *q), *v = q + 2 * scene->node_count, t;
+  assert_non_null(q);
+  random_motion(scene, number, &t, q, v);
+  for (size_t i = 0; i < 2 * scene->node_count; i++) {
+    scene->nodes[i / 2].start[i % 2] = q[i];
+    scene->nodes[i / 2].velocity[i % 2] = v[i];
+  }
+  free(q);
+}
+
+/* A power of two well below the step limit: the random scenes are stiffer than one another. */
+static double stable_step(const strut_scene *scene) {
+  strut_step_limit limit;
+  strut_model *model = motion_compile(scene);
+  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  strut_model_free(model);
+  return exp2(floor(log2(0.3 * limit.limit)));
+}
+
+static void run(motion *m, const strut_scene *scene, double step, int64_t steps) {
+  motion_begin(m, scene, step);
+  m->state->ledger = true;
+  motion_steps(m, steps);
+  for (size_t i = 0; i < 2 * scene->node_count; i++) assert_true(isfinite(m->state->q[i]));
+}
+
+static void scale_lengths(strut_scene *s, double by) {
+  for (size_t i = 0; i < s->node_count; i++)
+    for (int c = 0; c < 2; c++) {
+      s->nodes[i].position[c] *= by;
+      s->nodes[i].start[c] *= by;
+      s->nodes[i].velocity[c] *= by;
+    }
+  for (size_t j = 0; j < s->member_count; j++) {
+    strut_member *m = &s->members[j];
+    m->axial_stiffness *= by;
+    if (m->rest_kind == STRUT_REST_LENGTH || m->rest_kind == STRUT_REST_PRETENSION)
+      m->rest_value *= by;
+  }
+  for (int c = 0; c < 2; c++) s->gravity[c] *= by;
+  s->ground.height *= by, s->ground.belt_speed *= by;
+  for (size_t i = 0; i < s->contact_count; i++) s->contacts[i].friction.stick_velocity *= by;
+  /* Strokes are lengths; loads on a signal take their factor from it, constant ones from here. */
+  for (size_t i = 0; i < s->signal_count; i++) {
+    s->signals[i].amplitude *= by;
+    for (size_t k = 0; k < s->signals[i].point_count; k++) ((double *)s->signals[i].value)[k] *= by;
+  }
+  for (size_t i = 0; i < s->load_count; i++)
+    for (int c = 0; c < 2 && s->loads[i].signal < 0; c++) s->loads[i].force[c] *= by;
+}
+
+static void scale_masses(strut_scene *s, double by) {
+  for (size_t i = 0; i < s->node_count; i++) s->nodes[i].mass *= by;
+  for (size_t j = 0; j < s->member_count; j++) {
+    strut_member *m = &s->members[j];
+    m->stiffness *= by, m->axial_stiffness *= by, m->damping *= by, m->mass *= by;
+    if (m->rest_kind == STRUT_REST_PRETENSION || m->rest_kind == STRUT_REST_FORCE_DENSITY)
+      m->rest_value *= by;
+  }
+  for (size_t i = 0; i < s->contact_count; i++)
+    s->contacts[i].stiffness *= by, s->contacts[i].damping *= by;
+  for (size_t i = 0; i < s->load_count; i++)
+    for (int c = 0; c < 2; c++) s->loads[i].force[c] *= by;
+}
+
+static void mirror(strut_scene *s) {
+  for (size_t i = 0; i < s->node_count; i++) {
+    s->nodes[i].position[0] *= -1;
+    s->nodes[i].start[0] *= -1;
+    s->nodes[i].velocity[0] *= -1;
+  }
+  for (size_t i = 0; i < s->load_count; i++) s->loads[i].force[0] *= -1;
+  s->gravity[0] *= -1, s->ground.slope *= -1, s->ground.belt_speed *= -1;
+}
+
+/* What the changed scene's motion must be of the first one's, times these. */
+typedef struct factors {
+  double x, y, energy;
+} factors;
+
+static void compare_bits(const motion *a, const motion *b, size_t nodes, factors f) {
+  for (size_t i = 0; i < 2 * nodes; i++) {
+    double by = i % 2 ? f.y : f.x; /* adding 0 makes -0 the same as 0 */
+    assert_same_bits(b->state->q[i] + 0.0, a->state->q[i] * by + 0.0);
+    assert_same_bits(b->state->v[i] + 0.0, a->state->v[i] * by + 0.0);
+  }
+  for (int p = 0; p < STRUT_POWER_COUNT; p++)
+    assert_same_bits(b->state->work[p] + 0.0, a->state->work[p] * f.energy + 0.0);
+}
+
+static void check_change(void (*change)(strut_scene *), factors f) {
+  for (uint64_t number = 0; number <= RANDOM_SCENES; number++) {
+    strut_scene first, second;
+    motion a, b;
+    int64_t steps = number ? 500 : 20000;
+    make(&first, number);
+    make(&second, number);
+    change(&second);
+    double step = number ? stable_step(&first) : 1e-4;
+    run(&a, &first, step, steps);
+    run(&b, &second, step, steps);
+    compare_bits(&a, &b, first.node_count, f);
+    motion_end(&a);
+    motion_end(&b);
+    strut_scene_free(&first);
+    strut_scene_free(&second);
+  }
+}
+
+static void larger(strut_scene *scene) { scale_lengths(scene, FACTOR); }
+static void smaller(strut_scene *scene) { scale_lengths(scene, 1 / FACTOR); }
+static void heavier(strut_scene *scene) { scale_masses(scene, FACTOR); }
+static void lighter(strut_scene *scene) { scale_masses(scene, 1 / FACTOR); }
+
+static void test_other_lengths_scale_every_bit(void **unused) {
+  (void)unused;
+  check_change(larger, (factors){FACTOR, FACTOR, FACTOR * FACTOR});
+  check_change(smaller, (factors){1 / FACTOR, 1 / FACTOR, 1 / (FACTOR * FACTOR)});
+}
+
+static void test_other_masses_scale_every_bit(void **unused) {
+  (void)unused;
+  check_change(heavier, (factors){1, 1, FACTOR});
+  check_change(lighter, (factors){1, 1, 1 / FACTOR});
+}
+
+static void test_the_mirror_image_moves_as_the_mirror_image(void **unused) {
+  (void)unused;
+  check_change(mirror, (factors){-1, 1, 1});
+}
+
+/* The same scene with nodes and members in another order: new_of[i] is where node i has gone. */
+static void shuffle(const strut_scene *from, strut_scene *to, int32_t *new_of, uint64_t *r) {
+  size_t n = from->node_count, m = from->member_count;
+  int32_t *place = calloc(m, sizeof *place);
+  assert_non_null(place);
+  for (size_t i = 0; i < n; i++) new_of[i] = (int32_t)i;
+  for (size_t j = 0; j < m; j++) place[j] = (int32_t)j;
+  for (size_t i = n - 1; i > 0; i--) {
+    size_t k = (size_t)random_below(r, (int32_t)i + 1);
+    int32_t other = new_of[k];
+    new_of[k] = new_of[i], new_of[i] = other;
+  }
+  for (size_t j = m - 1; j > 0; j--) {
+    size_t k = (size_t)random_below(r, (int32_t)j + 1);
+    int32_t other = place[k];
+    place[k] = place[j], place[j] = other;
+  }
+  for (size_t i = 0; i < n; i++) to->nodes[new_of[i]] = from->nodes[i];
+  for (size_t j = 0; j < m; j++) {
+    strut_member *member = &to->members[place[j]];
+    *member = from->members[j];
+    for (int e = 0; e < 2; e++) member->node[e] = new_of[member->node[e]];
+  }
+  for (size_t i = 0; i < from->actuator_count; i++)
+    to->actuators[i].member = place[from->actuators[i].member];
+  for (size_t i = 0; i < from->load_count; i++) to->loads[i].node = new_of[from->loads[i].node];
+  size_t count = 0;
+  for (int32_t node = 0; node < (int32_t)n; node++)
+    for (size_t i = 0; i < from->contact_count; i++) {
+      if (new_of[from->contacts[i].node] != node) continue;
+      to->contacts[count] = from->contacts[i];
+      to->contacts[count++].node = node;
+    }
+  free(place);
+}
+
+static void test_another_order_agrees_to_rounding(void **unused) {
+  (void)unused;
+  uint64_t r = 7;
+  for (uint64_t number = 0; number <= RANDOM_SCENES; number++) {
+    strut_scene first, second;
+    motion a, b;
+    make(&first, number);
+    make(&second, number);
+    int32_t *new_of = calloc(first.node_count, sizeof *new_of);
+    assert_non_null(new_of);
+    shuffle(&first, &second, new_of, &r);
+    double step = number ? stable_step(&first) : 1e-4;
+    run(&a, &first, step, 100);
+    run(&b, &second, step, 100);
+    double length = 0, speed = 0;
+    for (size_t i = 0; i < 2 * first.node_count; i++) {
+      length = fmax(length, fabs(a.state->q[i]));
+      speed = fmax(speed, fabs(a.state->v[i]));
+    }
+    for (size_t i = 0; i < 2 * first.node_count; i++) {
+      size_t k = 2 * (size_t)new_of[i / 2] + i % 2;
+      assert_near(b.state->q[k], a.state->q[i], 1e-12 * length);
+      assert_near(b.state->v[k], a.state->v[i], 1e-10 * speed);
+    }
+    free(new_of);
+    motion_end(&a);
+    motion_end(&b);
+    strut_scene_free(&first);
+    strut_scene_free(&second);
+  }
+}
+
+/* sin(2 pi f t) in long double, t itself as the engine must have it: n dt. */
+static double drive(double frequency, double step, double n) {
+  long double turns = (long double)frequency * (n * step);
+  return (double)sinl(2 * acosl(-1) * (turns - floorl(turns)));
+}
+
+/* One step after a million periods, none of which was a whole number of steps. */
+static void test_a_drive_does_not_drift(void **unused) {
+  (void)unused;
+  const double frequency = 7.3, step = 1e-4, n = 1369863014; /* 1e6 periods and a little */
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 0, 1);
+  build_load(&scene, 0, 1, 0, build_sine(&scene, 1, frequency));
+  motion_begin(&m, &scene, step);
+  m.state->step = (int64_t)n;
+  motion_steps(&m, 1);
+  double expected = drive(frequency, step, n) + 4 * drive(frequency, step, n + 0.5) +
+                    drive(frequency, step, n + 1);
+  assert_near(m.state->v[0], expected * step / 6, 1e-9 * step);
+  assert_int_equal(m.state->step, (int64_t)n + 1);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_other_lengths_scale_every_bit),
+      cmocka_unit_test(test_other_masses_scale_every_bit),
+      cmocka_unit_test(test_the_mirror_image_moves_as_the_mirror_image),
+      cmocka_unit_test(test_another_order_agrees_to_rounding),
+      cmocka_unit_test(test_a_drive_does_not_drift),
+  };
+  return cmocka_run_group_tests_name("invariance", tests, NULL, NULL);
+}
