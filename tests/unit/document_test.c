@@ -67,6 +67,7 @@ static void anchors_repeat_values(void **state) {
   expect_tree("&k key: &v value\n", "{key: value}");
   /* The place is the value's own, behind the anchor; an alias has its own. */
   expect_places("a: &x  12\nb: *x\n", "{a@1:1+1: 12@1:8+2, b@2:1+1: 12@2:4+2}@1:1+1");
+  expect_places("a: 1\r\nb: &x  12\r\n", "{a@1:1+1: 1@1:4+1, b@2:1+1: 12@2:8+2}@1:1+1");
   expect_places("a: &x # c\n  b: 1\n", "{a@1:1+1: {b@2:3+1: 1@2:6+1}@2:3+1}@1:1+1");
   expect_places("\xC3\xA4: &x [&y 'z']\n", "{\xC3\xA4@1:1+1: ['z'@1:11+3]@1:7+8}@1:1+1");
 }
@@ -177,6 +178,15 @@ static void many_keys_are_compared_alike(void **state) {
   }
 }
 
+/* One table serves map after map: none sees the keys of another. */
+static void big_maps_do_not_meet(void **state) {
+  (void)state;
+  const char *map = "{a: 1, b: 1, c: 1, d: 1, e: 1, f: 1, g: 1, h: 1, i: 1, j: 1}";
+  char text[300];
+  snprintf(text, sizeof text, "[%s, %s, %s]", map, map, map);
+  expect_tree(text, text);
+}
+
 static void tags_and_directives_are_refused(void **state) {
   (void)state;
   const char *tag = "1:4: tags (words that begin with '!') are not allowed";
@@ -283,6 +293,7 @@ int main(void) {
       cmocka_unit_test(escapes_do_not_smuggle),
       cmocka_unit_test(keys_are_plain_and_single),
       cmocka_unit_test(many_keys_are_compared_alike),
+      cmocka_unit_test(big_maps_do_not_meet),
       cmocka_unit_test(tags_and_directives_are_refused),
       cmocka_unit_test(a_file_holds_one_document),
       cmocka_unit_test(common_mistakes_have_words),
