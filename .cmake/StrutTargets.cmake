@@ -20,7 +20,8 @@ function(strut_compile_options target)
                C_VISIBILITY_PRESET hidden)
   target_compile_definitions(${target} PRIVATE _POSIX_C_SOURCE=200809L
                                                STRUT_VERSION="${PROJECT_VERSION}")
-  target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno)
+  target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno
+                                           -Wno-psabi)
   if(STRUT_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

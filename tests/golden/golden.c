@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Prints one hash of a run of a model: positions, velocities, works and forces at every hundredth
+ * step. Whatever compiled it, the same file must give the same hash. Usage: golden MODEL STEPS
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/forces/forces.h"
+#include "engine/integrate/integrator.h"
+#include "engine/run/settle.h"
+#include "parser/read_scene.h"
+
+/* FNV-1a over bytes. */
+static uint64_t add(uint64_t hash, const void *data, size_t size) {
+  const unsigned char *byte = data;
+  for (size_t i = 0; i < size; i++) hash = (hash ^ byte[i]) * 1099511628211u;
+  return hash;
+}
+
+static uint64_t hash_run(const strut_model *model, strut_state *state, int64_t steps) {
+  const strut_integrator *method = strut_integrator_find(model->scene->experiment.integrator);
+  void *workspace = method->create(model);
+  size_t length = (size_t)model->length * sizeof(double);
+  uint64_t hash = 14695981039346656037u;
+  for (int64_t n = 0; workspace && n < steps; n += 100) {
+    method->advance(model, state, workspace, model->scene->experiment.step, 100);
+    hash = add(hash, state->q, length);
+    hash = add(hash, state->v, length);
+    hash = add(hash, state->work, sizeof state->work);
+    hash = add(hash, state->force, length);
+  }
+  method->destroy(workspace);
+  return hash;
+}
+
+int main(int count, char **argument) {
+  strut_error error = {0};
+  strut_diagnostics diagnostics = {0};
+  strut_scene scene;
+  strut_model *model = NULL;
+  strut_state *state = NULL;
+  char *text = NULL;
+  size_t length = 0;
+  double time = 0;
+  if (count != 3 || strut_file_read(argument[1], &text, &length, &error) ||
+      strut_scene_read(&scene, argument[1], text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics) ||
+      strut_model_compile(&scene, &model, &error) || strut_state_create(model, &state, &error) ||
+      (scene.settle.wanted && strut_settle_state(model, state, NULL, &time, &error))) {
+    fprintf(stderr, "golden: %s\n", error.message);
+    return 1;
+  }
+  state->ledger = true;
+  printf("%016llx\n", (unsigned long long)hash_run(model, state, atoll(argument[2])));
+  strut_state_free(state);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  strut_diagnostics_free(&diagnostics);
+  strut_release(text);
+  return 0;
+}
