@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps allocate nothing, whatever the scene needs. */
+#include <stdlib.h>
+
+#include "tests/physics/random_scene.h"
+#include "tests/support/allocations.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static void test_the_count_counts(void **unused) {
+  (void)unused;
+  uint64_t before = allocations_so_far();
+  void *volatile block = malloc(10);
+  assert_non_null(block);
+  assert_int_equal(allocations_so_far(), before + 1);
+  block = realloc(block, 100000);
+  assert_int_equal(allocations_so_far(), before + 2);
+  free(block);
+  block = calloc(10, 10);
+  assert_int_equal(allocations_so_far(), before + 3);
+  free(block);
+}
+
+static void check_steps(const strut_scene *scene, bool ledger) {
+  motion m;
+  motion_begin(&m, scene, 1e-5);
+  m.state->ledger = ledger;
+  uint64_t before = allocations_so_far(), own = strut_allocation_count();
+  motion_steps(&m, 1000);
+  assert_int_equal(allocations_so_far(), before);
+  assert_int_equal(strut_allocation_count(), own);
+  assert_int_equal(m.state->step, 1000);
+  assert_int_equal(m.state->evaluations, 4000);
+  motion_end(&m);
+}
+
+/* Everything at once on top of a chain: contacts, friction, drive, loads. */
+static void busy_chain(strut_scene *scene, size_t frames, strut_mass_model mass_model) {
+  strut_scene_init(scene);
+  structure_chain(scene, frames, mass_model);
+  int32_t sine = build_sine(scene, 1e-3, 12);
+  build_actuator(scene, 1, sine);
+  build_load(scene, 3, 1, 2, sine);
+  build_load(scene, 2, 0, -3, -1);
+  scene->ground.height = -0.001, scene->ground.slope = 0.01;
+  scene->gravity[1] = -9.81;
+  for (int32_t i = 0; i < (int32_t)scene->node_count; i++)
+    build_rough_contact(scene, i, 1e4, 10, 0.5, 0.3, 1e-3);
+}
+
+static void check_kind(size_t frames, strut_mass_model mass_model, bool blocks, bool factor) {
+  strut_scene scene;
+  busy_chain(&scene, frames, mass_model);
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(model->mass->coordinate[0].block_count > 0, blocks);
+  assert_int_equal(model->mass->coordinate[0].factor != NULL, factor);
+  assert_int_equal(model->mass->diagonal, !blocks && !factor);
+  strut_model_free(model);
+  check_steps(&scene, false);
+  check_steps(&scene, true);
+  strut_scene_free(&scene);
+}
+
+static void test_steps_with_a_diagonal_mass_allocate_nothing(void **unused) {
+  (void)unused;
+  check_kind(30, STRUT_MASS_LUMPED, false, false);
+}
+
+static void test_steps_with_dense_blocks_allocate_nothing(void **unused) {
+  (void)unused;
+  check_kind(8, STRUT_MASS_CONSISTENT, true, false);
+}
+
+static void test_steps_with_a_sparse_factor_allocate_nothing(void **unused) {
+  (void)unused;
+  check_kind(30, STRUT_MASS_CONSISTENT, false, true);
+}
+
+static void test_steps_of_random_scenes_allocate_nothing(void **unused) {
+  (void)unused;
+  for (uint64_t seed = 1; seed <= 40; seed++) {
+    strut_scene scene;
+    random_scene(&scene, seed);
+    check_steps(&scene, seed % 2);
+    strut_scene_free(&scene);
+  }
+}
+
+static strut_status take_nothing(void *context, const strut_record_layout *layout,
+                                 strut_error *error) {
+  (void)context;
+  (void)layout;
+  (void)error;
+  return STRUT_OK;
+}
+
+static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
+  (void)rows;
+  (void)error;
+  *(size_t *)context += count;
+  return STRUT_OK;
+}
+
+static strut_status take_end(void *context, strut_status status, strut_error *error) {
+  (void)context;
+  (void)status;
+  (void)error;
+  return STRUT_OK;
+}
+
+/* Allocations of a whole run of so many steps, with measuring and a row every 10 steps. */
+static uint64_t whole_run(int64_t steps) {
+  strut_scene scene;
+  strut_summary summary;
+  size_t rows = 0;
+  strut_sink sink = {&rows, take_nothing, take_rows, take_end}, *sinks[] = {&sink};
+  strut_run_options options = {.sinks = sinks, .sink_count = 1};
+  busy_chain(&scene, 10, STRUT_MASS_CONSISTENT);
+  motion_experiment(&scene, 1e-5, 1e-5 * (double)steps);
+  scene.experiment.output_every = 1e-4;
+  scene.experiment.channels = 63;
+  strut_model *model = motion_compile(&scene);
+  uint64_t before = allocations_so_far();
+  assert_int_equal(strut_simulate(model, &options, &summary, NULL), STRUT_OK);
+  uint64_t count = allocations_so_far() - before;
+  assert_int_equal(summary.steps, steps);
+  assert_int_equal(rows, steps / 10 + 1);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return count;
+}
+
+static void test_a_longer_run_allocates_no_more(void **unused) {
+  (void)unused;
+  uint64_t before = whole_run(1000);
+  assert_true(before > 0);
+  assert_int_equal(whole_run(5000), before);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_count_counts),
+      cmocka_unit_test(test_steps_with_a_diagonal_mass_allocate_nothing),
+      cmocka_unit_test(test_steps_with_dense_blocks_allocate_nothing),
+      cmocka_unit_test(test_steps_with_a_sparse_factor_allocate_nothing),
+      cmocka_unit_test(test_steps_of_random_scenes_allocate_nothing),
+      cmocka_unit_test(test_a_longer_run_allocates_no_more),
+  };
+  return cmocka_run_group_tests_name("allocations", tests, NULL, NULL);
+}

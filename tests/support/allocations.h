@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Counts every allocation of the whole process, those of foreign libraries too.
+ */
+#ifndef STRUT_TESTS_SUPPORT_ALLOCATIONS_H
+#define STRUT_TESTS_SUPPORT_ALLOCATIONS_H
+
+#include <stdint.h>
+
+/** Calls of malloc, calloc, realloc and their kin so far; only the differences mean anything. */
+uint64_t allocations_so_far(void);
+
+#endif
