@@ -73,7 +73,7 @@ static void print_terms(const strut_plan *plan, bool wanted, const char *title) 
     if (term->in != wanted) continue;
     if (!any) printf("\n%s\n", title);
     any = true;
-    printf("  %-18s %s %s\n", term->name, wanted ? "for" : "needs", term->why);
+    printf("  %-20s %s %s\n", term->name, wanted ? "for" : "needs", term->why);
   }
 }
 
@@ -161,9 +161,9 @@ static strut_status print_json(const strut_plan *plan, const strut_scene *scene)
   add_members(&json, scene);
   char *text = strut_json_end(&json);
   if (!text) return strut_complain_of_memory();
-  fputs(text, stdout);
+  strut_status status = strut_print(text);
   strut_release(text);
-  return STRUT_OK;
+  return status;
 }
 
 static strut_status run(const strut_arguments *arguments) {

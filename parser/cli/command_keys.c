@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/command_keys.h"
 
-#include <stdio.h>
-
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
 #include "parser/keys_page.h"
@@ -11,9 +9,9 @@ static strut_status run(const strut_arguments *arguments) {
   (void)arguments;
   char *page = strut_keys_page();
   if (!page) return strut_complain_of_memory();
-  fputs(page, stdout);
+  strut_status status = strut_print(page);
   strut_release(page);
-  return STRUT_OK;
+  return status;
 }
 
 const strut_command strut_command_keys = {

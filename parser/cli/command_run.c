@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/command_run.h"
 
-#include <stdio.h>
-
 #include "engine/base/memory.h"
 #include "engine/output/csv.h"
 #include "engine/output/file.h"
@@ -76,17 +74,19 @@ static void free_results(kept *keep) {
 
 static strut_status simulate(const strut_model *model, const strut_arguments *arguments, kept *keep,
                              strut_summary *summary, strut_error *error) {
+  const volatile sig_atomic_t *interrupt = strut_interrupt_watch(); /* before there are files */
+  strut_status status = begin_results(arguments, model->scene, keep, error);
+  if (status != STRUT_OK) return status;
   strut_progress progress = strut_progress_begin(arguments->quiet);
   const strut_run_options run = {
       .force = arguments->force,
-      .interrupt = strut_interrupt_watch(),
+      .interrupt = interrupt,
       .progress = progress.wanted ? strut_progress_show : NULL,
       .progress_context = &progress,
       .sinks = keep->sinks,
       .sink_count = keep->sink_count,
   };
-  strut_status status = begin_results(arguments, model->scene, keep, error);
-  if (status == STRUT_OK) status = strut_simulate(model, &run, summary, error);
+  status = strut_simulate(model, &run, summary, error);
   strut_progress_end(&progress);
   return status;
 }
@@ -97,9 +97,9 @@ static strut_status print_summary(const strut_arguments *arguments, const strut_
   char *text = arguments->json ? strut_summary_json(summary, scene, true)
                                : strut_summary_table(summary, scene);
   if (!text) return strut_complain_of_memory();
-  fputs(text, stdout);
+  strut_status status = strut_print(text);
   strut_release(text);
-  return STRUT_OK;
+  return status;
 }
 
 static strut_status run_model(const strut_arguments *arguments, const strut_model *model) {

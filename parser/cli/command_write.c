@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/command_write.h"
 
-#include <stdio.h>
-
 #include "engine/base/memory.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/streams.h"
@@ -18,11 +16,7 @@ static strut_status run(const strut_arguments *arguments) {
   strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   char *text = strut_scene_write(&scene);
-  if (text) {
-    fputs(text, stdout);
-  } else {
-    status = strut_complain_of_memory();
-  }
+  status = text ? strut_print(text) : strut_complain_of_memory();
   strut_release(text);
   strut_scene_free(&scene);
   return status;

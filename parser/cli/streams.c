@@ -16,6 +16,18 @@ void strut_streams_open(void) {
   }
 }
 
+static void complain_of_output(int reason) {
+  fprintf(stderr, "strut: error: cannot write to the standard output: %s\n",
+          reason ? strerror(reason) : "an earlier write failed");
+}
+
+strut_status strut_print(const char *text) {
+  errno = 0;
+  if (fputs(text, stdout) >= 0 && fflush(stdout) == 0) return STRUT_OK;
+  complain_of_output(errno);
+  return STRUT_FILE_TROUBLE;
+}
+
 int strut_streams_close(strut_status status) {
   int code = strut_status_exit_code(status);
   errno = 0;
@@ -26,10 +38,9 @@ int strut_streams_close(strut_status status) {
     failed = true;
     reason = errno;
   }
-  if (!failed) return code;
-  fprintf(stderr, "strut: error: cannot write to the standard output: %s\n",
-          reason ? strerror(reason) : "an earlier write failed");
-  return code ? code : strut_status_exit_code(STRUT_FILE_TROUBLE);
+  if (!failed || code != 0) return code; /* what failed has been told */
+  complain_of_output(reason);
+  return strut_status_exit_code(STRUT_FILE_TROUBLE);
 }
 
 void strut_complain(const strut_error *error) {

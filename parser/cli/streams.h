@@ -10,10 +10,12 @@
 /** Takes the place of streams that are closed, so that no file of results lands in it. */
 void strut_streams_open(void);
 /**
- * Makes sure that all of stdout has been written; the message is on stderr where it was not.
- * Returns the program's exit code: that of `status`, or of file trouble instead of 0.
+ * Makes sure that all of stdout has been written and returns the program's exit code: that of
+ * `status`, or of file trouble instead of 0, with a message on stderr.
  */
 int strut_streams_close(strut_status status);
+/** Prints a text on stdout; a failure is told on stderr and returned as STRUT_FILE_TROUBLE. */
+strut_status strut_print(const char *text);
 /** Prints a sentence on stderr as the program's error. */
 void strut_complain(const strut_error *error);
 /** The same for memory, which has nothing else to say; returns STRUT_NO_MEMORY. */

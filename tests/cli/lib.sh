@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=sh
+# For the tests of the program: run it, look at what it said. Sourced with the program's path in $1.
+set -u
+
+strut=$(realpath "$1")
+here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+work=$(mktemp -d)
+failures=0
+mounted=
+
+finish() {
+  [ -z "$mounted" ] || umount "$mounted"
+  rm -rf "$work"
+}
+trap finish EXIT
+cd "$work" || exit 1
+
+# fail TEXT: notes a failure and shows what the last command printed.
+fail() {
+  failures=$((failures + 1))
+  echo "FAILED: $*"
+  [ $failures -le 5 ] || return 0
+  [ ! -s "$work/out" ] || head -c 600 "$work/out" | sed 's/^/    out| /'
+  [ ! -s "$work/err" ] || head -c 600 "$work/err" | sed 's/^/    err| /'
+}
+
+# expect CODE WORD...: runs strut WORD..., keeps stdout in out and stderr in err, compares the code.
+expect() {
+  wanted=$1
+  shift
+  "$strut" "$@" >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  [ "$code" -eq "$wanted" ] || fail "strut $*: exit code $code, expected $wanted"
+}
+
+out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }
+err_has() { grep -qF -- "$1" "$work/err" || fail "stderr lacks '$1'"; }
+out_empty() { [ ! -s "$work/out" ] || fail "stdout is not empty"; }
+err_empty() { [ ! -s "$work/err" ] || fail "stderr is not empty"; }
+same() { cmp -s "$1" "$2" || fail "$1 and $2 differ"; }
+# same_directory A B: the same files with the same bytes, hidden ones too.
+same_directory() { diff -r "$1" "$2" >"$work/out" 2>&1 || fail "$1 and $2 differ"; }
+absent() { [ ! -e "$1" ] || fail "$1 exists"; }
+# files DIRECTORY NAME...: exactly these, hidden ones counted.
+files() {
+  directory=$1
+  shift
+  wanted=$(printf '%s\n' "$@" | sort)
+  found=$(ls -A "$directory" | sort)
+  [ "$found" = "$wanted" ] || fail "$directory holds: $(echo $found)"
+}
+
+# small_disk KILOBYTES: mounts a disk of that size on $work/disk; fails where that is not allowed.
+small_disk() {
+  mkdir -p "$work/disk"
+  [ "$(id -u)" -eq 0 ] && mount -t tmpfs -o "size=${1}k" none "$work/disk" 2>/dev/null || return 1
+  mounted=$work/disk
+}
+no_disk() {
+  umount "$work/disk"
+  mounted=
+}
+
+# done_testing: the last line of every test.
+done_testing() {
+  [ "$failures" -eq 0 ] || echo "$failures failed"
+  [ "$failures" -eq 0 ]
+}

@@ -1,0 +1,30 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs that fail numerically: exit code 3, what they say and what they keep.
+. "$(dirname "$0")/lib.sh"
+hopper=$here/hopper.yaml
+
+expect 3 run "$hopper" --set "step=20 ms" -o refused
+out_empty
+err_has "above the largest stable step"
+err_has "--force"
+absent refused
+
+expect 3 run "$hopper" --set "step=20 ms" --set seconds=60 --force --json -o kept
+err_has "dt = 0.02 s"
+err_has "t = "
+err_has "node '"
+out_has '"status":	"diverged"'
+out_has '"wall_time":'
+files kept contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json trajectory.h5
+grep -q '"status":	"diverged"' kept/summary.json || fail "summary.json is not marked"
+grep -q wall_time kept/summary.json && fail "summary.json knows the wall time"
+[ "$(wc -l <kept/nodes.csv)" -gt 1 ] || fail "nothing was kept"
+grep -q '^#' kept/nodes.csv && fail "CSV with comments"
+
+expect 3 run "$hopper" --set "step=20 ms" --set seconds=60 --force
+out_has "Hopper: diverged"
+
+expect 0 check "$hopper" --set "step=20 ms"
+out_has "strut run will refuse it"
+done_testing

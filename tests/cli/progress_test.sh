@@ -1,0 +1,39 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The progress bar: on a terminal, nowhere else.
+. "$(dirname "$0")/lib.sh"
+hopper=$here/hopper.yaml
+long="--set seconds=1e6"
+
+# for_a_while WORD...: a run, interrupted after two seconds.
+for_a_while() { timeout -s INT 2 "$strut" run "$hopper" $long "$@"; }
+
+for_a_while >out 2>err </dev/null
+grep -q 'left' err && fail "a bar in a file"
+[ "$(wc -l <err)" -eq 1 ] || fail "more than the message of the interruption"
+for_a_while 2>&1 </dev/null | cat >out
+grep -q 'left' out && fail "a bar in a pipe"
+
+if command -v script >/dev/null; then
+  # on_terminal WORD...: the same on a terminal of its own; what it shows is in out.
+  on_terminal() {
+    script -qec "timeout --foreground -s INT 2 '$strut' run '$hopper' $long $*" /dev/null \
+      >out 2>err </dev/null
+    tr '\r' '\n' <out >lines && mv lines out
+  }
+  TERM=xterm
+  export TERM
+  unset NO_COLOR
+  on_terminal
+  out_has "left"
+  out_has " %, "
+  grep -q "$(printf '\033')" out || fail "no colour on a terminal"
+  NO_COLOR=1
+  export NO_COLOR
+  on_terminal
+  out_has "left"
+  grep -q "$(printf '\033')" out && fail "colour in spite of NO_COLOR"
+  on_terminal --quiet
+  grep -q "left" out && fail "a bar in spite of --quiet"
+fi
+done_testing
