@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "parser/cli/interrupt.h"
+#include "parser/cli/interrupt.c" /* the program is no library to link with */
 
 static void test_first_and_second(void **state) {
   const int *signal_number = *state;
