@@ -179,7 +179,7 @@ void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
-    if (group->used) continue;
+    if (group->used || group->broken) continue;
     strut_say(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

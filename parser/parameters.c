@@ -44,7 +44,7 @@ static void report_circle(strut_reader *reader, const strut_parameter_state *p) 
 static bool evaluate(strut_reader *reader, strut_parameter_state *p, const char *set,
                      strut_quantity *quantity) {
   if (!set)
-    return strut_read_quantity(reader, p->value, p->name, (strut_owner){"parameters", NULL},
+    return strut_read_quantity(reader, p->value, p->name, (strut_owner){"the parameters", NULL},
                                quantity);
   strut_expression_error error = {0};
   strut_scope scope = strut_parameter_scope(reader);
@@ -148,7 +148,7 @@ static void declare(strut_reader *reader, const strut_tree *key, strut_parameter
   const strut_tree *value = key->next;
   *p = (strut_parameter_state){.name = key->text, .key = key, .value = value};
   bool fine = name_fits(reader, key);
-  fine = strut_read_scalar(reader, value, key->text, (strut_owner){"parameters", NULL},
+  fine = strut_read_scalar(reader, value, key->text, (strut_owner){"the parameters", NULL},
                            "an expression or a quoted text") &&
          fine;
   p->text = value->kind == STRUT_TREE_SCALAR && value->quoted;

@@ -59,7 +59,7 @@ static void read_configurations(strut_reader *reader) {
     strut_add_name(reader, &reader->configuration_names, key->text, reader->configuration_count++);
     strut_read_name(reader, key, "configuration");
     if (key->next->kind == STRUT_TREE_MAP) {
-      strut_read_node_pairs(reader, key->next, "configurations", owner, STRUT_DIM_LENGTH, NULL);
+      strut_read_node_pairs(reader, key->next, owner, STRUT_DIM_LENGTH, NULL);
       continue;
     }
     strut_say(reader, key->next->place,
@@ -70,7 +70,7 @@ static void read_configurations(strut_reader *reader) {
 
 static void read_settle(strut_reader *reader, const strut_slot *slot) {
   strut_settle *settle = &reader->scene->settle;
-  strut_owner owner = {"settle", NULL};
+  strut_owner owner = {"the settling", NULL};
   settle->wanted = true;
   if (slot->value->kind == STRUT_TREE_SCALAR) {
     settle->wanted = strcmp(slot->value->text, "true") == 0;
@@ -91,24 +91,25 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
 /* Positions and velocities: the general first, then what is said of single nodes. */
 static void read_state(strut_reader *reader, int32_t configuration) {
   strut_scene *scene = reader->scene;
-  strut_owner owner = {"the initial state", NULL};
   const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
   const strut_slot *velocities = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
   const strut_slot *velocity = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITY);
   bool told = reader->failed; /* the configuration has been read once already */
   if (configuration >= 0 && !told)
-    strut_read_node_pairs(reader, reader->configurations[configuration].value, "configurations",
-                          owner, STRUT_DIM_LENGTH, take_start);
+    strut_read_node_pairs(reader, reader->configurations[configuration].value,
+                          (strut_owner){"the configuration", NULL}, STRUT_DIM_LENGTH, take_start);
   if (positions->state == STRUT_GIVEN)
-    strut_read_node_pairs(reader, positions->value, "positions", owner, STRUT_DIM_LENGTH,
+    strut_read_node_pairs(reader, positions->value,
+                          (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
                           take_start);
   if (velocity->state == STRUT_GIVEN)
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
   if (velocities->state == STRUT_GIVEN)
-    strut_read_node_pairs(reader, velocities->value, "velocities", owner, STRUT_DIM_VELOCITY,
-                          take_velocity);
+    strut_read_node_pairs(reader, velocities->value,
+                          (strut_owner){"'velocities' of the initial state", NULL},
+                          STRUT_DIM_VELOCITY, take_velocity);
 }
 
 void strut_read_initial(strut_reader *reader) {
@@ -215,7 +216,7 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
 
 static void read_run(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
-  strut_owner owner = {"the measuring window", NULL};
+  strut_owner owner = {"the measurement", NULL};
   reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
   if (!strut_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run)) return;
   read_of(reader);
@@ -223,15 +224,15 @@ static void read_run(strut_reader *reader) {
   e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
-    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value, (strut_owner){"measure", NULL},
-                      &reader->measure);
+    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value,
+                      (strut_owner){"the measurement", NULL}, &reader->measure);
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
     const strut_slot *node = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_NODE);
     bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
     if (node->state == STRUT_GIVEN && known)
-      e->measure_node =
-          strut_read_reference(reader, node->value, "node", (strut_owner){"measure", NULL}, "node",
-                               &reader->node_names, strut_node_name, reader->scene->node_count);
+      e->measure_node = strut_read_reference(
+          reader, node->value, "node", (strut_owner){"the measurement", NULL}, "node",
+          &reader->node_names, strut_node_name, reader->scene->node_count);
   }
   if (reader->measure.broken) reader->run.broken = true;
   if (reader->run.broken) e->duration = e->periods = 0.0;

@@ -258,9 +258,10 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
     char expected[300];
     strut_slot *slot = &fields->slot[i];
     if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
-    strut_say(reader, place, "%s lacks '%s', expected %s", strut_owner_text(reader, owner),
-              strut_key_at(first + i)->name,
-              strut_key_expected(first + i, expected, sizeof expected));
+    if (!reader->holes)
+      strut_say(reader, place, "%s lacks '%s', expected %s", strut_owner_text(reader, owner),
+                strut_key_at(first + i)->name,
+                strut_key_expected(first + i, expected, sizeof expected));
     slot->state = STRUT_BROKEN;
     fields->broken = true;
   }

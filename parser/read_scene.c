@@ -66,7 +66,7 @@ static void read_tree(strut_reader *reader, const strut_override *overrides, siz
   strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
-  if (reader->top.broken) reader->ends_unknown = true;
+  if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, overrides, count);
   if (reader->out_of_memory) return;
   if (strut_scene_check(reader->scene, reader->purpose, &findings) == STRUT_NO_MEMORY)
@@ -103,6 +103,7 @@ strut_status strut_scene_read(strut_scene *scene, const char *file, const char *
   prepare(reader);
   strut_c_locale locale = strut_c_locale_enter();
   strut_status status = strut_document_read(&reader->document, diagnostics);
+  reader->holes = status == STRUT_BAD_SCENE;
   if (status != STRUT_NO_MEMORY && reader->document.root)
     read_tree(reader, overrides, override_count);
   strut_c_locale_leave(locale);

@@ -138,15 +138,17 @@ void strut_read_members(strut_reader *reader) {
   }
 }
 
-bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, const char *key,
-                           strut_owner owner, strut_dimension dimension, strut_pair_taker *take) {
+bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                           strut_dimension dimension, strut_pair_taker *take) {
   bool fine = true;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
   for (const strut_tree *k = map->first; k; k = k->next->next) {
     double pair[2];
-    int32_t node = known ? strut_read_reference(reader, k, key, owner, "node", &reader->node_names,
-                                                strut_node_name, reader->scene->node_count)
-                         : -1;
+    int32_t node = strut_name_map_find(&reader->node_names, k->text);
+    if (node < 0 && known)
+      strut_say(reader, k->place, "unknown node '%s' in %s%s", strut_shown(reader, k->text),
+                strut_owner_text(reader, owner),
+                strut_hint(reader, k->text, strut_node_name, reader, reader->scene->node_count));
     if (!strut_read_pair(reader, k->next, k->text, owner, dimension, pair) || node < 0)
       fine = false;
     else if (take)

@@ -92,12 +92,15 @@ bool strut_is_null(const strut_tree *value) {
 }
 
 const char *strut_found(strut_reader *reader, const strut_tree *value) {
-  if (value->kind == STRUT_TREE_LIST) return "a list";
+  strut_arena *arena = &reader->scratch;
   if (value->kind == STRUT_TREE_MAP) return "a mapping";
+  if (value->kind == STRUT_TREE_LIST && !value->count) return "an empty list";
+  if (value->kind == STRUT_TREE_LIST)
+    return kept(reader, strut_arena_format(arena, "a list of %u", (unsigned)value->count));
   if (strut_is_null(value)) return "nothing";
   if (!*value->text) return "an empty text";
-  return kept(reader,
-              strut_arena_format(&reader->scratch, "'%s'", strut_shown(reader, value->text)));
+  return kept(reader, strut_arena_format(arena, value->quoted ? "the text '%s'" : "'%s'",
+                                         strut_shown(reader, value->text)));
 }
 
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
@@ -177,12 +180,9 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
     return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
   }
   const char *example = strut_dimension_example(dimension);
-  const char *found = strut_found(reader, value);
-  if (value->kind == STRUT_TREE_LIST)
-    found =
-        kept(reader, strut_arena_format(&reader->scratch, "a list of %u", (unsigned)value->count));
   strut_say(reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
-            example ? example : "1", key, strut_owner_text(reader, owner), found);
+            example ? example : "1", key, strut_owner_text(reader, owner),
+            strut_found(reader, value));
   return false;
 }
 

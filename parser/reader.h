@@ -120,6 +120,7 @@ typedef struct strut_reader {
   const strut_tree *asking; /* the value whose expression is being evaluated */
   const char *asking_set;   /* or the parameter whose --set is */
   size_t suggestions;       /* names compared so far, to bound the effort */
+  bool holes;               /* the text lacks what was refused in it: nothing is missing */
   bool ends_unknown;        /* some member or load could not be tied to its nodes */
   bool masses_unknown;      /* some mass could not be read */
   bool groups_unknown;      /* somebody's groups could not be read */
@@ -240,8 +241,8 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
 /** Reads `{NODE: [x, y], ...}` and calls back for each node that could be read. */
 typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double pair[2],
                               const strut_tree *value);
-bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, const char *key,
-                           strut_owner owner, strut_dimension dimension, strut_pair_taker *take);
+bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                           strut_dimension dimension, strut_pair_taker *take);
 /** Names of nodes and members, for suggestions; the context is the reader. */
 const char *strut_node_name(const void *reader, size_t i);
 const char *strut_member_name(const void *reader, size_t i);

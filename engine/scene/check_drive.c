@@ -91,25 +91,61 @@ static bool check_wave(strut_checker *checker, size_t index, const char *owner) 
   return false;
 }
 
+/* What a message calls a signal: by its name, or by the first that uses it. */
+static void call_signal(char owner[200], const strut_scene *scene, const size_t *user, size_t i) {
+  char thing[200];
+  size_t u = user[i];
+  if (scene->signals[i].name || !u) {
+    called(owner, "signal", scene->signals[i].name, i);
+    return;
+  }
+  bool actuator = u <= scene->actuator_count;
+  size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
+  called(thing, actuator ? "actuator" : "load",
+         actuator ? scene->actuators[index].name : scene->loads[index].name, index);
+  snprintf(owner, 200, "the signal of %.180s", thing);
+}
+
+/* For each signal 1 + the number of the actuator that uses it, loads counted on; 0: nobody. */
+static void find_users(const strut_scene *scene, size_t *user) {
+  for (size_t i = scene->load_count; i-- > 0;)
+    if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
+      user[scene->loads[i].signal] = 1 + scene->actuator_count + i;
+  for (size_t i = scene->actuator_count; i-- > 0;)
+    if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
+      user[scene->actuators[i].signal] = 1 + i;
+  for (size_t i = scene->signal_count; i-- > 0;) /* a sum comes after its terms */
+    for (size_t t = 0; scene->signals[i].kind == STRUT_SUM && t < scene->signals[i].term_count;
+         t++) {
+      int32_t term = scene->signals[i].terms[t];
+      if (term >= 0 && (size_t)term < i && !user[term]) user[term] = user[i];
+    }
+}
+
 void strut_check_signals(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   uint32_t *size = strut_allocate(scene->signal_count, sizeof *size);
   uint32_t *depth = strut_allocate(scene->signal_count, sizeof *depth);
-  if (!size || !depth) checker->out_of_memory = true;
-  for (size_t i = 0; size && depth && i < scene->signal_count; i++) {
+  size_t *user = strut_allocate(scene->signal_count, sizeof *user);
+  if (!size || !depth || !user) checker->out_of_memory = true;
+  if (!checker->out_of_memory) find_users(scene, user);
+  for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
     char owner[200];
-    called(owner, "signal", s->name, i);
+    call_signal(owner, scene, user, i);
     size[i] = depth[i] = 1;
-    if ((unsigned)s->kind > STRUT_SUM)
+    if ((unsigned)s->kind > STRUT_SUM) {
       strut_find(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind", owner);
-    bool fine = s->kind == STRUT_TABLE ? check_table(checker, i, owner)
-                : s->kind == STRUT_SUM ? check_sum(checker, i, owner, size, depth)
-                                       : check_wave(checker, i, owner);
-    checker->wild[i] = !fine || (unsigned)s->kind > STRUT_SUM;
+      checker->wild[i] = true;
+      continue;
+    }
+    checker->wild[i] = s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
+                       : s->kind == STRUT_SUM ? !check_sum(checker, i, owner, size, depth)
+                                              : !check_wave(checker, i, owner);
   }
   strut_release(size);
   strut_release(depth);
+  strut_release(user);
 }
 
 static void check_friction(strut_checker *checker, size_t index, const char *owner) {
@@ -161,9 +197,7 @@ void strut_check_ground(strut_checker *checker) {
   }
 }
 
-static bool there(int32_t index, size_t count) {
-  return index >= 0 && (size_t)index < count;
-}
+static bool there(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }
 
 void strut_check_drives(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
@@ -235,7 +269,12 @@ static void check_step(strut_checker *checker, bool length_known) {
   const strut_experiment *e = &checker->scene->experiment;
   if (!e->integrator || !*e->integrator)
     strut_find(checker, STRUT_ON_SOLVER, 0, "integrator", "the solver names no integrator");
-  if (checker->purpose == STRUT_FOR_STATICS && e->step == 0.0) return;
+  if (e->step == 0.0) {
+    if (checker->purpose == STRUT_FOR_RUN)
+      strut_find(checker, STRUT_ON_SOLVER, 0, "step",
+                 "the solver has no step, expected a time such as '0.1 ms'");
+    return;
+  }
   if (!strut_find_range(checker, STRUT_ON_SOLVER, 0, "step", "the solver", e->step,
                         STRUT_ABOVE_ZERO) ||
       !length_known)
