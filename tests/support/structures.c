@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/support/structures.h"
 
+#include <math.h>
+
 #include "tests/support/build.h"
 
 static int32_t with_density(strut_scene *scene, int32_t member, double density) {
@@ -67,4 +69,14 @@ void structure_chain(strut_scene *scene, size_t frames, strut_mass_model mass_mo
     build_sized(scene, STRUT_CABLE, low + 1, low + 3, 3000, 0.2, 0, 0.98 * side);
     build_sized(scene, STRUT_CABLE, low + 2, low + 3, 3000, 0.2, 0, 0.98 * side);
   }
+}
+
+void structure_pendulum(strut_scene *scene, double stiffness, double a, bool second, double b) {
+  build_support(scene, 0, 0);
+  build_node(scene, sin(a), -cos(a));
+  build_member(scene, STRUT_BAR, 0, 1, stiffness, 0, 1);
+  scene->gravity[1] = -9.81;
+  if (!second) return;
+  build_node(scene, sin(a) + sin(b), -cos(a) - cos(b));
+  build_member(scene, STRUT_BAR, 1, 2, stiffness, 0, 1);
 }

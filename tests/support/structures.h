@@ -35,4 +35,10 @@ void structure_crawler(strut_scene *scene, double frequency, double amplitude, d
  */
 void structure_chain(strut_scene *scene, size_t frames, strut_mass_model mass_model);
 
+/**
+ * Rods that hang from a pin at the origin, each a bar of 1 m and 1 kg: the first at angle a [rad]
+ * from below, a second one at angle b if `second`.
+ */
+void structure_pendulum(strut_scene *scene, double stiffness, double a, bool second, double b);
+
 #endif

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The energy balance of a run: closed on smooth scenes, closing with the step on the others. */
+#include <math.h>
+
+#include "tests/physics/smooth_scenes.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static strut_energy balance(void (*make)(strut_scene *), double step, double duration) {
+  strut_scene scene;
+  make(&scene);
+  motion_experiment(&scene, step, duration);
+  strut_summary summary = motion_simulate(&scene);
+  strut_energy energy = summary.energy;
+  strut_summary_free(&summary);
+  strut_scene_free(&scene);
+  return energy;
+}
+
+static double relative_residual(void (*make)(strut_scene *), double step, double duration) {
+  strut_energy e = balance(make, step, duration);
+  double now = e.kinetic + e.elastic + e.gravity + e.contact;
+  double lost = e.dissipated_members + e.dissipated_contact + e.dissipated_friction;
+  double done = e.drive_work + e.load_work + e.belt_work;
+  /* the residual is what its own figures say */
+  assert_near(e.residual, now - e.initial - done + lost, 1e-13 * (fabs(now) + e.moved));
+  assert_true(e.moved > 0 && e.moved >= 0.99 * (fabs(done) - 1e-9));
+  assert_true(lost >= 0);
+  return fabs(e.residual) / e.moved;
+}
+
+/* At several ends, for at one of them the residual may pass through zero. */
+static double worst_residual(const smooth_scene *smooth, double step) {
+  double worst = 0;
+  for (int part = 1; part <= 5; part++)
+    worst = fmax(worst, relative_residual(smooth->make, step, smooth->duration * part / 5));
+  return worst;
+}
+
+static void test_smooth_scenes_close_their_balance(void **unused) {
+  (void)unused;
+  for (int s = 0; s < SMOOTH_SCENES; s++) {
+    const smooth_scene *smooth = &smooth_scenes[s];
+    double error[5];
+    /* twice as coarse as positions need it: energies reach rounding sooner */
+    for (int k = 0; k < 5; k++) error[k] = worst_residual(smooth, ldexp(smooth->step, 1 - k));
+    double order = observed_order(error, 5);
+    double finest = worst_residual(smooth, ldexp(smooth->step, -6));
+    print_message("%s: order %.3f, residual %.2g to %.2g, %.2g\n", smooth->name, order, error[0],
+                  error[4], finest);
+    assert_true(order > 3.9); /* a conservative scene loses energy at order five */
+    assert_true(finest < 1e-10);
+  }
+}
+
+static void bouncing_node(strut_scene *scene) {
+  strut_scene_init(scene);
+  scene->gravity[1] = -9.81;
+  build_mass(scene, 0, 0.05, 0.5);
+  build_contact(scene, 0, 1e4, 20);
+}
+
+static void crawler(strut_scene *scene) {
+  strut_scene_init(scene);
+  structure_crawler(scene, 10, 1e-4, 0.1, false);
+}
+
+static void belt(strut_scene *scene) {
+  strut_scene_init(scene);
+  scene->gravity[1] = -9.81;
+  build_mass(scene, 0, -9.81e-5, 1);
+  build_support(scene, -1, -9.81e-5);
+  build_sized(scene, STRUT_SPRING, 1, 0, 100, 0.5, 0, 1);
+  build_rough_contact(scene, 0, 1e5, 100, 0.2, 0.1, 2e-3);
+  scene->ground.belt_speed = scene->nodes[0].velocity[0] = 0.1;
+}
+
+static void slack_cables(strut_scene *scene) {
+  strut_scene_init(scene);
+  build_support(scene, -1, 0);
+  build_support(scene, 1, 0);
+  build_mass(scene, 0, 0.1, 1);
+  for (int i = 0; i < 2; i++) build_member(scene, STRUT_CABLE, i, 2, 500, 3, 0);
+  build_actuator(scene, 0, build_sine(scene, 0.02, 2));
+  scene->gravity[1] = -9.81;
+  scene->nodes[2].velocity[0] = 1;
+}
+
+/* With jumps the residual falls as the step does, if not smoothly: five halvings, as a trend. */
+static void check_rough(const char *name, void (*make)(strut_scene *), double step,
+                        double duration) {
+  double error[6];
+  for (int k = 0; k < 6; k++) error[k] = relative_residual(make, ldexp(step, -k), duration);
+  double order = observed_order(error, 6);
+  print_message("%s: order %.2f, residual %.2g to %.2g\n", name, order, error[0], error[5]);
+  assert_true(order > 0.7);
+  assert_true(error[5] < 0.25 * error[0]);
+}
+
+static void test_scenes_with_jumps_close_as_the_step_falls(void **unused) {
+  (void)unused;
+  check_rough("bouncing node", bouncing_node, 1e-3, 1);
+  check_rough("crawler", crawler, 1e-4, 0.3);
+  check_rough("belt", belt, 1e-3, 2);
+  check_rough("slack cables", slack_cables, 2e-3, 2);
+}
+
+/* The parts by hand where they are known. */
+static void test_the_parts_of_a_sliding_block(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  scene.gravity[1] = -9.81;
+  build_mass(&scene, 0, -9.81e-5 * 2, 2);
+  build_rough_contact(&scene, 0, 1e5, 100, 0.3, 0.3, 1e-4);
+  scene.nodes[0].velocity[0] = 3;
+  motion_experiment(&scene, 1e-4, 0.5);
+  strut_summary s = motion_simulate(&scene);
+  double v = 3 - 0.3 * 9.81 * 0.5, way = 0.5 * (3 + v) * 0.5;
+  assert_relative(s.energy.kinetic, v * v, 1e-12);
+  assert_relative(s.energy.dissipated_friction, 0.3 * 2 * 9.81 * way, 1e-12);
+  assert_relative(s.energy.contact, 0.5 * 1e5 * (9.81e-5 * 2) * (9.81e-5 * 2), 1e-10);
+  assert_relative(s.energy.gravity, -2 * 9.81 * 9.81e-5 * 2, 1e-12);
+  assert_near(s.energy.residual, 0, 1e-12 * s.energy.moved);
+  assert_true(s.energy.elastic == 0 && s.energy.drive_work == 0 && s.energy.load_work == 0);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_the_parts_of_a_loaded_mass(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 0, 2);
+  build_load(&scene, 0, 3, 4, -1);
+  motion_experiment(&scene, 1e-3, 1);
+  strut_summary s = motion_simulate(&scene);
+  assert_relative(s.energy.load_work, 0.5 * 25 / 2, 1e-12); /* F^2 t^2 / 2 m */
+  assert_relative(s.energy.kinetic, 0.5 * 25 / 2, 1e-12);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_smooth_scenes_close_their_balance),
+      cmocka_unit_test(test_scenes_with_jumps_close_as_the_step_falls),
+      cmocka_unit_test(test_the_parts_of_a_sliding_block),
+      cmocka_unit_test(test_the_parts_of_a_loaded_mass),
+  };
+  return cmocka_run_group_tests_name("energy", tests, NULL, NULL);
+}
