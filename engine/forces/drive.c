@@ -6,16 +6,16 @@
 
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   const strut_drive_table *d = &model->drives;
+  const strut_signal *signals = model->scene->signals;
+  double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
   state->drive_time = t;
   for (int32_t i = 0; i < d->count; i++) {
-    state->rest[d->member[i]] = model->members.rest[d->member[i]];
-    state->rest_rate[d->member[i]] = 0.0;
-  }
-  for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
-    strut_signal_evaluate(model->scene->signals, d->signal[i], t, &value, &rate);
-    state->rest[d->member[i]] += value;
-    state->rest_rate[d->member[i]] += rate;
+    int32_t member = d->member[i];
+    strut_signal_evaluate(signals, d->signal[i], t, &value, &rate);
+    /* the first actuator of a member starts from its own rest length, further ones add */
+    rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
+    rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
   }
 }
 

@@ -21,7 +21,7 @@ static int32_t *indices(strut_model *model, size_t count, bool *failed) {
 static void compile_nodes(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->node_count;
-  size_t length = (2 * count + 4 + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  size_t length = (2 * count + 2 + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
   model->node_count = (int32_t)scene->node_count;
   model->length = (int32_t)length;
   double *start = doubles(model, length, failed), *velocity = doubles(model, length, failed);
@@ -68,7 +68,7 @@ static void compile_members(strut_model *model, bool *failed) {
   for (size_t j = 0; j < slots; j++) {
     slack[j] = -HUGE_VAL;
     from[j] = 2 * (uint32_t)model->node_count;
-    to[j] = from[j] + 2;
+    to[j] = from[j];
   }
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *member = &scene->members[j];
@@ -93,15 +93,24 @@ static void compile_drives(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->actuator_count;
   int32_t *member = indices(model, count, failed), *signal = indices(model, count, failed);
-  if (*failed) return;
+  uint8_t *first = strut_arena_allocate(&model->arena, count, sizeof *first);
+  uint8_t *driven = strut_allocate(scene->member_count, sizeof *driven);
+  if (!first || !driven) *failed = true;
+  if (*failed) {
+    strut_release(driven);
+    return;
+  }
   uint16_t *terms = (uint16_t *)model->members.block_terms;
   for (size_t i = 0; i < count; i++) {
     member[i] = scene->actuators[i].member;
     signal[i] = scene->actuators[i].signal;
+    first[i] = !driven[member[i]];
+    driven[member[i]] = 1;
     terms[member[i] / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
     model->plan |= STRUT_TERM_DRIVE;
   }
-  model->drives = (strut_drive_table){(int32_t)count, member, signal};
+  strut_release(driven);
+  model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
 }
 
 /* Half of each member's mass at each of its ends (7), and the point masses. */

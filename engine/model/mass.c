@@ -79,22 +79,22 @@ static strut_status make_blocks(strut_model *model, const sorting *s, strut_mass
     }
   if (!op->block_count) return STRUT_OK;
   int32_t *size = strut_arena_allocate(&model->arena, (size_t)op->block_count, sizeof *size);
-  int32_t *node = strut_arena_allocate(&model->arena, nodes, sizeof *node);
+  uint32_t *at = strut_arena_allocate(&model->arena, nodes, sizeof *at);
   double *inverse = strut_arena_allocate(&model->arena, entries, sizeof *inverse);
-  if (!size || !node || !inverse) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  op->block_size = size, op->block_node = node, op->block_inverse = inverse;
+  if (!size || !at || !inverse) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  op->block_size = size, op->block_at = at, op->block_inverse = inverse;
   mass->dense_entries += entries;
-  for (int32_t at = 0; at < m->n;) {
-    const int32_t *rows = s->order + at;
+  for (int32_t first = 0; first < m->n;) {
+    const int32_t *rows = s->order + first;
     int32_t n = s->size[s->root[rows[0]]];
-    at += n;
+    first += n;
     if (n < 2 || n > STRUT_DENSE_BLOCK) continue;
     for (int32_t i = 0; i < n; i++)
       for (int32_t j = 0; j < n; j++) inverse[i * n + j] = entry(m, rows[i], rows[j]);
     if (!invert_small(n, inverse))
       return strut_fail(error, STRUT_SINGULAR, "the mass matrix of node '%s' is singular",
                         model->scene->nodes[op->matrix_node[rows[0]]].name);
-    for (int32_t i = 0; i < n; i++) *node++ = op->matrix_node[rows[i]];
+    for (int32_t i = 0; i < n; i++) *at++ = 2 * (uint32_t)op->matrix_node[rows[i]];
     inverse += n * n;
     *size++ = n;
   }

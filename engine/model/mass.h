@@ -27,7 +27,7 @@ typedef struct strut_mass_operator {
                             at 2 i + coordinate, the other places belong to the other one */
   int32_t block_count;
   const int32_t *block_size;  /* (block_count) */
-  const int32_t *block_node;  /* nodes of the blocks, one after the other */
+  const uint32_t *block_at;   /* 2 * node of their rows, one block after the other */
   const double *block_inverse; /* dense inverses, row by row, one after the other */
   const strut_factor *factor; /* of the remaining nodes, or NULL */
   const int32_t *factor_node; /* (factor->n) node of each row, already in the factor's order */

@@ -10,43 +10,45 @@
 
 /* x and y of one dense block of n nodes together: they have the same inverse. */
 STRUT_INLINE void mass_block_pair(int32_t n, const double *restrict inverse,
-                                  const int32_t *restrict node, const double *restrict f,
+                                  const uint32_t *restrict at, const double *restrict f,
                                   double *restrict a) {
   strut_pair x[STRUT_DENSE_BLOCK];
-  for (int32_t j = 0; j < n; j++) x[j] = strut_pair_load(f + 2 * node[j]);
+  for (int32_t j = 0; j < n; j++) x[j] = strut_pair_load(f + at[j]);
   for (int32_t i = 0; i < n; i++) {
     strut_pair sum = inverse[i * n] * x[0];
     for (int32_t j = 1; j < n; j++) sum += inverse[i * n + j] * x[j];
-    strut_pair_store(a + 2 * node[i], sum);
+    strut_pair_store(a + at[i], sum);
   }
 }
 
-/* One coordinate of a block: f and a point at that coordinate of node 0. */
+/* One coordinate of a block; f and a point at that coordinate of node 0. */
 STRUT_INLINE void mass_block_single(int32_t n, const double *restrict inverse,
-                                    const int32_t *restrict node, const double *restrict f,
+                                    const uint32_t *restrict at, const double *restrict f,
                                     double *restrict a) {
   for (int32_t i = 0; i < n; i++) {
-    double sum = inverse[i * n] * f[2 * node[0]];
-    for (int32_t j = 1; j < n; j++) sum += inverse[i * n + j] * f[2 * node[j]];
-    a[2 * node[i]] = sum;
+    double sum = inverse[i * n] * f[at[0]];
+    for (int32_t j = 1; j < n; j++) sum += inverse[i * n + j] * f[at[j]];
+    a[at[i]] = sum;
   }
 }
 
 STRUT_INLINE void mass_blocks(const strut_mass_operator *op, bool pair, const double *restrict f,
                               double *restrict a) {
-  const int32_t *node = op->block_node;
-  const double *inverse = op->block_inverse;
-  for (int32_t b = 0; b < op->block_count; b++) {
-    int32_t n = op->block_size[b];
-    if (!pair)
-      mass_block_single(n, inverse, node, f, a);
-    else if (n == 2)
-      mass_block_pair(2, inverse, node, f, a);
-    else if (n == 3)
-      mass_block_pair(3, inverse, node, f, a);
-    else
-      mass_block_pair(n, inverse, node, f, a);
-    node += n;
+  const uint32_t *restrict at = op->block_at;
+  const double *restrict inverse = op->block_inverse;
+  const int32_t *restrict size = op->block_size;
+  for (int32_t b = 0, count = op->block_count; b < count; b++) {
+    int32_t n = size[b];
+    if (!pair) {
+      mass_block_single(n, inverse, at, f, a);
+    } else if (n == 2) {
+      mass_block_pair(2, inverse, at, f, a);
+    } else if (n == 3) {
+      mass_block_pair(3, inverse, at, f, a);
+    } else {
+      mass_block_pair(n, inverse, at, f, a);
+    }
+    at += n;
     inverse += n * n;
   }
 }

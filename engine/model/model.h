@@ -4,7 +4,7 @@
  *
  * A model is shared by threads without locks. It refers to the scene it came from for names, so the
  * scene must outlive it. Coordinate arrays follow the paper's q = (x1, y1, x2, y2, ...): node i has
- * its x at 2 i and its y at 2 i + 1, and two unused nodes or more pad them to `length` doubles. Supports are eliminated
+ * its x at 2 i and its y at 2 i + 1, and one unused node or more pad them to `length` doubles. Supports are eliminated
  * from the mass matrix, and their coordinates simply never accelerate.
  * Members keep the scene's order, so that a term left out changes no bit of the others.
  */
@@ -35,8 +35,8 @@ typedef enum strut_term {
 } strut_term;
 
 /**
- * Member tables in scene order; (slots) entries each. Padding slots pull with no force on the two
- * nodes of padding that every coordinate array ends with.
+ * Member tables in scene order; (slots) entries each. Padding slots have no length, and pull with no
+ * force on the node of padding that every coordinate array ends with.
  */
 typedef struct strut_member_table {
   int32_t count, slots, blocks;
@@ -70,6 +70,7 @@ typedef struct strut_contact_table {
 typedef struct strut_drive_table {
   int32_t count;
   const int32_t *member, *signal;
+  const uint8_t *first; /* 1: the first of possibly several on its member */
 } strut_drive_table;
 
 typedef struct strut_load_table {

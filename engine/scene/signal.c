@@ -13,7 +13,7 @@ strut_signal strut_signal_default(strut_signal_kind kind) {
   return (strut_signal){.kind = kind, .stop = (double)INFINITY};
 }
 
-static void wave(const strut_signal *s, double turns, double *value, double *rate) {
+static inline void wave(const strut_signal *s, double turns, double *value, double *rate) {
   double sine, cosine;
   strut_sincos_turns(turns, &sine, &cosine);
   *value = s->amplitude * sine;
@@ -51,6 +51,10 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
                            double *rate) {
   const strut_signal *s = &signals[index];
   double turns = s->frequency * (t - s->start) + s->phase;
+  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop) { /* the usual one first */
+    wave(s, turns, value, rate);
+    return;
+  }
   *value = *rate = 0.0;
   if (s->kind == STRUT_RAMP) {
     ramp(s, t, value, rate);
@@ -64,9 +68,6 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
   switch (s->kind) {
     case STRUT_CONSTANT:
       *value = s->amplitude;
-      break;
-    case STRUT_SINE:
-      wave(s, turns, value, rate);
       break;
     case STRUT_HALF_SINE:
       if (turns < 0.5) wave(s, turns, value, rate);

@@ -22,7 +22,7 @@ static uint64_t add(uint64_t hash, const void *data, size_t size) {
 static uint64_t hash_run(const strut_model *model, strut_state *state, int64_t steps) {
   const strut_integrator *method = strut_integrator_find(model->scene->experiment.integrator);
   void *workspace = method->create(model);
-  size_t length = (size_t)model->length * sizeof(double);
+  size_t length = 2 * (size_t)model->node_count * sizeof(double);
   uint64_t hash = 14695981039346656037u;
   for (int64_t n = 0; workspace && n < steps; n += 100) {
     method->advance(model, state, workspace, model->scene->experiment.step, 100);
