@@ -7,7 +7,7 @@
 
 #include <signal.h>
 
-/** From now on SIGINT and SIGTERM set the flag that is returned, once; then they kill. */
+/** From now on SIGINT and SIGTERM set the flag that is returned; a moment later they kill. */
 const volatile sig_atomic_t *strut_interrupt_watch(void);
 
 #endif

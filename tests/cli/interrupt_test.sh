@@ -39,4 +39,8 @@ interrupt INT
 out_has "Hopper: interrupted"
 interrupt TERM --quiet
 out_empty
+
+# timeout(1) sends its signal twice.
+timeout -s INT 1 "$strut" run "$hopper" --set seconds=1e6 --quiet -o twice 2>err </dev/null
+grep -q '"status":	"interrupted"' twice/summary.json || fail "killed by timeout's second signal"
 done_testing
