@@ -122,7 +122,7 @@ static void test_numbers_that_are_none(void **unused) {
   layout.channels = &layout.channels[5];
   layout.channel_count = 1;
   double row[24] = {1.0};
-  row[21] = NAN, row[22] = INFINITY, row[23] = -INFINITY;
+  row[21] = (double)NAN, row[22] = (double)INFINITY, row[23] = (double)-INFINITY;
   strut_sink *sink = strut_csv_create(directory);
   assert_int_equal(sink->begin(sink->context, &layout, NULL), STRUT_OK);
   assert_int_equal(sink->rows(sink->context, row, 1, NULL), STRUT_OK);

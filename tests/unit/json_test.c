@@ -20,7 +20,7 @@
 
 static strut_node node = {.name = "n1"};
 static strut_parameter parameters[] = {
-    {"frequency", "10 Hz", 10.0}, {"amplitude", "0.1 mm", 1e-4}, {"start", "I", NAN}};
+    {"frequency", "10 Hz", 10.0}, {"amplitude", "0.1 mm", 1e-4}, {"start", "I", (double)NAN}};
 static const char *names[] = {"n1", "a \"b\"\\\n"};
 static double positions[] = {0.1 + 0.2, -1e-300, 5e-324, 1.7976931348623157e308};
 static strut_contact_summary contacts[] = {{"n1", 1.0 / 3.0, 1.1e-3}};
@@ -38,14 +38,14 @@ static strut_scene make_scene(void) {
 static strut_summary make_summary(void) {
   return (strut_summary){.status = STRUT_OK,
                          .velocity = 9.7812345678901234e-3,
-                         .velocity_spread = NAN,
+                         .velocity_spread = (double)NAN,
                          .window_start = 100.0,
                          .duration = 110.0,
                          .settle_time = 0.7,
                          .steps = INT64_C(9007199254740993), /* not a double */
                          .force_evaluations = 4400000,
                          .step = 1e-4,
-                         .step_limit = INFINITY,
+                         .step_limit = (double)INFINITY,
                          .wall_time = 0.25,
                          .node_count = 2,
                          .contact_count = 1,
@@ -152,7 +152,7 @@ static void test_a_run_that_stopped_says_why(void **unused) {
   strut_summary summary = make_summary();
   summary.status = STRUT_DIVERGED;
   strcpy(summary.reason, "node 'n1' left at t = 0.5 s");
-  summary.velocity = -INFINITY;
+  summary.velocity = (double)-INFINITY;
   char *text = strut_summary_json(&summary, &scene, false);
   cJSON *json = cJSON_Parse(text);
   assert_text(json, "status", "diverged");
@@ -261,8 +261,8 @@ static void test_quantities(void **unused) {
       {123456789.0, 4, "N/m", "123.5 MN/m"},
       {3e-20, 4, "J", "3e-05 fJ"},
       {5e12, 4, "J", "5000 GJ"},
-      {NAN, 4, "m", "none"},
-      {INFINITY, 4, "s", "no limit"},
+      {(double)NAN, 4, "m", "none"},
+      {(double)INFINITY, 4, "s", "no limit"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[STRUT_QUANTITY_TEXT];

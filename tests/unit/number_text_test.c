@@ -97,7 +97,7 @@ static void test_powers_and_their_neighbours(void **unused) {
     double power = ldexp(1.0, e);
     assert_shortest(power);
     assert_shortest(nextafter(power, 0.0));
-    if (e < 1023) assert_shortest(nextafter(power, INFINITY));
+    if (e < 1023) assert_shortest(nextafter(power, (double)INFINITY));
   }
   for (int e = -323; e <= 308; e++) {
     char text[16];
@@ -105,7 +105,7 @@ static void test_powers_and_their_neighbours(void **unused) {
     double power = strtod(text, NULL);
     assert_shortest(power);
     assert_shortest(nextafter(power, 0.0));
-    assert_shortest(nextafter(power, INFINITY));
+    assert_shortest(nextafter(power, (double)INFINITY));
   }
 }
 
@@ -136,9 +136,9 @@ static void test_how_numbers_look(void **unused) {
       {DBL_MIN, "2.2250738585072014e-308"},
       {DBL_MAX, "1.7976931348623157e308"},
       {9.5e-8, "9.5e-8"},
-      {INFINITY, "inf"},
-      {-INFINITY, "-inf"},
-      {NAN, "nan"},
+      {(double)INFINITY, "inf"},
+      {(double)-INFINITY, "-inf"},
+      {(double)NAN, "nan"},
   };
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
     char text[STRUT_NUMBER_TEXT];
