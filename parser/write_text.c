@@ -52,12 +52,12 @@ void strut_put_pair(strut_writer *writer, const double pair[2]) {
 /* One code point within double quotes. */
 static void put_escaped(strut_writer *writer, const char *text, size_t bytes, uint32_t code) {
   char escape[16];
-  if (code == STRUT_BAD_CODE) {
+  if (code == STRUT_BAD_CODE || strut_text_forbidden(code)) { /* no text may hold it */
     strut_put(writer, "\\uFFFD");
   } else if (code == '"' || code == '\\') {
     snprintf(escape, sizeof escape, "\\%c", (char)code);
     strut_put(writer, escape);
-  } else if (code < 0x20 || strut_text_break(text, bytes) || strut_text_forbidden(code)) {
+  } else if (code < 0x20 || strut_text_break(text, bytes)) {
     snprintf(escape, sizeof escape, code > 0xffff ? "\\U%08X" : "\\u%04X", (unsigned)code);
     strut_put(writer, escape);
   } else {

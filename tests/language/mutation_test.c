@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * No value is lost silently: drop, rename or double any key of a valid scene, or change any number,
+ * and either an error is reported or what is written back differs.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "parser/document.h"
+#include "tests/language/scenes.h"
+
+/* What saying nothing means too: dropping such a key changes nothing, and must not. */
+static const char *const said_anyway[] = {
+    "settle: false",        "nodes: all",      "law: none",
+    "law: karnopp",         "fixed: none",     "mass: 0",
+    "damping: 0",           "height: 0",       "contacts: {}",
+    "friction: {law: none", "integrator: rk4", "mass_model: consistent",
+    "configuration: start", /* which is as drawn, in the crawler */
+};
+
+typedef struct mutation {
+  const scene_file *file;
+  const char *written; /* the scene as it is */
+  char *mutant;        /* room for 1 << 20 bytes */
+  size_t tried, lost;
+} mutation;
+
+/* Byte offset of a place. All columns count code points; continuation bytes do not. */
+static size_t offset_of(const char *text, strut_place place) {
+  const char *c = text;
+  for (uint32_t line = 1; line < place.line; line++) c = strchr(c, '\n') + 1;
+  for (uint32_t column = 1; column < place.column; column++) do
+      c++;
+    while (((unsigned char)*c & 0xc0) == 0x80);
+  return (size_t)(c - text);
+}
+
+/* Tries the text with `cut` bytes at `at` replaced; `what` says what was done. */
+static void try_mutant(mutation *m, size_t at, size_t cut, const char *insert, const char *what,
+                       const char *key) {
+  const scene_file *f = m->file;
+  size_t length = strlen(insert);
+  memcpy(m->mutant, f->text, at);
+  memcpy(m->mutant + at, insert, length);
+  memcpy(m->mutant + at + length, f->text + at + cut, f->length - at - cut + 1);
+  char *written = read_and_write(m->mutant, f->length - cut + length);
+  m->tried++;
+  if (written && strcmp(written, m->written) == 0) {
+    print_error("%s: %s '%s' at byte %zu changes nothing\n", f->path, what, key, at);
+    m->lost++;
+  }
+  strut_release(written);
+}
+
+static bool needs_not_be_said(const char *pair) {
+  for (size_t i = 0; i < sizeof said_anyway / sizeof said_anyway[0]; i++)
+    if (strncmp(pair, said_anyway[i], strlen(said_anyway[i])) == 0) return true;
+  return false;
+}
+
+static void mutate_key(mutation *m, const strut_tree *map, const strut_tree *key) {
+  const char *text = m->file->text;
+  size_t at = offset_of(text, key->place), length = key->place.length;
+  bool flow = text[offset_of(text, map->place)] == '{';
+  const strut_tree *following = key->next->next;
+  char insert[400], indent[100] = "";
+  length = strcspn(text + at, ":");
+  snprintf(insert, sizeof insert, "x%.*s", key->quoted ? 0 : (int)length, text + at);
+  if (!key->quoted) try_mutant(m, at, length, insert, "renaming", key->text);
+  if (following && !needs_not_be_said(text + at))
+    try_mutant(m, at, offset_of(text, following->place) - at, "", "dropping", key->text);
+  snprintf(indent, sizeof indent, "\n%*s", (int)(key->place.column - 1), "");
+  snprintf(insert, sizeof insert, "%.*s: 1%s", (int)length, text + at, flow ? ", " : indent);
+  try_mutant(m, at, 0, insert, "doubling", key->text);
+}
+
+static void mutate_number(mutation *m, const strut_tree *value) {
+  const char *text = m->file->text;
+  size_t at = offset_of(text, value->place), length = strlen(value->text);
+  char insert[400];
+  bool number = strchr("-.(0123456789", value->text[0]) != NULL;
+  if (value->quoted || !number || !value->text[0] || length > 300) return;
+  if (strncmp(text + at, value->text, length) != 0) return; /* folded, or an alias */
+  snprintf(insert, sizeof insert, "(%s)*1.5+0.125", value->text);
+  try_mutant(m, at, length, insert, "changing", value->text);
+}
+
+static void mutate(mutation *m, const strut_tree *value) {
+  if (value->kind == STRUT_TREE_SCALAR) mutate_number(m, value);
+  if (value->kind == STRUT_TREE_LIST)
+    for (const strut_tree *item = value->first; item; item = item->next) mutate(m, item);
+  if (value->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *key = value->first; key; key = key->next->next) {
+    mutate_key(m, value, key);
+    /* Configurations that nobody starts from are a store of alternatives: they are checked, but
+       leave no trace in the scene. */
+    if (strcmp(key->text, "configurations") != 0) mutate(m, key->next);
+  }
+}
+
+static void no_value_is_lost(void **state) {
+  (void)state;
+  scene_file *files;
+  size_t count = scene_files(&files), lost = 0, tried = 0;
+  char *room = malloc(1 << 20);
+  for (size_t i = 0; i < count; i++) {
+    strut_diagnostics diagnostics = {0};
+    strut_document document = {0};
+    strut_diagnostics_source(&diagnostics, files[i].path, files[i].text, files[i].length);
+    assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
+    char *written = read_and_write(files[i].text, files[i].length);
+    assert_non_null(written);
+    mutation m = {.file = &files[i], .written = written, .mutant = room};
+    mutate(&m, document.root);
+    lost += m.lost;
+    tried += m.tried;
+    strut_release(written);
+    strut_document_free(&document);
+    strut_diagnostics_free(&diagnostics);
+  }
+  free(room);
+  free_scene_files(files, count);
+  assert_int_equal(lost, 0);
+  assert_true(tried > 1000);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_value_is_lost)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

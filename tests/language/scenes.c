@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/language/scenes.h"
+
+#include <dirent.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "parser/write_scene.h"
+
+typedef struct collection {
+  scene_file *files;
+  size_t count;
+} collection;
+
+static void add_file(collection *all, const char *path) {
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  all->files = realloc(all->files, (all->count + 1) * sizeof *all->files);
+  scene_file *added = &all->files[all->count++];
+  snprintf(added->path, sizeof added->path, "%s", path);
+  added->text = calloc(1, 1 << 20);
+  added->length = fread(added->text, 1, (1 << 20) - 1, file);
+  fclose(file);
+}
+
+static void walk(collection *all, const char *folder) {
+  DIR *directory = opendir(folder);
+  if (!directory) return;
+  for (struct dirent *entry = readdir(directory); entry; entry = readdir(directory)) {
+    char path[600];
+    size_t length = strlen(entry->d_name);
+    if (entry->d_name[0] == '.') continue;
+    snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+    if (length > 5 && strcmp(entry->d_name + length - 5, ".yaml") == 0)
+      add_file(all, path);
+    else if (!strchr(entry->d_name, '.'))
+      walk(all, path);
+  }
+  closedir(directory);
+}
+
+static int by_path(const void *a, const void *b) {
+  return strcmp(((const scene_file *)a)->path, ((const scene_file *)b)->path);
+}
+
+size_t scene_files(scene_file **files) {
+  collection all = {NULL, 0};
+  walk(&all, STRUT_TESTS_DIR "/language/good");
+  assert_true(all.count > 0);
+  walk(&all, STRUT_SOURCE_DIR "/models");
+  qsort(all.files, all.count, sizeof *all.files, by_path);
+  *files = all.files;
+  return all.count;
+}
+
+void free_scene_files(scene_file *files, size_t count) {
+  for (size_t i = 0; i < count; i++) free(files[i].text);
+  free(files);
+}
+
+strut_status read_quietly(const char *text, size_t length, strut_scene *scene) {
+  strut_diagnostics diagnostics = {0};
+  strut_status status =
+      strut_scene_read(scene, "scene", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+  strut_diagnostics_free(&diagnostics);
+  return status;
+}
+
+char *read_and_write(const char *text, size_t length) {
+  strut_scene scene;
+  if (read_quietly(text, length, &scene) != STRUT_OK) return NULL;
+  char *written = strut_scene_write(&scene);
+  assert_non_null(written);
+  strut_scene_free(&scene);
+  return written;
+}

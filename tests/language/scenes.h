@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The valid scenes of the repository, for tests that go through all of them.
+ */
+#ifndef STRUT_TESTS_LANGUAGE_SCENES_H
+#define STRUT_TESTS_LANGUAGE_SCENES_H
+
+#include <stddef.h>
+
+#include "parser/read_scene.h"
+
+typedef struct scene_file {
+  char path[600];
+  char *text; /* NUL-terminated; malloc */
+  size_t length;
+} scene_file;
+
+/** Every .yaml file below tests/language/good and models; at least one, or the test fails. */
+size_t scene_files(scene_file **files);
+void free_scene_files(scene_file *files, size_t count);
+
+/** Reads text as a scene for a run, quietly. The caller frees the scene. */
+strut_status read_quietly(const char *text, size_t length, strut_scene *scene);
+/** The scene in the text, written back; NULL where it is refused. strut_release it. */
+char *read_and_write(const char *text, size_t length);
+
+#endif
