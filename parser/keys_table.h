@@ -94,8 +94,8 @@
   X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, false, 0, "", "`[vx, vy]`", "Velocities of single nodes.") \
   X(INITIAL, VELOCITY, "velocity", PAIR, VELOCITY, ANY, false, 0, "[0, 0]", "", "Velocity of every other node, where it is free.") \
   X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, false, 0, "false", "", "Come to rest before t = 0, with actuators, driven loads, belt and friction off: `true`, or a mapping.") \
-  X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "1e-8", "", "At rest when every node is slower,") \
-  X(SETTLE, ACCELERATION, "acceleration", NUMBER, ACCELERATION, ABOVE_ZERO, false, 0, "1e-8", "", "and accelerates less.") \
+  X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "1e-8", "", "At rest when every node is slower than this") \
+  X(SETTLE, ACCELERATION, "acceleration", NUMBER, ACCELERATION, ABOVE_ZERO, false, 0, "1e-8", "", "and accelerates less than this.") \
   X(SETTLE, LIMIT, "limit", NUMBER, TIME, ABOVE_ZERO, false, 0, "100", "", "Give up after so much simulated time.") \
   X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4", "The method.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step. A run needs it.") \

@@ -248,8 +248,8 @@ static bool check_length(strut_checker *checker) {
     strut_find(checker, STRUT_ON_RUN, 0, "periods", "the run is longer than any number");
   else
     strut_find(checker, STRUT_ON_RUN, 0, "of",
-               "'%s' has no period: the run can be counted in periods of a sine, a square, or a "
-               "sum whose periods fit into its longest one",
+               "'%s' has no period: the run can be counted in periods of a sine, a half-sine, a "
+               "square, or a sum whose periods fit into its longest one",
                e->period_of ? e->period_of : "the signal");
   return false;
 }

@@ -85,14 +85,14 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
   }
 }
 
-/* Longest period among a signal's repeating parts; 0 where none repeats. */
-static double longest_period(const strut_signal *signals, int32_t index) {
+/* Longest period among a signal's repeating parts, or among its pulses; 0 where there is none. */
+static double longest_period(const strut_signal *signals, int32_t index, bool pulses) {
   const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE)
-    return 1.0 / s->frequency;
+  bool repeats = s->kind == STRUT_SINE || s->kind == STRUT_SQUARE;
+  if (pulses ? s->kind == STRUT_HALF_SINE : repeats) return 1.0 / s->frequency;
   double longest = 0.0;
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    longest = fmax(longest, longest_period(signals, s->terms[i]));
+    longest = fmax(longest, longest_period(signals, s->terms[i], pulses));
   return longest;
 }
 
@@ -109,6 +109,7 @@ static bool repeats_within(const strut_signal *signals, int32_t index, double pe
 }
 
 double strut_signal_period(const strut_signal *signals, int32_t index) {
-  double longest = longest_period(signals, index);
+  double longest = longest_period(signals, index, false);
+  if (longest == 0.0) return longest_period(signals, index, true);
   return repeats_within(signals, index, longest) ? longest : 0.0;
 }

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The map from names to indices, against a plain list. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "engine/base/name_map.h"
+
+enum { MANY = 20000 };
+
+static void many_names(void **state) {
+  (void)state;
+  static char names[MANY][16];
+  strut_name_map map = {0};
+  assert_int_equal(strut_name_map_find(&map, "n0"), -1);
+  for (int32_t i = 0; i < MANY; i++) {
+    snprintf(names[i], sizeof names[i], "n%d", (int)i);
+    assert_int_equal(strut_name_map_add(&map, names[i], i), -1);
+  }
+  assert_int_equal(map.count, MANY);
+  for (int32_t i = 0; i < MANY; i++) {
+    char copy[16];
+    snprintf(copy, sizeof copy, "n%d", (int)i);
+    assert_int_equal(strut_name_map_find(&map, copy), i);
+    assert_int_equal(strut_name_map_add(&map, copy, i + 1), i);
+  }
+  assert_int_equal(strut_name_map_find(&map, "n"), -1);
+  assert_int_equal(strut_name_map_find(&map, ""), -1);
+  assert_int_equal(strut_name_map_find(&map, "n20000"), -1);
+  assert_int_equal(map.count, MANY);
+  strut_name_map_free(&map);
+  assert_int_equal(map.count, 0);
+}
+
+static void no_memory(void **state) {
+  (void)state;
+  strut_name_map map = {0};
+  strut_fail_allocation_after(0);
+  assert_int_equal(strut_name_map_add(&map, "a", 0), -2);
+  strut_fail_allocation_after(-1);
+  assert_int_equal(strut_name_map_find(&map, "a"), -1);
+  assert_int_equal(strut_name_map_add(&map, "a", 7), -1);
+  assert_int_equal(strut_name_map_find(&map, "a"), 7);
+  strut_name_map_free(&map);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(many_names), cmocka_unit_test(no_memory)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

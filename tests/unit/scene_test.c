@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Defaults; the four ways to give a rest length; what an experiment amounts to. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/scene/scene.h"
+
+static void near(double found, double expected, double tolerance) {
+  if (!(fabs(found - expected) <= tolerance))
+    fail_msg("found %.17g, expected %.17g within %g", found, expected, tolerance);
+}
+
+/* One member of drawn length 5. */
+static strut_node nodes[2] = {{.name = "a", .position = {1, 1}}, {.name = "b", .position = {4, 5}}};
+
+static bool resolve(strut_member member, strut_rest *rest) {
+  strut_scene scene;
+  strut_scene_init(&scene);
+  member.node[0] = 0, member.node[1] = 1;
+  scene.nodes = nodes, scene.node_count = 2;
+  scene.members = &member, scene.member_count = 1;
+  return strut_member_rest(&scene, 0, rest);
+}
+
+static void defaults(void **state) {
+  (void)state;
+  strut_scene scene;
+  memset(&scene, 0x55, sizeof scene);
+  strut_scene_init(&scene);
+  assert_string_equal(scene.name, "");
+  assert_string_equal(scene.experiment.integrator, "rk4");
+  assert_int_equal(scene.experiment.channels,
+                   STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE);
+  assert_int_equal(scene.experiment.period_signal, -1);
+  assert_int_equal(scene.experiment.measure_node, -1);
+  assert_true(!scene.settle.wanted && scene.settle.speed == 1e-8 &&
+              scene.settle.acceleration == 1e-8 && scene.settle.limit == 100);
+  assert_int_equal(scene.node_count + scene.member_count + scene.contact_count, 0);
+  strut_member member = strut_member_default();
+  assert_true(member.node[0] == -1 && member.node[1] == -1);
+  assert_true(member.rest_kind == STRUT_REST_RATIO && member.rest_value == 1);
+  assert_int_equal(strut_contact_default().node, -1);
+  assert_true(strut_node_default().mass == 0);
+  strut_scene_free(&scene);
+  assert_null(scene.nodes);
+}
+
+/* Each of the four ways leads to the other three, for a stiffness and for EA. */
+static void the_four_ways_agree(void **state) {
+  (void)state;
+  for (int by_ea = 0; by_ea < 2; by_ea++)
+    for (double ratio = 0.5; ratio < 2; ratio += 0.19) {
+      strut_member m = strut_member_default();
+      m.kind = STRUT_SPRING;
+      if (by_ea)
+        m.axial_stiffness = 70;
+      else
+        m.stiffness = 20;
+      double length = 5 * ratio, stiffness = by_ea ? 70 / length : 20;
+      double force = stiffness * (5 - length);
+      const double values[] = {ratio, length, force, force / 5};
+      for (int kind = 0; kind < 4; kind++) {
+        strut_rest r;
+        m.rest_kind = (strut_rest_kind)kind, m.rest_value = values[kind];
+        assert_true(resolve(m, &r));
+        near(r.drawn_length, 5, 0);
+        near(r.length, length, 1e-14 * 50);
+        near(r.ratio, ratio, 1e-14 * 50);
+        near(r.stiffness, stiffness, 1e-12);
+        near(r.pretension, force, 1e-12);
+        near(r.force_density, force / 5, 1e-12);
+      }
+    }
+}
+
+static void what_was_given_is_kept(void **state) {
+  (void)state;
+  strut_member m = strut_member_default();
+  strut_rest r;
+  m.stiffness = 3;
+  m.rest_kind = STRUT_REST_PRETENSION, m.rest_value = 0.1;
+  assert_true(resolve(m, &r));
+  assert_true(r.pretension == 0.1);
+  m.rest_kind = STRUT_REST_LENGTH, m.rest_value = 0.7;
+  assert_true(resolve(m, &r));
+  assert_true(r.length == 0.7);
+}
+
+static void a_slack_cable_has_no_pretension(void **state) {
+  (void)state;
+  strut_member m = strut_member_default();
+  strut_rest r;
+  m.kind = STRUT_CABLE, m.stiffness = 10;
+  m.rest_kind = STRUT_REST_LENGTH, m.rest_value = 6;
+  assert_true(resolve(m, &r));
+  assert_true(r.pretension == 0 && r.force_density == 0 && r.length == 6);
+  m.kind = STRUT_BAR;
+  assert_true(resolve(m, &r));
+  assert_true(r.pretension == -10);
+}
+
+static void impossible_rests_are_refused(void **state) {
+  (void)state;
+  strut_rest r;
+  strut_member m = strut_member_default();
+  m.damping = 1;
+  m.rest_kind = STRUT_REST_PRETENSION, m.rest_value = 1;
+  assert_false(resolve(m, &r)); /* no stiffness */
+  m.rest_value = 0;
+  assert_true(resolve(m, &r));
+  assert_true(r.length == 5 && r.stiffness == 0);
+  m.stiffness = 10, m.rest_value = 51;
+  assert_false(resolve(m, &r)); /* below zero */
+  m.rest_value = 50;
+  assert_true(resolve(m, &r));
+  assert_true(r.length == 0);
+  m.stiffness = 0, m.axial_stiffness = 10, m.rest_value = -10;
+  assert_false(resolve(m, &r));
+  m.rest_kind = STRUT_REST_LENGTH, m.rest_value = 0;
+  assert_false(resolve(m, &r)); /* infinite stiffness */
+  m.axial_stiffness = 0, m.stiffness = 1;
+  assert_true(resolve(m, &r));
+  m.rest_value = -1;
+  assert_false(resolve(m, &r));
+  m.rest_value = (double)NAN;
+  assert_false(resolve(m, &r));
+}
+
+static void a_span_in_seconds(void **state) {
+  (void)state;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  scene.experiment.duration = 8;
+  strut_span span = strut_scene_span(&scene);
+  assert_true(span.duration == 8 && span.period == 0 && span.window_start == 0);
+  assert_true(span.record_start == 0 && span.record_every == 0.008);
+  scene.experiment.measure_last = 2, scene.experiment.output_last = 3;
+  scene.experiment.output_every = 0.25;
+  span = strut_scene_span(&scene);
+  assert_true(span.window_start == 6 && span.record_start == 5 && span.record_every == 0.25);
+}
+
+static void a_span_in_periods(void **state) {
+  (void)state;
+  strut_signal signal = strut_signal_default(STRUT_SINE);
+  strut_scene scene;
+  strut_scene_init(&scene);
+  signal.frequency = 4;
+  scene.signals = &signal, scene.signal_count = 1;
+  scene.experiment.periods = 100, scene.experiment.period_signal = 0;
+  scene.experiment.measure_last = 20, scene.experiment.output_last = 40;
+  strut_span span = strut_scene_span(&scene);
+  assert_true(span.duration == 25 && span.period == 0.25);
+  assert_true(span.window_start == 20 && span.record_start == 15 && span.record_every == 0.01);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(defaults),
+      cmocka_unit_test(the_four_ways_agree),
+      cmocka_unit_test(what_was_given_is_kept),
+      cmocka_unit_test(a_slack_cable_has_no_pretension),
+      cmocka_unit_test(impossible_rests_are_refused),
+      cmocka_unit_test(a_span_in_seconds),
+      cmocka_unit_test(a_span_in_periods),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Waveforms against their closed forms, and their rates against differences. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "engine/scene/signal.h"
+
+static const double PI = 3.14159265358979323846;
+
+static double value_of(const strut_signal *signals, int32_t index, double t) {
+  double value, rate;
+  strut_signal_evaluate(signals, index, t, &value, &rate);
+  return value;
+}
+
+static double rate_of(const strut_signal *signals, int32_t index, double t) {
+  double value, rate;
+  strut_signal_evaluate(signals, index, t, &value, &rate);
+  return rate;
+}
+
+static void near(double found, double expected, double tolerance) {
+  if (!(fabs(found - expected) <= tolerance))
+    fail_msg("found %.17g, expected %.17g within %g", found, expected, tolerance);
+}
+
+static strut_signal sine(double amplitude, double frequency, double phase, double start) {
+  strut_signal s = strut_signal_default(STRUT_SINE);
+  s.amplitude = amplitude, s.frequency = frequency, s.phase = phase, s.start = start;
+  return s;
+}
+
+static void defaults(void **state) {
+  (void)state;
+  strut_signal s = strut_signal_default(STRUT_RAMP);
+  assert_int_equal(s.kind, STRUT_RAMP);
+  assert_true(s.start == 0.0 && isinf(s.stop) && s.phase == 0.0 && s.name == NULL);
+}
+
+static void constants_begin_at_zero(void **state) {
+  (void)state;
+  strut_signal s = strut_signal_default(STRUT_CONSTANT);
+  s.amplitude = 3;
+  assert_true(value_of(&s, 0, -1) == 0.0);
+  assert_true(value_of(&s, 0, 0) == 3.0);
+  assert_true(value_of(&s, 0, 1e9) == 3.0);
+  assert_true(rate_of(&s, 0, 5) == 0.0);
+}
+
+static void sines(void **state) {
+  (void)state;
+  strut_signal s = sine(2, 10, 0.125, 0.3);
+  s.stop = 5;
+  for (int i = 0; i < 1000; i++) {
+    double t = 0.3 + 0.0047 * i, angle = 2 * PI * (10 * (t - 0.3) + 0.125);
+    near(value_of(&s, 0, t), t < 5 ? 2 * sin(angle) : 0, 1e-12);
+    near(rate_of(&s, 0, t), t < 5 ? 2 * 2 * PI * 10 * cos(angle) : 0, 1e-10);
+  }
+  assert_true(value_of(&s, 0, 0.2999) == 0.0);
+  assert_true(rate_of(&s, 0, 0.2999) == 0.0);
+  assert_true(value_of(&s, 0, 5.0001) == 0.0);
+}
+
+/* The phase is exact: after a million whole periods a sine stands where it began. */
+static void sines_do_not_drift(void **state) {
+  (void)state;
+  strut_signal s = sine(1, 0.25, 0, 0);
+  for (int i = 0; i < 1000; i++) {
+    double t = 4e6 + 0.015625 * i;
+    assert_true(value_of(&s, 0, t) == value_of(&s, 0, 0.015625 * i));
+  }
+  assert_true(value_of(&s, 0, 4e6 + 1) == 1.0);
+  assert_true(value_of(&s, 0, 4e6 + 2) == 0.0);
+}
+
+static void half_sines_are_one_pulse(void **state) {
+  (void)state;
+  strut_signal s = sine(0.8, 10, 0, 1);
+  s.kind = STRUT_HALF_SINE;
+  assert_true(value_of(&s, 0, 0.99) == 0.0);
+  near(value_of(&s, 0, 1.025), 0.8, 1e-13);
+  near(value_of(&s, 0, 1.01), 0.8 * sin(2 * PI * 0.1), 1e-13);
+  near(rate_of(&s, 0, 1), 0.8 * 2 * PI * 10, 1e-11);
+  assert_true(value_of(&s, 0, 1.0501) == 0.0);
+  assert_true(value_of(&s, 0, 1.125) == 0.0);
+  assert_true(rate_of(&s, 0, 1.06) == 0.0);
+  assert_true(strut_signal_period(&s, 0) == 1.0 / 10);
+}
+
+static void squares(void **state) {
+  (void)state;
+  strut_signal s = sine(3, 2, 0, 0);
+  s.kind = STRUT_SQUARE;
+  assert_true(value_of(&s, 0, 0) == 3.0);
+  assert_true(value_of(&s, 0, 0.2499) == 3.0);
+  assert_true(value_of(&s, 0, 0.25) == -3.0);
+  assert_true(value_of(&s, 0, 0.4999) == -3.0);
+  assert_true(value_of(&s, 0, 100.5) == 3.0);
+  assert_true(rate_of(&s, 0, 0.25) == 0.0);
+  s.phase = 0.25;
+  assert_true(value_of(&s, 0, 0.1251) == -3.0);
+  s.phase = -0.25;
+  assert_true(value_of(&s, 0, 0) == -3.0);
+  assert_true(strut_signal_period(&s, 0) == 0.5);
+}
+
+static void ramps_hold_their_end(void **state) {
+  (void)state;
+  strut_signal s = strut_signal_default(STRUT_RAMP);
+  s.amplitude = -6, s.start = 1, s.stop = 3;
+  assert_true(value_of(&s, 0, 0.5) == 0.0);
+  assert_true(value_of(&s, 0, 1.5) == -1.5);
+  assert_true(rate_of(&s, 0, 1) == -3.0);
+  assert_true(rate_of(&s, 0, 0.999) == 0.0);
+  assert_true(value_of(&s, 0, 3) == -6.0);
+  assert_true(rate_of(&s, 0, 3) == 0.0);
+  assert_true(value_of(&s, 0, 1e6) == -6.0);
+}
+
+static void tables(void **state) {
+  (void)state;
+  static const double time[] = {1, 2, 4, 4.5}, value[] = {10, 20, -20, 0};
+  strut_signal s = strut_signal_default(STRUT_TABLE);
+  s.time = time, s.value = value, s.point_count = 4;
+  for (int i = 0; i < 4; i++) assert_true(value_of(&s, 0, time[i]) == value[i]);
+  assert_true(value_of(&s, 0, -5) == 10.0 && rate_of(&s, 0, -5) == 0.0);
+  assert_true(value_of(&s, 0, 1.5) == 15.0 && rate_of(&s, 0, 1) == 10.0);
+  assert_true(value_of(&s, 0, 3) == 0.0 && rate_of(&s, 0, 2) == -20.0);
+  assert_true(value_of(&s, 0, 4.25) == -10.0 && rate_of(&s, 0, 4.25) == 40.0);
+  assert_true(value_of(&s, 0, 9) == 0.0 && rate_of(&s, 0, 4.5) == 0.0);
+  s.point_count = 1;
+  assert_true(value_of(&s, 0, 0) == 10.0 && value_of(&s, 0, 3) == 10.0);
+}
+
+static void sums_add_values_and_rates(void **state) {
+  (void)state;
+  static const int32_t first[] = {0, 1, 1}, second[] = {2, 0};
+  strut_signal s[4] = {sine(1, 3, 0, 0), strut_signal_default(STRUT_RAMP),
+                       strut_signal_default(STRUT_SUM), strut_signal_default(STRUT_SUM)};
+  s[1].amplitude = 2, s[1].stop = 4;
+  s[2].terms = first, s[2].term_count = 3;
+  s[3].terms = second, s[3].term_count = 2;
+  for (double t = 0; t < 5; t += 0.37) {
+    near(value_of(s, 2, t), value_of(s, 0, t) + 2 * value_of(s, 1, t), 1e-14);
+    near(rate_of(s, 3, t), 2 * rate_of(s, 0, t) + 2 * rate_of(s, 1, t), 1e-12);
+  }
+}
+
+static void rates_are_derivatives(void **state) {
+  (void)state;
+  static const double time[] = {0.2, 0.9, 1.7}, value[] = {1, -3, 5};
+  static const int32_t terms[] = {0, 1, 2, 3};
+  strut_signal s[5] = {sine(1, 3, 0.1, 0), sine(2, 0.5, 0, 0), strut_signal_default(STRUT_TABLE),
+                       strut_signal_default(STRUT_RAMP), strut_signal_default(STRUT_SUM)};
+  s[1].kind = STRUT_HALF_SINE;
+  s[2].time = time, s[2].value = value, s[2].point_count = 3;
+  s[3].amplitude = 1, s[3].start = 0.1, s[3].stop = 1.95;
+  s[4].terms = terms, s[4].term_count = 4;
+  for (int i = 0; i < 5; i++)
+    for (double t = 0.0313; t < 1.9; t += 0.0177) {
+      double h = 1e-6, slope = (value_of(s, i, t + h) - value_of(s, i, t - h)) / (2 * h);
+      if (fabs(t - 0.2) < 2 * h || fabs(t - 0.9) < 2 * h || fabs(t - 1.7) < 2 * h) continue;
+      near(rate_of(s, i, t), slope, 1e-7);
+    }
+}
+
+static void periods(void **state) {
+  (void)state;
+  static const int32_t fitting[] = {0, 1, 3}, clashing[] = {0, 2}, none[] = {3}, nested[] = {4, 1},
+                       pulsed[] = {0, 8}, pulse[] = {3, 8};
+  strut_signal s[11] = {sine(1, 10, 0, 0),
+                        sine(1, 30, 0, 0),
+                        sine(1, 15, 0, 0),
+                        strut_signal_default(STRUT_CONSTANT),
+                        strut_signal_default(STRUT_SUM),
+                        strut_signal_default(STRUT_SUM),
+                        strut_signal_default(STRUT_SUM),
+                        strut_signal_default(STRUT_SUM),
+                        sine(1, 3, 0, 0),
+                        strut_signal_default(STRUT_SUM),
+                        strut_signal_default(STRUT_SUM)};
+  s[8].kind = STRUT_HALF_SINE; /* a pulse spoils no sum, and counts where nothing repeats */
+  s[9].terms = pulsed, s[9].term_count = 2;
+  s[10].terms = pulse, s[10].term_count = 2;
+  s[4].terms = fitting, s[4].term_count = 3;
+  s[5].terms = clashing, s[5].term_count = 2;
+  s[6].terms = none, s[6].term_count = 1;
+  s[7].terms = nested, s[7].term_count = 2;
+  assert_true(strut_signal_period(s, 0) == 1.0 / 10);
+  assert_true(strut_signal_period(s, 3) == 0.0);
+  assert_true(strut_signal_period(s, 4) == 1.0 / 10);
+  assert_true(strut_signal_period(s, 5) == 0.0);
+  assert_true(strut_signal_period(s, 6) == 0.0);
+  assert_true(strut_signal_period(s, 7) == 1.0 / 10);
+  assert_true(strut_signal_period(s, 9) == 1.0 / 10);
+  assert_true(strut_signal_period(s, 10) == 1.0 / 3);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(defaults),
+      cmocka_unit_test(constants_begin_at_zero),
+      cmocka_unit_test(sines),
+      cmocka_unit_test(sines_do_not_drift),
+      cmocka_unit_test(half_sines_are_one_pulse),
+      cmocka_unit_test(squares),
+      cmocka_unit_test(ramps_hold_their_end),
+      cmocka_unit_test(tables),
+      cmocka_unit_test(sums_add_values_and_rates),
+      cmocka_unit_test(rates_are_derivatives),
+      cmocka_unit_test(periods),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
