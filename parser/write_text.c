@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/number_text.h"
 #include "parser/text.h"
 #include "parser/writer.h"
 
@@ -29,16 +29,8 @@ static void append(strut_writer *writer, const char *text, size_t length) {
 void strut_put(strut_writer *writer, const char *text) { append(writer, text, strlen(text)); }
 
 void strut_put_number(strut_writer *writer, double value) {
-  char text[40];
-  int length = 0;
-  if (fabs(value) < 1e15 && value == floor(value) && !(value == 0.0 && signbit(value)))
-    length = snprintf(text, sizeof text, "%lld", (long long)value);
-  for (int digits = 15; length == 0 && digits < 17; digits++) {
-    int tried = snprintf(text, sizeof text, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) length = tried;
-  }
-  if (length == 0) length = snprintf(text, sizeof text, "%.17g", value);
-  append(writer, text, (size_t)length);
+  char text[STRUT_NUMBER_TEXT];
+  append(writer, text, strut_number_text(value, text));
 }
 
 void strut_put_pair(strut_writer *writer, const double pair[2]) {

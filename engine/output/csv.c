@@ -5,7 +5,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/output/number_text.h"
+#include "engine/base/number_text.h"
 
 enum { BUFFER = 1 << 16, FILE_COUNT = 4 };
 

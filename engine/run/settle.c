@@ -45,6 +45,8 @@ static strut_status relax(const strut_model *model, strut_state *state,
   double speed = HUGE_VAL, push = HUGE_VAL;
   memset(state->v, 0, bytes);
   while ((double)state->step * dt < wanted->limit) {
+    if (interrupt && *interrupt)
+      return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
     method->advance(model, state, workspace, dt, 1);
     double kinetic = strut_energy_stored(model, state, 0.0).kinetic;
     if (!isfinite(kinetic))
@@ -62,8 +64,6 @@ static strut_status relax(const strut_model *model, strut_state *state,
     strut_forces_acceleration(model, state, 0.0, state->q, state->v, acceleration);
     push = largest(acceleration, both);
     if (push < wanted->acceleration) return STRUT_OK;
-    if (interrupt && *interrupt)
-      return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
   }
   return strut_fail(error, STRUT_NOT_SETTLED,
                     "the structure did not come to rest within %g s: largest speed %.3g m/s, "

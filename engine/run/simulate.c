@@ -211,7 +211,7 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
                             strut_summary *summary, strut_error *error) {
   strut_error own = {0};
   if (!error) error = &own;
-  *summary = (strut_summary){0};
+  *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
   run r = {.model = model, .options = options, .summary = summary, .error = error};
   strut_status status = prepare(&r);
   if (!status) {

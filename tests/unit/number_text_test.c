@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "engine/output/number_powers.h"
-#include "engine/output/number_text.h"
+#include "engine/base/number_powers.h"
+#include "engine/base/number_text.h"
 
 static uint64_t state = UINT64_C(0x9e3779b97f4a7c15);
 

@@ -2,8 +2,8 @@
 /**
  * Doubles as the shortest decimal text that reads back to the same bits, in any locale.
  */
-#ifndef STRUT_ENGINE_OUTPUT_NUMBER_TEXT_H
-#define STRUT_ENGINE_OUTPUT_NUMBER_TEXT_H
+#ifndef STRUT_ENGINE_BASE_NUMBER_TEXT_H
+#define STRUT_ENGINE_BASE_NUMBER_TEXT_H
 
 #include <stddef.h>
 

@@ -5,14 +5,14 @@
  * A value is c * 2^q; everything below is scaled by 4 so that the ends of the interval that rounds
  * to it are integers.
  */
-#include "engine/output/number_text.h"
+#include "engine/base/number_text.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "engine/output/number_powers.h"
+#include "engine/base/number_powers.h"
 
 /* digits * 10^exponent */
 typedef struct decimal {

@@ -5,8 +5,8 @@
  * Row i holds 10^(i + STRUT_NUMBER_POWER_FIRST) divided by the power of two that puts it into
  * [2^127, 2^128), rounded up to an integer: its upper and lower 64 bits. A test recomputes it.
  */
-#ifndef STRUT_ENGINE_OUTPUT_NUMBER_POWERS_H
-#define STRUT_ENGINE_OUTPUT_NUMBER_POWERS_H
+#ifndef STRUT_ENGINE_BASE_NUMBER_POWERS_H
+#define STRUT_ENGINE_BASE_NUMBER_POWERS_H
 
 #include <stdint.h>
 
