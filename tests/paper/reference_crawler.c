@@ -5,19 +5,14 @@
  * It shares no code with strut, so that strut can be compared with it. The mass matrix is the dense
  * one of all ten coordinates, inverted by Gauss elimination.
  *
- *   reference_crawler [frequency [mu [I|II [dt [periods [window [amplitude]]]]]]]
- *
- * prints one line: f, mu, start, dt, velocity of the centre of mass and of node 1 [mm/s], then for
- * each node the fraction of the window in contact and the largest height [mm]. It first lets the
- * structure settle on the ground (drive and friction off, velocities to zero at each peak of the
- * kinetic energy).
+ * See reference_crawler.h; reference_crawler_main.c makes a program of it.
  */
+#include "tests/paper/reference_crawler.h"
+
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { NODES = 5, MEMBERS = 9, DOF = 2 * NODES };
+enum { NODES = REFERENCE_NODES, MEMBERS = 9, DOF = 2 * NODES };
 
 /* Table 1: nodes i1 - i2, lambda_0 [m], c [N/m], k [N s/m], m [kg]. */
 static const struct {
@@ -34,10 +29,7 @@ static const int driven = 7; /* member 8 */
 static const double state_one[DOF] = {0.0,       0.0,       0.0965109, 0.0238714, 0.0526668,
                                       0.0283691, 0.0602933, 0.0,       0.0434758, 0.0106875};
 
-typedef struct crawler {
-  double inverse_mass[DOF][DOF];
-  double frequency, amplitude, mu;
-} crawler;
+typedef reference_crawler crawler;
 
 static double sign(double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; }
 
@@ -160,7 +152,7 @@ static double kinetic_energy(const double *qdot) {
 }
 
 /* Kinetic damping: at each peak of the kinetic energy all velocities become zero. */
-static int settle(const crawler *with_drive, double dt, double *z) {
+int reference_settle(const crawler *with_drive, double dt, double *z) {
   crawler it = *with_drive;
   it.amplitude = 0, it.mu = 0;
   double before = 0.0, zdot[2 * DOF];
@@ -189,7 +181,10 @@ static double centre_of_mass(const double *q) {
 }
 
 /* State II is the mirror image of I: x becomes -x, and nodes 1 and 2 change names. */
-static void place(int mirrored, double *z) {
+void reference_prepare(crawler *it, int mirrored, double *z) {
+  double mass[DOF][DOF];
+  mass_matrix(mass);
+  invert(mass, it->inverse_mass);
   memset(z, 0, 2 * DOF * sizeof *z);
   for (int i = 0; i < NODES; i++) {
     int from = mirrored && i < 2 ? 1 - i : i;
@@ -198,43 +193,28 @@ static void place(int mirrored, double *z) {
   }
 }
 
-int main(int argc, char **argv) {
-  crawler it = {.frequency = argc > 1 ? atof(argv[1]) : 10.0,
-                .mu = argc > 2 ? atof(argv[2]) : 0.1,
-                .amplitude = argc > 7 ? atof(argv[7]) : 1e-4};
-  int mirrored = argc > 3 && strcmp(argv[3], "II") == 0;
-  double dt = argc > 4 ? atof(argv[4]) : 1e-4;
-  double periods = argc > 5 ? atof(argv[5]) : 1100.0, window = argc > 6 ? atof(argv[6]) : 100.0;
-  double mass[DOF][DOF], z[2 * DOF];
-  mass_matrix(mass);
-  invert(mass, it.inverse_mass);
-  place(mirrored, z);
-  if (!settle(&it, dt, z)) {
-    fprintf(stderr, "reference_crawler: did not settle\n");
-    return 1;
-  }
+void reference_step(const crawler *it, long n, double dt, double *z) {
+  rk4_step(it, (double)n * dt, ((double)n + 0.5) * dt, ((double)n + 1.0) * dt, dt, z);
+}
 
-  long steps = lround(periods / it.frequency / dt);
-  long first = lround((periods - window) / it.frequency / dt);
-  double start_com = 0, start_one = 0, highest[NODES];
+void reference_run(const crawler *it, double dt, double periods, double window, double *z,
+                   reference_figures *figures) {
+  long steps = lround(periods / it->frequency / dt);
+  long first = lround((periods - window) / it->frequency / dt);
+  double start_com = 0, start_one = 0;
   long touching[NODES] = {0};
-  for (int i = 0; i < NODES; i++) highest[i] = -(double)INFINITY;
+  for (int i = 0; i < NODES; i++) figures->highest[i] = -(double)INFINITY;
   for (long n = 0; n < steps; n++) {
     if (n == first) start_com = centre_of_mass(z), start_one = z[0];
-    rk4_step(&it, (double)n * dt, ((double)n + 0.5) * dt, ((double)n + 1.0) * dt, dt, z);
+    reference_step(it, n, dt, z);
     if (n < first) continue;
     for (int i = 0; i < NODES; i++) {
       touching[i] += z[2 * i + 1] < 0;
-      highest[i] = fmax(highest[i], z[2 * i + 1]);
+      figures->highest[i] = fmax(figures->highest[i], z[2 * i + 1]);
     }
   }
   double span = (double)(steps - first) * dt;
-  printf("f %g mu %g start %s dt %g: v_com %.4f v_1 %.4f", it.frequency, it.mu,
-         mirrored ? "II" : "I", dt, 1e3 * (centre_of_mass(z) - start_com) / span,
-         1e3 * (z[0] - start_one) / span);
-  for (int i = 0; i < NODES; i++)
-    printf("  node %d duty %.4f max %.4f", i + 1, (double)touching[i] / (double)(steps - first),
-           1e3 * highest[i]);
-  printf("\n");
-  return 0;
+  figures->velocity = (centre_of_mass(z) - start_com) / span;
+  figures->velocity_one = (z[0] - start_one) / span;
+  for (int i = 0; i < NODES; i++) figures->duty[i] = (double)touching[i] / (double)(steps - first);
 }

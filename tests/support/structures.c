@@ -35,7 +35,7 @@ void structure_throw(strut_scene *scene, double x, double y, double spin) {
 }
 
 void structure_crawler(strut_scene *scene, double frequency, double amplitude, double mu,
-                       bool mirrored) {
+                       bool state_two) {
   static const double drawn[5][2] = {{0, 0},
                                      {0.0965109, 0.0238714},
                                      {0.0526668, 0.0283691},
@@ -47,7 +47,10 @@ void structure_crawler(strut_scene *scene, double frequency, double amplitude, d
   } table1[9] = {{1, 2, 0.10, 1e6, 0.1}, {3, 5, 0.02, 1e6, 0.02}, {4, 5, 0.02, 1e6, 0.02},
                  {1, 3, 0.02, 3000, 0},  {2, 3, 0.02, 3000, 0},   {2, 4, 0.02, 3000, 0},
                  {1, 4, 0.02, 3000, 0},  {1, 5, 0.01, 1e4, 0},    {2, 5, 0.01, 1e4, 0}};
-  for (int i = 0; i < 5; i++) build_node(scene, mirrored ? -drawn[i][0] : drawn[i][0], drawn[i][1]);
+  for (int i = 0; i < 5; i++) {
+    const double *at = drawn[state_two && i < 2 ? 1 - i : i];
+    build_node(scene, state_two ? -at[0] : at[0], at[1]);
+  }
   for (int j = 0; j < 9; j++)
     build_sized(scene, table1[j].mass > 0 ? STRUT_BAR : STRUT_SPRING, table1[j].i1 - 1,
                 table1[j].i2 - 1, table1[j].stiffness, 0.2, table1[j].mass, table1[j].rest);

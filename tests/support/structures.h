@@ -23,11 +23,11 @@ void structure_x_frame(strut_scene *scene, const x_frame *frame);
 void structure_throw(strut_scene *scene, double x, double y, double spin);
 
 /**
- * The paper's crawler in state I, or for `mirrored` its mirror image in x with nodes and members in
- * the same order; member 8 (index 7) is driven by amplitude [m] and frequency [Hz].
+ * The paper's crawler in state I, or in state II: its mirror image in x, in which nodes 1 and 2
+ * change names; member 8 (index 7) is driven by amplitude [m] and frequency [Hz] (signal 0).
  */
 void structure_crawler(strut_scene *scene, double frequency, double amplitude, double mu,
-                       bool mirrored);
+                       bool state_two);
 
 /**
  * `frames` X-frames in a row, 5 members each, held at the left end: masses in the bars only, so a
