@@ -1,0 +1,404 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/scene/check.h"
+
+/* A valid scene that uses everything, in arrays that a test may spoil. */
+typedef struct sample {
+  strut_scene scene;
+  strut_node nodes[3];
+  strut_member members[2];
+  strut_contact contacts[2];
+  strut_actuator actuators[1];
+  strut_load loads[2];
+  strut_signal signals[4];
+  double time[2], value[2];
+  int32_t terms[2];
+} sample;
+
+static void fill_structure(sample *s) {
+  for (int i = 0; i < 3; i++) {
+    static const char *const names[] = {"a", "b", "c"};
+    s->nodes[i] = strut_node_default();
+    s->nodes[i].name = names[i];
+    s->nodes[i].position[0] = s->nodes[i].start[0] = i;
+  }
+  s->nodes[0].fixed[0] = s->nodes[0].fixed[1] = true;
+  s->nodes[2].mass = 1;
+  for (int i = 0; i < 2; i++) {
+    static const char *const names[] = {"ab", "bc"};
+    s->members[i] = strut_member_default();
+    s->members[i].name = names[i];
+    s->members[i].node[0] = i, s->members[i].node[1] = i + 1;
+    s->members[i].stiffness = 10, s->members[i].mass = 2;
+    s->contacts[i] = strut_contact_default();
+    s->contacts[i].node = i + 1;
+    s->contacts[i].stiffness = 100;
+    s->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, 0.2, 0.1, 1e-4};
+  }
+}
+
+static void fill_drives(sample *s) {
+  s->time[1] = s->value[1] = 1;
+  s->terms[1] = 1;
+  s->signals[0] = strut_signal_default(STRUT_SINE);
+  s->signals[0].name = "wave", s->signals[0].frequency = 2, s->signals[0].amplitude = 0.1;
+  s->signals[1] = strut_signal_default(STRUT_TABLE);
+  s->signals[1].time = s->time, s->signals[1].value = s->value, s->signals[1].point_count = 2;
+  s->signals[2] = strut_signal_default(STRUT_SUM);
+  s->signals[2].terms = s->terms, s->signals[2].term_count = 2;
+  s->signals[3] = strut_signal_default(STRUT_RAMP);
+  s->signals[3].amplitude = 1, s->signals[3].stop = 2;
+  s->actuators[0] = (strut_actuator){"drive", 1, 2};
+  s->loads[0] = (strut_load){"push", 2, {1, 0}, -1};
+  s->loads[1] = (strut_load){"swell", 1, {1, 0}, 3};
+}
+
+static void fill(sample *s) {
+  memset(s, 0, sizeof *s);
+  fill_structure(s);
+  fill_drives(s);
+  strut_scene *scene = &s->scene;
+  strut_scene_init(scene);
+  scene->nodes = s->nodes, scene->node_count = 3;
+  scene->members = s->members, scene->member_count = 2;
+  scene->contacts = s->contacts, scene->contact_count = 2;
+  scene->actuators = s->actuators, scene->actuator_count = 1;
+  scene->loads = s->loads, scene->load_count = 2;
+  scene->signals = s->signals, scene->signal_count = 4;
+  scene->ground.present = true;
+  scene->settle.wanted = true;
+  scene->experiment.step = 1e-3;
+  scene->experiment.periods = 10, scene->experiment.period_signal = 0;
+  scene->experiment.measure_last = 5, scene->experiment.output_last = 10;
+}
+
+/* Checks the spoilt sample: exactly one finding, about that key, whose text has the word. */
+static void expect(sample *s, strut_subject subject, size_t index, const char *key,
+                   const char *word) {
+  strut_findings findings = {0};
+  strut_status status = strut_scene_check(&s->scene, STRUT_FOR_RUN, &findings);
+  if (findings.count != 1) {
+    for (size_t i = 0; i < findings.count; i++) print_error("%s\n", findings.items[i].message);
+    fail_msg("%zu findings instead of one: %s", findings.count, word);
+  }
+  const strut_finding *f = &findings.items[0];
+  assert_int_equal(status, STRUT_BAD_SCENE);
+  if (!strstr(f->message, word)) fail_msg("'%s' lacks '%s'", f->message, word);
+  assert_int_equal(f->subject, subject);
+  assert_int_equal(f->index, index);
+  if (key && (!f->key || strcmp(f->key, key) != 0)) fail_msg("key %s, not %s", f->key, key);
+  if (!key) assert_null(f->key);
+  strut_findings_free(&findings);
+  fill(s);
+}
+
+static void a_valid_scene_has_no_findings(void **state) {
+  (void)state;
+  sample s;
+  strut_findings findings = {0};
+  fill(&s);
+  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_OK);
+  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_STATICS, &findings), STRUT_OK);
+  assert_int_equal(findings.count, 0);
+  strut_findings_free(&findings);
+}
+
+static void nodes(void **state) {
+  (void)state;
+  sample s;
+  fill(&s);
+  s.nodes[1].name = "a";
+  expect(&s, STRUT_ON_NODE, 1, NULL, "two nodes 'a'");
+  s.nodes[1].name = NULL;
+  expect(&s, STRUT_ON_NODE, 1, NULL, "no name");
+  s.nodes[1].name = "";
+  expect(&s, STRUT_ON_NODE, 1, NULL, "no name");
+  s.nodes[2].mass = -1;
+  expect(&s, STRUT_ON_NODE, 2, "mass", "negative");
+  s.nodes[2].mass = (double)INFINITY;
+  expect(&s, STRUT_ON_NODE, 2, "mass", "finite");
+  s.nodes[2].position[1] = (double)NAN;
+  expect(&s, STRUT_ON_NODE, 2, "position", "finite");
+  s.nodes[2].start[0] = (double)NAN;
+  expect(&s, STRUT_ON_NODE, 2, "start", "finite");
+  s.nodes[2].velocity[0] = (double)NAN;
+  expect(&s, STRUT_ON_NODE, 2, "velocity", "finite");
+  s.nodes[0].velocity[1] = 1;
+  expect(&s, STRUT_ON_NODE, 0, "velocity", "fixed in y");
+  s.nodes[2].mass = s.members[1].mass = 0;
+  expect(&s, STRUT_ON_NODE, 2, "mass", "no mass");
+  s.scene.member_count = 1, s.scene.actuator_count = 0;
+  s.scene.load_count = 0, s.nodes[2].mass = 0;
+  expect(&s, STRUT_ON_NODE, 2, NULL, "nothing uses node 'c'");
+}
+
+static void members(void **state) {
+  (void)state;
+  sample s;
+  fill(&s);
+  for (int32_t bad = -1; bad <= 3; bad += 4) {
+    s.members[0].node[1] = bad;
+    expect(&s, STRUT_ON_MEMBER, 0, "nodes", "does not exist");
+  }
+  s.members[0].node[1] = 0;
+  expect(&s, STRUT_ON_MEMBER, 0, "nodes", "itself");
+  s.members[0].kind = (strut_member_kind)7;
+  expect(&s, STRUT_ON_MEMBER, 0, "kind", "unknown");
+  s.members[0].rest_kind = (strut_rest_kind)-1;
+  expect(&s, STRUT_ON_MEMBER, 0, "kind", "unknown");
+  s.members[0].stiffness = -1;
+  expect(&s, STRUT_ON_MEMBER, 0, "stiffness", "negative");
+  s.members[0].stiffness = 0, s.members[0].axial_stiffness = -1;
+  expect(&s, STRUT_ON_MEMBER, 0, "axial_stiffness", "negative");
+  s.members[0].axial_stiffness = 1;
+  expect(&s, STRUT_ON_MEMBER, 0, "axial_stiffness", "both");
+  s.members[0].damping = (double)NAN;
+  expect(&s, STRUT_ON_MEMBER, 0, "damping", "finite");
+  s.members[0].mass = -0.5;
+  expect(&s, STRUT_ON_MEMBER, 0, "mass", "-0.5");
+  s.members[0].stiffness = 0;
+  expect(&s, STRUT_ON_MEMBER, 0, NULL, "neither stiffness nor damping");
+  s.members[0].rest_value = -1;
+  expect(&s, STRUT_ON_MEMBER, 0, "rest_length_ratio", "negative");
+  s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 11;
+  expect(&s, STRUT_ON_MEMBER, 0, "pretension", "below zero");
+  s.members[0].rest_kind = STRUT_REST_FORCE_DENSITY, s.members[0].rest_value = (double)NAN;
+  expect(&s, STRUT_ON_MEMBER, 0, "force_density", "finite");
+  s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = -1;
+  s.members[0].kind = STRUT_CABLE;
+  expect(&s, STRUT_ON_MEMBER, 0, "pretension", "cannot push");
+  s.members[0].rest_kind = STRUT_REST_PRETENSION, s.members[0].rest_value = 1;
+  s.members[0].stiffness = 0, s.members[0].damping = 1;
+  expect(&s, STRUT_ON_MEMBER, 0, "pretension", "needs a stiffness");
+  s.members[0].stiffness = 0, s.members[0].axial_stiffness = 5, s.members[0].rest_value = 0;
+  expect(&s, STRUT_ON_MEMBER, 0, "rest_length_ratio", "above zero");
+  s.nodes[1].position[0] = s.nodes[1].start[0] = 0;
+  expect(&s, STRUT_ON_MEMBER, 0, "nodes", "drawn in one place");
+  s.nodes[1].start[0] = 0;
+  expect(&s, STRUT_ON_MEMBER, 0, "nodes", "start in one place");
+  s.members[1].name = "ab";
+  expect(&s, STRUT_ON_MEMBER, 1, NULL, "two members");
+}
+
+static void a_spring_of_no_length_may_begin_in_one_place(void **state) {
+  (void)state;
+  sample s;
+  strut_findings findings = {0};
+  fill(&s);
+  s.nodes[1].position[0] = s.nodes[1].start[0] = 0;
+  s.members[0].rest_kind = STRUT_REST_LENGTH, s.members[0].rest_value = 0;
+  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_OK);
+}
+
+static void ground(void **state) {
+  (void)state;
+  sample s;
+  fill(&s);
+  s.scene.ground.height = (double)NAN;
+  expect(&s, STRUT_ON_GROUND, 0, "height", "finite");
+  s.scene.ground.belt_speed = (double)INFINITY;
+  expect(&s, STRUT_ON_GROUND, 0, "belt_speed", "finite");
+  s.scene.ground.slope = 1.5707963267948966;
+  expect(&s, STRUT_ON_GROUND, 0, "slope", "90 deg");
+  s.scene.ground.slope = (double)NAN;
+  expect(&s, STRUT_ON_GROUND, 0, "slope", "between");
+  s.scene.contact_count = 0;
+  expect(&s, STRUT_ON_GROUND, 0, "nodes", "no node");
+  s.scene.ground.present = false;
+  expect(&s, STRUT_ON_GROUND, 0, NULL, "no ground");
+  s.contacts[1].node = 3;
+  expect(&s, STRUT_ON_CONTACT, 1, NULL, "does not exist");
+  s.contacts[1].node = 1;
+  expect(&s, STRUT_ON_CONTACT, 1, NULL, "out of order");
+  s.contacts[1].stiffness = 0;
+  expect(&s, STRUT_ON_CONTACT, 1, "stiffness", "above zero");
+  s.contacts[1].damping = -1;
+  expect(&s, STRUT_ON_CONTACT, 1, "damping", "negative");
+  s.contacts[0].friction.mu_static = -1;
+  expect(&s, STRUT_ON_CONTACT, 0, "mu_static", "node 'b'");
+  s.contacts[0].friction.mu_kinetic = (double)NAN;
+  expect(&s, STRUT_ON_CONTACT, 0, "mu_kinetic", "finite");
+  s.contacts[0].friction.stick_velocity = 0;
+  expect(&s, STRUT_ON_CONTACT, 0, "stick_velocity", "above zero");
+  s.contacts[0].friction.law = (strut_friction_law)9;
+  expect(&s, STRUT_ON_CONTACT, 0, "law", "unknown");
+}
+
+static void signals(void **state) {
+  (void)state;
+  sample s;
+  fill(&s);
+  s.scene.experiment.periods = 0, s.scene.experiment.duration = 20;
+  s.signals[0].frequency = 0;
+  expect(&s, STRUT_ON_SIGNAL, 0, "frequency", "signal 'wave'");
+  s.signals[0].frequency = (double)NAN;
+  expect(&s, STRUT_ON_SIGNAL, 0, "frequency", "finite"); /* and the run does not say it again */
+  s.signals[0].amplitude = (double)INFINITY;
+  expect(&s, STRUT_ON_SIGNAL, 0, "amplitude", "finite");
+  s.signals[0].start = 3, s.signals[0].stop = 3;
+  expect(&s, STRUT_ON_SIGNAL, 0, "stop", "after its start");
+  s.signals[3].stop = (double)INFINITY;
+  expect(&s, STRUT_ON_SIGNAL, 3, "stop", "load 'swell' needs a stop");
+  s.time[1] = 0;
+  expect(&s, STRUT_ON_SIGNAL, 1, "table", "actuator 'drive' must increase");
+  s.value[1] = (double)NAN;
+  expect(&s, STRUT_ON_SIGNAL, 1, "table", "point 2");
+  s.signals[1].point_count = 0;
+  expect(&s, STRUT_ON_SIGNAL, 1, "table", "no points");
+  s.signals[2].term_count = 0;
+  expect(&s, STRUT_ON_SIGNAL, 2, "sum", "no terms");
+  s.terms[0] = 2;
+  expect(&s, STRUT_ON_SIGNAL, 2, "sum", "term 1");
+  s.terms[1] = -1;
+  expect(&s, STRUT_ON_SIGNAL, 2, "sum", "term 2");
+  s.signals[1].kind = (strut_signal_kind)12;
+  expect(&s, STRUT_ON_SIGNAL, 1, NULL, "unknown kind");
+}
+
+/* Sums of sums: two terms each make 2^40 in 40 steps; a chain of 100 is too deep to evaluate. */
+static void sums_cannot_explode(void **state) {
+  (void)state;
+  static strut_signal signals[101];
+  static int32_t terms[101][2];
+  for (int wide = 0; wide < 2; wide++) {
+    sample s;
+    strut_findings findings = {0};
+    fill(&s);
+    signals[0] = strut_signal_default(STRUT_CONSTANT);
+    for (int i = 1; i <= 100; i++) {
+      signals[i] = strut_signal_default(STRUT_SUM);
+      terms[i][0] = terms[i][1] = i - 1;
+      signals[i].terms = terms[i], signals[i].term_count = wide ? 2 : 1;
+    }
+    s.scene.signals = signals, s.scene.signal_count = wide ? 41 : 101;
+    s.scene.actuators[0].signal = wide ? 40 : 100;
+    s.scene.load_count = 1;
+    s.scene.experiment.periods = 0, s.scene.experiment.duration = 20;
+    assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
+    assert_int_equal(findings.count, 1);
+    assert_non_null(strstr(findings.items[0].message, "more than 10000 terms"));
+    strut_findings_free(&findings);
+  }
+}
+
+static void drives(void **state) {
+  (void)state;
+  sample s;
+  fill(&s);
+  s.actuators[0].member = 2;
+  expect(&s, STRUT_ON_ACTUATOR, 0, "member", "does not exist");
+  s.actuators[0].signal = -1;
+  expect(&s, STRUT_ON_ACTUATOR, 0, "signal", "no signal");
+  s.actuators[0].signal = 4;
+  expect(&s, STRUT_ON_ACTUATOR, 0, "signal", "no signal");
+  s.loads[0].node = -1;
+  expect(&s, STRUT_ON_LOAD, 0, "node", "does not exist");
+  s.loads[0].force[1] = (double)NAN;
+  expect(&s, STRUT_ON_LOAD, 0, "force", "finite");
+  s.loads[0].signal = 4;
+  expect(&s, STRUT_ON_LOAD, 0, "signal", "does not exist");
+}
+
+static void experiment(void **state) {
+  (void)state;
+  sample s;
+  fill(&s);
+  strut_experiment *e = &s.scene.experiment;
+  s.scene.settle.speed = 0;
+  expect(&s, STRUT_ON_INITIAL, 0, "speed", "above zero");
+  s.scene.settle.limit = (double)NAN;
+  expect(&s, STRUT_ON_INITIAL, 0, "limit", "finite");
+  s.scene.gravity[1] = (double)NAN;
+  expect(&s, STRUT_ON_SCENE, 0, "gravity", "finite");
+  s.scene.mass_model = (strut_mass_model)5;
+  expect(&s, STRUT_ON_SCENE, 0, "mass_model", "unknown");
+  e->step = 0;
+  expect(&s, STRUT_ON_SOLVER, 0, "step", "no step");
+  e->step = -1;
+  expect(&s, STRUT_ON_SOLVER, 0, "step", "above zero");
+  e->step = (double)NAN;
+  expect(&s, STRUT_ON_SOLVER, 0, "step", "finite");
+  e->step = 6;
+  expect(&s, STRUT_ON_SOLVER, 0, "step", "longer than the whole run");
+  e->step = 1e-16;
+  expect(&s, STRUT_ON_SOLVER, 0, "step", "1e15");
+  e->integrator = "";
+  expect(&s, STRUT_ON_SOLVER, 0, "integrator", "no integrator");
+  e->duration = 1;
+  expect(&s, STRUT_ON_RUN, 0, "periods", "both");
+  e->duration = -1;
+  expect(&s, STRUT_ON_RUN, 0, "duration", "negative");
+  e->periods = 0;
+  expect(&s, STRUT_ON_RUN, 0, NULL, "neither");
+  e->period_signal = 3;
+  expect(&s, STRUT_ON_RUN, 0, "of", "no period");
+  e->period_signal = 4;
+  expect(&s, STRUT_ON_RUN, 0, "of", "needs a signal");
+  e->periods = 1e308, s.signals[0].frequency = 1e-10;
+  expect(&s, STRUT_ON_RUN, 0, "periods", "longer than any number");
+  e->measure_last = 11;
+  expect(&s, STRUT_ON_RUN, 0, "last", "last 11 periods of a run of 10 periods");
+  e->measure_node = 3;
+  expect(&s, STRUT_ON_RUN, 0, "node", "does not exist");
+  e->output_last = 11;
+  expect(&s, STRUT_ON_OUTPUT, 0, "last", "cannot record");
+  e->output_every = -1;
+  expect(&s, STRUT_ON_OUTPUT, 0, "every", "negative");
+}
+
+static void statics_need_neither_mass_nor_run(void **state) {
+  (void)state;
+  sample s;
+  strut_findings findings = {0};
+  fill(&s);
+  s.nodes[2].mass = s.members[0].mass = s.members[1].mass = 0;
+  s.scene.experiment.step = s.scene.experiment.periods = 0;
+  s.scene.experiment.measure_last = s.scene.experiment.output_last = 0;
+  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_STATICS, &findings), STRUT_OK);
+  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
+  assert_int_equal(findings.count, 4); /* nodes b and c, the step, the run */
+  strut_findings_free(&findings);
+}
+
+static void no_memory(void **state) {
+  (void)state;
+  sample s;
+  strut_status status = STRUT_NO_MEMORY;
+  fill(&s);
+  s.nodes[2].mass = -1;
+  for (int n = 0; status == STRUT_NO_MEMORY && n < 100; n++) {
+    strut_findings findings = {0};
+    strut_fail_allocation_after(n);
+    status = strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings);
+    strut_fail_allocation_after(-1);
+    strut_findings_free(&findings);
+  }
+  assert_int_equal(status, STRUT_BAD_SCENE);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_valid_scene_has_no_findings),
+      cmocka_unit_test(nodes),
+      cmocka_unit_test(members),
+      cmocka_unit_test(a_spring_of_no_length_may_begin_in_one_place),
+      cmocka_unit_test(ground),
+      cmocka_unit_test(signals),
+      cmocka_unit_test(sums_cannot_explode),
+      cmocka_unit_test(drives),
+      cmocka_unit_test(experiment),
+      cmocka_unit_test(statics_need_neither_mass_nor_run),
+      cmocka_unit_test(no_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
