@@ -93,8 +93,10 @@ strut_status strut_recording_create(const strut_model *model, double step, strut
   bool ready = r->length && r->force && lay_out(model, r);
   double expected = (span.duration - span.record_start) / fmax(span.record_every, step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
-  r->capacity = 1 + 65536 / r->layout.width;
-  if (ready) r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
+  if (ready) {
+    r->capacity = 1 + 65536 / r->layout.width;
+    r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
+  }
   if (!ready || !r->rows) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return begin_sinks(r, error);
 }
@@ -136,12 +138,14 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
   }
 }
 
+/* Rows that a sink refuses are not offered again. */
 static strut_status hand_over(strut_recording *r, strut_error *error) {
-  for (size_t s = 0; s < r->begun && r->row_count; s++) {
-    strut_status status = r->sinks[s]->rows(r->sinks[s]->context, r->rows, r->row_count, error);
+  size_t count = r->row_count;
+  r->row_count = 0;
+  for (size_t s = 0; s < r->begun && count; s++) {
+    strut_status status = r->sinks[s]->rows(r->sinks[s]->context, r->rows, count, error);
     if (status) return status;
   }
-  r->row_count = 0;
   return STRUT_OK;
 }
 

@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows for sinks: which, when, what; sinks that fail; and a run that is refused memory. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/energy.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+enum { MOST_ROWS = 2000, MOST_WIDTH = 300 };
+
+/* A sink that remembers, and fails where it is told to. */
+typedef struct memory {
+  int begun, ended;
+  strut_status ended_with;
+  size_t width, count, calls;
+  size_t offset[6], items[6], components[6];
+  unsigned channels; /* bits, in the order they came */
+  size_t channel_count;
+  double row[MOST_ROWS][MOST_WIDTH];
+  strut_status fail_begin, fail_rows, fail_end;
+} memory;
+
+static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
+  memory *m = context;
+  if (m->fail_begin) return strut_fail(error, m->fail_begin, "begin fails");
+  m->begun++;
+  m->width = layout->width;
+  m->channel_count = layout->channel_count;
+  assert_true(m->width <= MOST_WIDTH);
+  for (size_t k = 0; k < layout->channel_count; k++) {
+    const strut_record_channel *c = &layout->channels[k];
+    m->channels |= (unsigned)c->id;
+    m->offset[k] = c->offset, m->items[k] = c->items, m->components[k] = c->components;
+    assert_true(c->name[0] && c->unit[0] && c->item_names[0] && c->component_names[0]);
+  }
+  return STRUT_OK;
+}
+
+static strut_status rows(void *context, const double *data, size_t count, strut_error *error) {
+  memory *m = context;
+  m->calls++;
+  for (size_t i = 0; i < count && m->count < MOST_ROWS; i++, m->count++)
+    memcpy(m->row[m->count], data + i * m->width, m->width * sizeof *data);
+  return m->fail_rows ? strut_fail(error, m->fail_rows, "rows fail") : STRUT_OK;
+}
+
+static strut_status end(void *context, strut_status status, strut_error *error) {
+  memory *m = context;
+  m->ended++;
+  m->ended_with = status;
+  return m->fail_end ? strut_fail(error, m->fail_end, "end fails") : STRUT_OK;
+}
+
+static memory first, second;
+
+static strut_status run(const strut_scene *scene, strut_error *error) {
+  strut_sink sinks[] = {{&first, begin, rows, end}, {&second, begin, rows, end}};
+  strut_sink *all[] = {&sinks[0], &sinks[1]};
+  strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
+  strut_model *model = motion_compile(scene);
+  strut_summary summary;
+  *error = (strut_error){0};
+  strut_status status = strut_simulate(model, &options, &summary, error);
+  assert_int_equal(summary.status, status);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  return status;
+}
+
+static int clean(void **unused) {
+  (void)unused;
+  memset(&first, 0, sizeof first);
+  memset(&second, 0, sizeof second);
+  return 0;
+}
+
+/* x = 1 + 0.5 t for the mass, which nothing moves. */
+static void gliding(strut_scene *scene, double step, double duration, double every) {
+  strut_scene_init(scene);
+  build_support(scene, 0, 0);
+  build_mass(scene, 1, 0, 1);
+  build_sized(scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
+  scene->nodes[1].velocity[0] = 0.5;
+  motion_experiment(scene, step, duration);
+  scene->experiment.output_every = every;
+}
+
+static void check_rows(double step, double duration, double last, double every, size_t count) {
+  strut_scene scene;
+  strut_error error;
+  clean(NULL);
+  gliding(&scene, step, duration, every);
+  scene.experiment.output_last = last;
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  assert_int_equal(first.count, count);
+  assert_int_equal(first.width, 1 + 4 + 1 + 1);
+  assert_int_equal(first.channels,
+                   STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE);
+  assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_OK);
+  assert_memory_equal(first.row, second.row, sizeof first.row);
+  double start = last > 0 ? duration - last : 0;
+  for (size_t i = 0; i < count; i++) {
+    const double *row = first.row[i];
+    double due = start + (double)i * every; /* the first step at or after it */
+    double at = ceil(due / step - 1e-6) * step;
+    assert_near(row[0], at, 1e-12);
+    assert_near(row[first.offset[0] + 2], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
+    assert_near(row[first.offset[1]], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
+    assert_true(row[first.offset[2]] == 0);
+  }
+  strut_scene_free(&scene);
+}
+
+static void test_rows_come_at_their_times(void **unused) {
+  (void)unused;
+  check_rows(1e-3, 1, 0, 0.01, 101);
+  check_rows(1e-3, 1, 0, 0.0025, 401);  /* between steps: the next one */
+  check_rows(1e-3, 1, 0.2, 0.01, 21);   /* the last 0.2 s only */
+  check_rows(0.01, 1, 0, 0.3, 4);       /* 0, 0.3, 0.6, 0.9 */
+  check_rows(1e-4, 110, 1, 1 / 7.3, 8); /* far from 0 */
+}
+
+static void test_rows_are_a_thousandth_apart_if_nothing_is_said(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  gliding(&scene, 1e-4, 2, 0);
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  assert_int_equal(first.count, 1001);
+  assert_near(first.row[1][0], 0.002, 1e-15);
+  strut_scene_free(&scene);
+}
+
+/* More often than there are steps: each step once. */
+static void test_no_step_is_recorded_twice(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  gliding(&scene, 0.01, 1, 0.001);
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  assert_int_equal(first.count, 101);
+  for (size_t i = 0; i < 101; i++) assert_near(first.row[i][0], 0.01 * (double)i, 1e-14);
+  strut_scene_free(&scene);
+}
+
+/* Every channel of the crawler against the state that a motion by hand has at the same step. */
+static void test_every_channel_holds_what_it_says(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  motion m;
+  strut_scene_init(&scene);
+  structure_crawler(&scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&scene, 1e-4, 0.1);
+  scene.experiment.output_every = 0.01;
+  scene.experiment.channels = 63;
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  assert_int_equal(first.channel_count, 6);
+  assert_int_equal(first.count, 11);
+  assert_int_equal(first.width, 1 + 10 + 10 + 9 + 9 + 10 + 10);
+  motion_begin(&m, &scene, 1e-4);
+  m.state->ledger = true;
+  for (size_t i = 0; i < first.count; i++) {
+    const double *row = first.row[i], *energy = row + first.offset[5];
+    double length[9], force[9];
+    strut_forces_evaluate(m.model, m.state, row[0], m.state->q, m.state->v);
+    strut_members_measure(m.model, m.state, length, force);
+    strut_stored stored = strut_energy_stored(m.model, m.state, row[0]);
+    assert_memory_equal(row + first.offset[0], m.state->q, 10 * sizeof *row);
+    assert_memory_equal(row + first.offset[1], m.state->v, 10 * sizeof *row);
+    assert_memory_equal(row + first.offset[2], length, sizeof length);
+    assert_memory_equal(row + first.offset[3], force, sizeof force);
+    for (int c = 0; c < 5; c++) {
+      assert_same_bits(row[first.offset[4] + 2 * (size_t)c], m.state->normal[c]);
+      assert_same_bits(row[first.offset[4] + 2 * (size_t)c + 1], m.state->friction[c]);
+      if (m.state->q[2 * c + 1] >= 0) assert_true(m.state->normal[c] == 0);
+    }
+    assert_same_bits(energy[0], stored.kinetic);
+    assert_same_bits(energy[1], stored.elastic);
+    assert_same_bits(energy[4], m.state->work[STRUT_POWER_DRIVE]);
+    assert_same_bits(energy[9], m.state->work[STRUT_POWER_FRICTION]);
+    motion_steps(&m, 100);
+  }
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+/* Recording looks on: a run with sinks ends with the bits of one without. */
+static void test_recording_changes_no_bit(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  strut_scene_init(&scene);
+  structure_crawler(&scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&scene, 1e-4, 0.5);
+  scene.experiment.output_every = 0.5;
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  double coarse[10];
+  memcpy(coarse, first.row[1] + 1, sizeof coarse);
+  clean(NULL);
+  scene.experiment.output_every = 0.0007, scene.experiment.channels = 63;
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  strut_summary s = motion_simulate(&scene);
+  assert_memory_equal(coarse, s.positions, sizeof coarse);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_a_sink_that_fails_stops_the_run(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  gliding(&scene, 1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
+  second.fail_rows = STRUT_FILE_TROUBLE;
+  assert_int_equal(run(&scene, &error), STRUT_FILE_TROUBLE);
+  assert_string_equal(error.message, "rows fail");
+  assert_int_equal(second.calls, 1);
+  assert_true(first.ended == 1 && second.ended == 1);
+  assert_int_equal(first.ended_with, STRUT_FILE_TROUBLE);
+  strut_scene_free(&scene);
+}
+
+static void test_a_sink_that_cannot_begin(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  gliding(&scene, 1e-3, 1, 0.1);
+  second.fail_begin = STRUT_FILE_TROUBLE;
+  assert_int_equal(run(&scene, &error), STRUT_FILE_TROUBLE);
+  assert_string_equal(error.message, "begin fails");
+  assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_FILE_TROUBLE);
+  assert_true(second.ended == 0 && first.count == 0);
+  strut_scene_free(&scene);
+}
+
+static void test_a_sink_that_cannot_end(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  gliding(&scene, 1e-3, 1, 0.1);
+  first.fail_end = STRUT_FILE_TROUBLE;
+  assert_int_equal(run(&scene, &error), STRUT_FILE_TROUBLE);
+  assert_string_equal(error.message, "end fails");
+  assert_true(first.ended == 1 && second.ended == 1 && second.count == 11);
+  strut_scene_free(&scene);
+}
+
+/* What was recorded before a divergence is handed over, and marked. */
+static void test_rows_of_a_run_that_diverges_are_kept(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error;
+  gliding(&scene, 0.01, 1000, 0.01);
+  scene.members[0].kind = STRUT_BAR, scene.members[0].rest_value = 1;
+  scene.members[0].stiffness = 2e5; /* w dt = 4.5 */
+  assert_int_equal(run(&scene, &error), STRUT_DIVERGED);
+  assert_non_null(strstr(error.message, "n2"));
+  assert_int_equal(first.ended_with, STRUT_DIVERGED);
+  assert_true(first.count > 2 && first.count < 200);
+  assert_near(first.row[1][0], 0.01, 1e-15);
+  strut_scene_free(&scene);
+}
+
+/* Everything that asks for memory: blocks, a factor, contacts, drives, loads, settling, sinks. */
+static void demanding(strut_scene *scene) {
+  strut_scene_init(scene);
+  structure_chain(scene, 12, STRUT_MASS_CONSISTENT);
+  scene->nodes[0].fixed[0] = false; /* x and y differ */
+  int32_t a = build_mass(scene, 3, 3, 1), b = build_node(scene, 4, 3), c = build_node(scene, 4, 4);
+  build_member(scene, STRUT_BAR, a, b, 1e3, 10, 1);
+  build_member(scene, STRUT_BAR, b, c, 1e3, 10, 1);
+  build_actuator(scene, 3, build_sine(scene, 1e-4, 10));
+  build_load(scene, b, 1e-3, 0, 0);
+  for (int32_t i = 0; i < 10; i++) build_rough_contact(scene, i, 10, 1, 0.1, 0.1, 1e-3);
+  scene->ground.height = -1;
+  scene->settle.wanted = true;
+  scene->settle.speed = scene->settle.acceleration = 1e9; /* at rest from the first step on */
+  motion_experiment(scene, 1e-5, 1e-3);
+}
+
+static void test_every_allocation_may_fail(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  demanding(&scene);
+  int64_t n = 0;
+  for (;; n++) {
+    strut_sink sink = {&first, begin, rows, end}, *all[] = {&sink};
+    strut_run_options options = {.sinks = all, .sink_count = 1};
+    strut_model *model = NULL;
+    strut_summary summary = {0};
+    strut_error error = {0};
+    clean(NULL);
+    strut_fail_allocation_after(n);
+    strut_status status = strut_model_compile(&scene, &model, &error);
+    if (!status) status = strut_simulate(model, &options, &summary, &error);
+    strut_fail_allocation_after(-1);
+    assert_int_equal(first.begun, first.ended);
+    if (!status) assert_int_equal(summary.steps, 100);
+    strut_summary_free(&summary);
+    strut_model_free(model);
+    if (!status) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_true(error.message[0]);
+    assert_true(n < 1000);
+  }
+  assert_true(n > 30);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup(test_rows_come_at_their_times, clean),
+      cmocka_unit_test_setup(test_rows_are_a_thousandth_apart_if_nothing_is_said, clean),
+      cmocka_unit_test_setup(test_no_step_is_recorded_twice, clean),
+      cmocka_unit_test_setup(test_every_channel_holds_what_it_says, clean),
+      cmocka_unit_test_setup(test_recording_changes_no_bit, clean),
+      cmocka_unit_test_setup(test_a_sink_that_fails_stops_the_run, clean),
+      cmocka_unit_test_setup(test_a_sink_that_cannot_begin, clean),
+      cmocka_unit_test_setup(test_a_sink_that_cannot_end, clean),
+      cmocka_unit_test_setup(test_rows_of_a_run_that_diverges_are_kept, clean),
+      cmocka_unit_test_setup(test_every_allocation_may_fail, clean),
+  };
+  return cmocka_run_group_tests_name("recording", tests, NULL, NULL);
+}
