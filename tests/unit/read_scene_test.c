@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the reader makes of a text: values, groups, parameters, --set, layers; memory; locale. */
+#include <locale.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "parser/read_scene.h"
+#include "parser/write_scene.h"
+
+/* What every scene here ends with. */
+#define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"
+
+static strut_status read_text(strut_scene *scene, const char *text, const strut_override *set,
+                              size_t sets) {
+  strut_diagnostics diagnostics = {0};
+  strut_status status = strut_scene_read(scene, "test.yaml", text, strlen(text), set, sets,
+                                         STRUT_FOR_RUN, &diagnostics);
+  strut_diagnostics_free(&diagnostics);
+  return status;
+}
+
+/* Reads a scene that must be valid. */
+static void read_good(strut_scene *scene, const char *text, const strut_override *set,
+                      size_t sets) {
+  strut_diagnostics diagnostics = {0};
+  if (strut_scene_read(scene, "test.yaml", text, strlen(text), set, sets, STRUT_FOR_RUN,
+                       &diagnostics) != STRUT_OK)
+    fail_msg("%s", strut_diagnostics_render(&diagnostics, 50));
+  assert_int_equal(diagnostics.count, 0);
+  strut_diagnostics_free(&diagnostics);
+}
+
+static char *read_path(const char *path, size_t *length) {
+  strut_error error;
+  char *text;
+  if (strut_file_read(path, &text, length, &error)) fail_msg("%s", error.message);
+  return text;
+}
+
+static void the_crawler_page(void **state) {
+  (void)state;
+  size_t length;
+  strut_scene s;
+  char *text = read_path(STRUT_TESTS_DIR "/language/good/crawler.yaml", &length);
+  read_good(&s, text, NULL, 0);
+  strut_release(text); /* the scene owns all it needs */
+  assert_string_equal(s.name, "Nine-member multistable crawler");
+  assert_true(s.node_count == 5 && s.member_count == 9 && s.contact_count == 5);
+  assert_true(s.gravity[0] == 0 && s.gravity[1] == -9.81);
+  assert_true(s.nodes[1].position[0] == 0.0965109 && s.nodes[1].position[1] == 0.0238714);
+  assert_true(s.nodes[1].start[0] == 0.096 && s.nodes[1].start[1] == 0.024); /* start: "II" */
+  assert_true(s.nodes[2].start[0] == s.nodes[2].position[0]);
+  const strut_member *m = s.members;
+  assert_true(m[0].kind == STRUT_BAR && m[0].stiffness == 1e6 && m[0].damping == 0.2);
+  assert_true(m[0].mass == 0.1 && m[0].rest_kind == STRUT_REST_LENGTH && m[0].rest_value == 0.1);
+  assert_true(m[1].node[0] == 2 && m[1].node[1] == 1);
+  assert_true(m[3].kind == STRUT_SPRING && m[3].stiffness == 3000 && m[3].rest_value == 0.02);
+  assert_true(m[4].stiffness == 2000 && m[8].mass == 1e-6);
+  assert_true(s.ground.present && s.ground.height == 0 && s.contacts[4].node == 4);
+  assert_true(s.contacts[4].stiffness == 1e5 && s.contacts[4].damping == 100);
+  const strut_friction *f = &s.contacts[2].friction;
+  assert_true(f->law == STRUT_FRICTION_KARNOPP && f->mu_static == 0.1 && f->mu_kinetic == 0.1);
+  assert_true(f->stick_velocity == 1e-4);
+  assert_true(s.actuator_count == 1 && s.actuators[0].member == 7);
+  const strut_signal *drive = &s.signals[s.actuators[0].signal];
+  assert_true(drive->kind == STRUT_SINE && drive->amplitude == 1e-4 && drive->frequency == 10);
+  assert_true(s.settle.wanted && s.settle.speed == 1e-8 && s.settle.limit == 100);
+  assert_true(s.experiment.step == 1e-4 && s.experiment.periods == 1100);
+  assert_true(s.experiment.measure_last == 100 && s.experiment.period_signal == 0);
+  assert_string_equal(s.experiment.period_of, "drive");
+  assert_int_equal(s.parameter_count, 4);
+  assert_string_equal(s.parameters[0].text, "10 Hz");
+  assert_true(s.parameters[0].value == 10 && isnan(s.parameters[3].value));
+  strut_scene_free(&s);
+}
+
+static void overrides(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {f: 10 Hz, l: 2 mm, twice: 2*l, bare: 3, start: \"I\"}\n"
+      "nodes: {a: {position: [twice, bare], mass: f*1 kg s}}\n"
+      "configurations: {I: {a: [1, 1]}, II: {a: [2, 2]}}\n"
+      "initial: {configuration: start}\n" RUN;
+  const strut_override set[] = {
+      {"f", "20"}, {"l", "twice_bare"}, {"bare", "1 cm"}, {"start", "II"}};
+  strut_scene s;
+  read_good(&s, text, NULL, 0);
+  assert_true(s.nodes[0].position[0] == 0.004 && s.nodes[0].mass == 10);
+  assert_true(s.nodes[0].start[0] == 1);
+  strut_scene_free(&s);
+  const strut_override good[] = {set[0], {"l", "1 m + 100 mm"}, set[2], set[3]};
+  read_good(&s, text, good, 4);
+  assert_true(s.nodes[0].position[0] == 2.2 && s.nodes[0].position[1] == 0.01);
+  assert_true(s.nodes[0].mass == 20 && s.nodes[0].start[0] == 2);
+  assert_string_equal(s.parameters[0].text, "20");
+  assert_string_equal(s.parameters[4].text, "II");
+  strut_scene_free(&s);
+  assert_int_equal(read_text(&s, text, &set[1], 1), STRUT_BAD_SCENE);
+  const strut_override circle = {"l", "twice"}, wrong = {"bare", "1 kg"};
+  assert_int_equal(read_text(&s, text, &circle, 1), STRUT_BAD_SCENE);
+  assert_int_equal(read_text(&s, text, &wrong, 1), STRUT_BAD_SCENE); /* where it is used */
+}
+
+static void groups_give_defaults(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "groups:\n"
+      "  one: {kind: bar, stiffness: 1, rest_length: 2, mass: 3}\n"
+      "  two: {kind: cable, axial_stiffness: 5, pretension: 6, damping: 7}\n"
+      "  held: {fixed: both, mass: 8}\n"
+      "nodes: {a: {position: [0, 0], group: held}, b: {position: [0, 4], group: held, fixed: y}}\n"
+      "members:\n"
+      "  m1: {group: [one, two], nodes: [a, b]}\n"
+      "  m2: {group: [two, one], nodes: [a, b]}\n"
+      "  m3: {group: one, nodes: [a, b], axial_stiffness: 9, rest_length_ratio: 0.5, mass: "
+      "0}\n" RUN;
+  strut_scene s;
+  read_good(&s, text, NULL, 0);
+  const strut_member *m = s.members;
+  assert_true(s.nodes[0].fixed[0] && s.nodes[0].fixed[1] && s.nodes[0].mass == 8);
+  assert_true(!s.nodes[1].fixed[0] && s.nodes[1].fixed[1] && s.nodes[1].mass == 8);
+  assert_true(m[0].kind == STRUT_CABLE && m[0].stiffness == 0 && m[0].axial_stiffness == 5);
+  assert_true(m[0].rest_kind == STRUT_REST_PRETENSION && m[0].rest_value == 6);
+  assert_true(m[0].damping == 7 && m[0].mass == 3);
+  assert_true(m[1].kind == STRUT_BAR && m[1].stiffness == 1 && m[1].axial_stiffness == 0);
+  assert_true(m[1].rest_kind == STRUT_REST_LENGTH && m[1].rest_value == 2 && m[1].damping == 7);
+  assert_true(m[2].stiffness == 0 && m[2].axial_stiffness == 9 && m[2].mass == 0);
+  assert_true(m[2].rest_kind == STRUT_REST_RATIO && m[2].rest_value == 0.5);
+  strut_scene_free(&s);
+}
+
+static void friction_comes_in_layers(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "groups: {ice: {friction: {mu: 0.01}}, wet: {damping: 9, friction: {mu_static: 0.2}}}\n"
+      "nodes: {a: {position: [0, 1], mass: 1}, b: {position: [1, 1], mass: 1},\n"
+      "        c: {position: [2, 1], mass: 1}, d: {position: [3, 1], mass: 1}}\n"
+      "ground:\n"
+      "  stiffness: 1e4\n"
+      "  friction: {mu_static: 0.5, mu_kinetic: 0.4, stick_velocity: 1 mm/s}\n"
+      "  nodes: [d, c, b]\n"
+      "  contacts:\n"
+      "    c: {group: [ice, wet], friction: {stick_velocity: 2 mm/s}}\n"
+      "    d: {stiffness: 2e4, friction: {law: none}}\n" RUN;
+  strut_scene s;
+  read_good(&s, text, NULL, 0);
+  assert_int_equal(s.contact_count, 3);
+  const strut_contact *c = s.contacts;
+  assert_true(c[0].node == 1 && c[1].node == 2 && c[2].node == 3);
+  assert_true(c[0].friction.mu_static == 0.5 && c[0].friction.mu_kinetic == 0.4);
+  assert_true(c[1].friction.mu_static == 0.2 && c[1].friction.mu_kinetic == 0.01);
+  assert_true(c[1].friction.stick_velocity == 0.002 && c[1].damping == 9 && c[1].stiffness == 1e4);
+  assert_true(c[2].friction.law == STRUT_FRICTION_NONE && c[2].stiffness == 2e4);
+  strut_scene_free(&s);
+}
+
+static void signals_and_their_names(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "nodes: {a: {position: [0, 0], fixed: x, mass: 1}, b: {position: [1, 0], mass: 1}}\n"
+      "members: {m: {nodes: [a, b], kind: bar, stiffness: 1}}\n"
+      "signals:\n"
+      "  late: {sum: [early, {constant: 1 mm}]}\n"
+      "  early: {sine: {amplitude: 2 mm, frequency: 3 Hz, phase: 90 deg, start: 1 s, stop: 1 "
+      "min}}\n"
+      "  factor: {table: [[0, 0], [1 s, 1]]}\n"
+      "actuators: {one: {member: m, signal: late}, two: {member: m, signal: early}}\n"
+      "loads: {push: {node: b, force: [1, 0], signal: factor}, pull: {node: b, force: [0, 2]}}\n"
+      "initial: {velocity: [1, 2], velocities: {b: [3, 4]}}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {periods: 3, of: two, measure: {node: b}}\n"
+      "output: {channels: [energy, position]}\n";
+  strut_scene s;
+  read_good(&s, text, NULL, 0);
+  assert_int_equal(s.signal_count, 4);
+  assert_string_equal(s.signals[0].name, "early"); /* terms come before their sum */
+  assert_true(s.signals[0].phase == 0.25 && s.signals[0].start == 1 && s.signals[0].stop == 60);
+  assert_true(s.signals[1].kind == STRUT_CONSTANT && s.signals[1].name == NULL);
+  assert_string_equal(s.signals[2].name, "late");
+  assert_true(s.signals[2].term_count == 2 && s.signals[2].terms[0] == 0);
+  assert_true(s.actuators[0].signal == 2 && s.actuators[1].signal == 0);
+  assert_true(s.loads[0].signal == 3 && s.loads[1].signal == -1 && s.loads[1].force[1] == 2);
+  assert_true(s.experiment.period_signal == 0 && s.experiment.measure_node == 1);
+  assert_int_equal(s.experiment.channels, STRUT_CHANNEL_ENERGY | STRUT_CHANNEL_POSITION);
+  assert_true(s.nodes[0].velocity[0] == 0 && s.nodes[0].velocity[1] == 2); /* held in x */
+  assert_true(s.nodes[1].velocity[0] == 3 && s.nodes[1].velocity[1] == 4);
+  strut_scene_free(&s);
+}
+
+static void statics_need_no_run(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: [1, 0]}\n"
+      "members: {m: {nodes: [a, b], kind: bar, stiffness: 1}}\n";
+  strut_diagnostics diagnostics = {0};
+  strut_scene s;
+  assert_int_equal(
+      strut_scene_read(&s, "f", text, strlen(text), NULL, 0, STRUT_FOR_STATICS, &diagnostics),
+      STRUT_OK);
+  strut_scene_free(&s);
+  assert_int_equal(read_text(&s, text, NULL, 0), STRUT_BAD_SCENE);
+  strut_diagnostics_free(&diagnostics);
+}
+
+/* Fails each allocation in turn: no crash, no leak, and never a scene that is only half there. */
+static void memory_may_run_out_anywhere(void **state) {
+  (void)state;
+  size_t length;
+  char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status != STRUT_OK && n < 5000; n++) {
+    strut_scene s;
+    strut_diagnostics diagnostics = {0};
+    strut_fail_allocation_after(n);
+    status = strut_scene_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    char *written = status == STRUT_OK ? strut_scene_write(&s) : NULL;
+    strut_fail_allocation_after(-1);
+    if (status != STRUT_OK) {
+      assert_int_equal(status, STRUT_NO_MEMORY);
+      assert_null(s.nodes);
+    } else if (!written) {
+      status = STRUT_NO_MEMORY;
+    }
+    strut_release(written);
+    strut_scene_free(&s);
+    strut_diagnostics_free(&diagnostics);
+  }
+  assert_int_equal(status, STRUT_OK);
+  assert_true(n > 20);
+  strut_release(text);
+}
+
+static void memory_may_run_out_in_a_bad_file(void **state) {
+  (void)state;
+  size_t length;
+  char *text = read_path(STRUT_TESTS_DIR "/language/bad/many-errors.yaml", &length);
+  strut_status status = STRUT_NO_MEMORY;
+  for (int64_t n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
+    strut_scene s;
+    strut_diagnostics diagnostics = {0};
+    strut_fail_allocation_after(n);
+    status = strut_scene_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    strut_fail_allocation_after(-1);
+    assert_null(s.nodes);
+    strut_diagnostics_free(&diagnostics);
+  }
+  assert_int_equal(status, STRUT_BAD_SCENE);
+  strut_release(text);
+}
+
+/* Builds a German locale in a scratch folder and makes it current; false where that fails. */
+static bool become_german(char *folder, size_t size) {
+  char command[300];
+  snprintf(folder, size, "/tmp/strut-locale-XXXXXX");
+  if (!mkdtemp(folder)) return false;
+  snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >/dev/null 2>&1",
+           folder);
+  if (system(command) == 0) setenv("LOCPATH", folder, 1);
+  return setlocale(LC_ALL, "de_DE.UTF-8") && strcmp(localeconv()->decimal_point, ",") == 0;
+}
+
+/* A locale with a decimal comma changes neither what is read nor what is written or said. */
+static void the_locale_does_not_matter(void **state) {
+  (void)state;
+  static const char bad[] = "strut: 1\nnodes: {a: {position: [0, 0], mass: -1.5}}\n" RUN;
+  char folder[64], command[100];
+  size_t length;
+  bool german = become_german(folder, sizeof folder);
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  if (system(command) != 0 || !german) skip();
+  char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
+  strut_scene s;
+  read_good(&s, text, NULL, 0);
+  assert_true(s.nodes[1].position[0] == 0.101);
+  char *here = strut_scene_write(&s);
+  setlocale(LC_ALL, "C");
+  char *there = strut_scene_write(&s);
+  assert_string_equal(here, there);
+  strut_diagnostics diagnostics = {0};
+  setlocale(LC_ALL, "de_DE.UTF-8");
+  strut_scene refused;
+  strut_scene_read(&refused, "f", bad, strlen(bad), NULL, 0, STRUT_FOR_RUN, &diagnostics);
+  setlocale(LC_ALL, "C");
+  assert_non_null(strstr(diagnostics.items[0].message, "-1.5"));
+  strut_diagnostics_free(&diagnostics);
+  strut_release(here);
+  strut_release(there);
+  strut_release(text);
+  strut_scene_free(&s);
+}
+
+/* A chain of n members; `spoilt`: every member has a misspelt node. */
+static char *chain(int n, bool spoilt, size_t *length) {
+  size_t size = (size_t)n * 120 + 1000, used = 0;
+  char *text = malloc(size);
+  used +=
+      (size_t)snprintf(text + used, size - used,
+                       "strut: 1\ngroups: {g: {kind: bar, stiffness: 1 N/m, mass: 1 g}}\nnodes:\n");
+  for (int i = 0; i <= n; i++)
+    used += (size_t)snprintf(text + used, size - used, "  n%d: [%d mm, 0]\n", i, i);
+  used += (size_t)snprintf(text + used, size - used, "members:\n");
+  for (int i = 0; i < n; i++)
+    used += (size_t)snprintf(text + used, size - used,
+                             "  m%d: {group: g, nodes: [n%d, %c%d], rest_length: 0.9 mm}\n", i, i,
+                             spoilt ? 'x' : 'n', i + 1);
+  used += (size_t)snprintf(text + used, size - used, RUN);
+  *length = used;
+  return text;
+}
+
+static double seconds_to_read(int n, bool spoilt, strut_status expected) {
+  size_t length;
+  char *text = chain(n, spoilt, &length);
+  strut_scene s;
+  strut_diagnostics diagnostics = {0};
+  clock_t begin = clock();
+  assert_int_equal(strut_scene_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics),
+                   expected);
+  double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+  assert_int_equal(diagnostics.count + diagnostics.unstored, spoilt ? n : 0);
+  strut_scene_free(&s);
+  strut_diagnostics_free(&diagnostics);
+  free(text);
+  return seconds;
+}
+
+/* Time grows with the size and not with its square, errors and suggestions included. */
+static void big_files_take_linear_time(void **state) {
+  (void)state;
+  double small = seconds_to_read(4000, false, STRUT_OK) + 0.01;
+  assert_true(seconds_to_read(40000, false, STRUT_OK) < 40 * small);
+  small = seconds_to_read(4000, true, STRUT_BAD_SCENE) + 0.05;
+  assert_true(seconds_to_read(40000, true, STRUT_BAD_SCENE) < 40 * small);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_crawler_page),
+      cmocka_unit_test(overrides),
+      cmocka_unit_test(groups_give_defaults),
+      cmocka_unit_test(friction_comes_in_layers),
+      cmocka_unit_test(signals_and_their_names),
+      cmocka_unit_test(statics_need_no_run),
+      cmocka_unit_test(memory_may_run_out_anywhere),
+      cmocka_unit_test(memory_may_run_out_in_a_bad_file),
+      cmocka_unit_test(the_locale_does_not_matter),
+      cmocka_unit_test(big_files_take_linear_time),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
