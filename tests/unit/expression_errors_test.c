@@ -60,7 +60,7 @@ static void names_are_looked_up(void **state) {
   expect_error("1 + tow", 4, 3, "unknown parameter 'tow'; did you mean 'two'?");
   expect_error("xyzzy", 0, 5, "unknown parameter 'xyzzy'");
   expect_error("sine(1)", 0, 4, "unknown function 'sine'; did you mean 'sin'?");
-  expect_error("two(1)", 0, 3, "unknown function 'two'");
+  expect_error("two(1)", 0, 3, "'two' is no function; write '*' to multiply");
   expect_error("sin", 0, 3, "the function 'sin' needs its arguments in parentheses");
   expect_error("2*lost", 2, 4, ""); /* the lookup has said why */
   strut_quantity q;

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sparse symmetric matrices, their products and their factors, against dense ones. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/model/sparse.h"
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+enum { N = 60 };
+
+/* The same contributions, many on one place, summed in a full matrix. */
+static strut_sparse *random_matrix(uint64_t *r, int32_t n, size_t count, double *dense,
+                                   strut_arena *arena) {
+  strut_triplets triplets = {0};
+  assert_true(strut_triplets_reserve(&triplets, count + (size_t)n, arena));
+  memset(dense, 0, (size_t)(n * n) * sizeof *dense);
+  for (size_t k = 0; k < count; k++) {
+    int32_t i = random_below(r, n), j = random_below(r, n);
+    double value = random_between(r, -1, 1);
+    strut_triplets_add(&triplets, i, j, value);
+    dense[i * n + j] += value;
+    if (i != j) dense[j * n + i] += value;
+  }
+  return strut_sparse_build(n, &triplets, arena);
+}
+
+static void test_contributions_are_summed_and_sorted(void **unused) {
+  (void)unused;
+  uint64_t r = 3;
+  static double dense[N * N];
+  for (int turn = 0; turn < 50; turn++) {
+    strut_arena arena = {0};
+    int32_t n = 1 + random_below(&r, N);
+    strut_sparse *m = random_matrix(&r, n, (size_t)random_below(&r, 600), dense, &arena);
+    assert_non_null(m);
+    assert_int_equal(m->n, n);
+    assert_int_equal(m->start[0], 0);
+    for (int32_t j = 0; j < n; j++) {
+      assert_int_equal(m->row[m->start[j]], j); /* the diagonal first, if only as zero */
+      for (int32_t k = m->start[j]; k < m->start[j + 1]; k++) {
+        if (k > m->start[j]) assert_true(m->row[k] > m->row[k - 1]);
+        assert_near(m->value[k], dense[m->row[k] * n + j], 1e-14);
+        dense[m->row[k] * n + j] = dense[j * n + m->row[k]] = 0;
+      }
+    }
+    for (int32_t i = 0; i < n * n; i++) assert_true(dense[i] == 0); /* nothing was lost */
+    strut_arena_free(&arena);
+  }
+}
+
+static void test_product(void **unused) {
+  (void)unused;
+  uint64_t r = 4;
+  static double dense[N * N];
+  double x[N], y[N];
+  for (int turn = 0; turn < 50; turn++) {
+    strut_arena arena = {0};
+    strut_sparse *m = random_matrix(&r, N, 300, dense, &arena);
+    for (int i = 0; i < N; i++) x[i] = random_between(&r, -1, 1);
+    strut_sparse_multiply(m, x, y);
+    for (int i = 0; i < N; i++) {
+      double expected = 0;
+      for (int j = 0; j < N; j++) expected += dense[i * N + j] * x[j];
+      assert_near(y[i], expected, 1e-13);
+    }
+    strut_arena_free(&arena);
+  }
+}
+
+static void test_an_empty_matrix(void **unused) {
+  (void)unused;
+  strut_arena arena = {0};
+  strut_triplets none = {0};
+  strut_sparse *m = strut_sparse_build(0, &none, &arena);
+  assert_non_null(m);
+  assert_int_equal(m->start[0], 0);
+  strut_sparse_multiply(m, NULL, &(double){0});
+  m = strut_sparse_build(3, &none, &arena);
+  assert_int_equal(m->start[3], 3);
+  strut_arena_free(&arena);
+}
+
+/* A positive definite matrix: what is drawn, and on the diagonal more than all of it. */
+static strut_sparse *positive(uint64_t *r, double spread, strut_arena *arena) {
+  strut_triplets triplets = {0};
+  double scale[N];
+  assert_true(strut_triplets_reserve(&triplets, 5 * N, arena));
+  for (int i = 0; i < N; i++) scale[i] = random_scale(r, 1 / spread, spread);
+  for (int32_t i = 0; i < N; i++) strut_triplets_add(&triplets, i, i, 8 * scale[i] * scale[i]);
+  for (int k = 0; k < 2 * N; k++) {
+    int32_t i = random_below(r, N), j = random_below(r, N);
+    if (i != j) strut_triplets_add(&triplets, i, j, random_between(r, -1, 1) * scale[i] * scale[j]);
+  }
+  return strut_sparse_build(N, &triplets, arena);
+}
+
+static void check_factor(double spread) {
+  uint64_t r = 5;
+  for (int turn = 0; turn < 30; turn++) {
+    strut_arena arena = {0};
+    strut_factor *factor;
+    double b[N], x[N], ordered[N], pair[2 * N], back[N], largest[N] = {0};
+    strut_sparse *m = positive(&r, spread, &arena);
+    assert_int_equal(strut_factor_create(m, &factor, NULL), STRUT_OK);
+    for (int i = 0; i < N; i++) b[i] = random_between(&r, -1, 1);
+    for (int i = 0; i < N; i++) ordered[i] = pair[2 * i] = b[factor->order[i]];
+    for (int i = 0; i < N; i++) pair[2 * i + 1] = -2 * ordered[i];
+    strut_factor_solve(factor, ordered);
+    strut_factor_solve_pair(factor, pair);
+    for (int i = 0; i < N; i++) {
+      x[factor->order[i]] = ordered[i];
+      assert_same_bits(pair[2 * i], ordered[i]);
+      assert_true(pair[2 * i + 1] == -2 * ordered[i]);
+    }
+    strut_sparse_multiply(m, x, back);
+    for (int32_t j = 0; j < N; j++) /* |A| |x|, what rounding errors are relative to */
+      for (int32_t k = m->start[j]; k < m->start[j + 1]; k++) {
+        largest[m->row[k]] += fabs(m->value[k] * x[j]);
+        largest[j] += fabs(m->value[k] * x[m->row[k]]);
+      }
+    for (int i = 0; i < N; i++) assert_near(back[i], b[i], 1e-14 * (largest[i] + fabs(b[i])));
+    strut_factor_free(factor);
+    strut_arena_free(&arena);
+  }
+}
+
+static void test_factors_solve(void **unused) {
+  (void)unused;
+  check_factor(2);
+}
+
+/* Diagonals from 1e-12 to 1e12: heavy beside light nodes. */
+static void test_factors_solve_however_the_scales_differ(void **unused) {
+  (void)unused;
+  check_factor(1e6);
+}
+
+static void test_a_singular_matrix_is_refused(void **unused) {
+  (void)unused;
+  for (int bad = 0; bad < 2; bad++) {
+    strut_arena arena = {0};
+    strut_triplets triplets = {0};
+    strut_error error = {0};
+    strut_factor *factor = NULL;
+    assert_true(strut_triplets_reserve(&triplets, 10, &arena));
+    for (int32_t i = 0; i < 3; i++) strut_triplets_add(&triplets, i, i, 1);
+    strut_triplets_add(&triplets, 1, 2, bad ? 2 : 1); /* indefinite, singular */
+    strut_sparse *m = strut_sparse_build(3, &triplets, &arena);
+    assert_int_equal(strut_factor_create(m, &factor, &error), STRUT_SINGULAR);
+    assert_null(factor);
+    assert_non_null(strstr(error.message, "positive definite"));
+    strut_arena_free(&arena);
+  }
+}
+
+static void test_factors_without_memory(void **unused) {
+  (void)unused;
+  uint64_t r = 6;
+  strut_arena arena = {0};
+  strut_sparse *m = positive(&r, 1, &arena);
+  for (int64_t n = 0;; n++) {
+    strut_factor *factor = NULL;
+    strut_error error = {0};
+    strut_fail_allocation_after(n);
+    strut_status status = strut_factor_create(m, &factor, &error);
+    strut_fail_allocation_after(-1);
+    strut_factor_free(factor);
+    if (!status) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_null(factor);
+    assert_true(n < 100);
+  }
+  strut_arena_free(&arena);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_contributions_are_summed_and_sorted),
+      cmocka_unit_test(test_product),
+      cmocka_unit_test(test_an_empty_matrix),
+      cmocka_unit_test(test_factors_solve),
+      cmocka_unit_test(test_factors_solve_however_the_scales_differ),
+      cmocka_unit_test(test_a_singular_matrix_is_refused),
+      cmocka_unit_test(test_factors_without_memory),
+  };
+  return cmocka_run_group_tests_name("sparse", tests, NULL, NULL);
+}

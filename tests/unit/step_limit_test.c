@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The largest stable step: RK4's own limits, closed forms of structures, and the truth of it. */
+#include "engine/integrate/step_limit.h"
+
+#include <math.h>
+
+#include "tests/physics/random_scene.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static const double PI = 3.14159265358979323846, IMAGINARY = 2.8284271247461903;
+
+static void test_limits_on_the_axes(void **unused) {
+  (void)unused;
+  assert_relative(strut_rk4_limit(0, 1), IMAGINARY, 1e-9);
+  assert_relative(strut_rk4_limit(0, -250), IMAGINARY / 250, 1e-9);
+  assert_relative(strut_rk4_limit(-1, 0), 2.7852935634, 1e-9);
+  assert_relative(strut_rk4_limit(-4e5, 0), 2.7852935634 / 4e5, 1e-9);
+  assert_true(isinf(strut_rk4_limit(0, 0)));
+  assert_true(isinf(strut_rk4_limit(3, 0))); /* grows by itself, whatever the step */
+}
+
+/* Largest stable w h of a damped mode: measured, to the digits given. */
+static void test_limits_of_damped_modes(void **unused) {
+  (void)unused;
+  static const double known[][2] = {{0.01, 2.8486}, {0.05, 2.9098}, {0.1, 2.9509}, {0.2, 2.9401},
+                                    {0.3, 2.8353},  {0.5, 2.6225},  {0.7, 2.6980}, {1, 2.7853}};
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+    double zeta = known[i][0];
+    assert_near(strut_rk4_limit(-zeta, sqrt(1 - zeta * zeta)), known[i][1], 6e-5);
+  }
+}
+
+static strut_step_limit limit_of(const strut_scene *scene) {
+  strut_step_limit limit;
+  strut_model *model = motion_compile(scene);
+  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  strut_model_free(model);
+  return limit;
+}
+
+/* One mass on a damped spring, and one on damped ground. */
+static void test_limit_of_a_damped_oscillator(void **unused) {
+  (void)unused;
+  static const double known[][2] = {{0, 2.8284271},  {0.2, 2.9401},   {0.5, 2.6225},
+                                    {2, 0.74631717}, {10, 0.1396135}, {100, 0.013926816}};
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    for (int grounded = 0; grounded < 2; grounded++) {
+      const double k = 900, mass = 4, omega = 15;
+      strut_scene scene;
+      strut_scene_init(&scene);
+      build_support(&scene, 0, 0);
+      build_mass(&scene, 1, 0.5, mass);
+      double damping = known[i][0] * 2 * sqrt(k * mass);
+      if (grounded)
+        build_contact(&scene, 1, k, damping);
+      else
+        build_member(&scene, STRUT_SPRING, 0, 1, k, damping, 0);
+      strut_step_limit limit = limit_of(&scene);
+      assert_true(limit.exact);
+      assert_relative(limit.largest_frequency, omega, 1e-9);
+      assert_relative(limit.limit * omega, known[i][1], 1e-4);
+      strut_scene_free(&scene);
+    }
+}
+
+static void test_nothing_limits_free_masses(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 0, 1);
+  strut_step_limit limit = limit_of(&scene);
+  assert_true(isinf(limit.limit) && limit.largest_frequency == 0);
+  strut_scene_free(&scene);
+}
+
+/* A row of bars between supports that can only move along itself: its frequencies are known. */
+static void row_of_bars(strut_scene *scene, int bars, strut_mass_model mass_model, double damping) {
+  strut_scene_init(scene);
+  scene->mass_model = mass_model;
+  for (int i = 0; i <= bars; i++) build_node(scene, i, 0);
+  for (int i = 0; i <= bars; i++) scene->nodes[i].fixed[1] = true;
+  scene->nodes[0].fixed[0] = scene->nodes[bars].fixed[0] = true;
+  for (int i = 0; i < bars; i++) build_member(scene, STRUT_BAR, i, i + 1, 1e4, damping, 0.2);
+}
+
+static double highest(int bars, strut_mass_model mass_model) {
+  double c = cos((bars - 1) * PI / bars), square = 1e4 / 0.2;
+  return sqrt(mass_model == STRUT_MASS_LUMPED ? 2 * square * (1 - c)
+                                              : 6 * square * (1 - c) / (2 + c));
+}
+
+/* Below the size of all eigenvalues the limit is exact, above it never too large. */
+static void test_limit_of_rows_of_bars(void **unused) {
+  (void)unused;
+  static const int sizes[] = {5, 30, 61, 62, 200, 2000};
+  for (int s = 0; s < 12; s++) {
+    strut_mass_model mass_model = s % 2 ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+    strut_scene scene;
+    row_of_bars(&scene, sizes[s / 2], mass_model, 0);
+    strut_step_limit limit = limit_of(&scene);
+    double omega = highest(sizes[s / 2], mass_model), expected = IMAGINARY / omega;
+    assert_int_equal(limit.exact, sizes[s / 2] <= 61);
+    if (limit.exact)
+      assert_relative(limit.limit, expected, 1e-6);
+    else
+      assert_within(limit.limit, 0.9 * expected, expected);
+    assert_within(limit.largest_frequency, 0.98 * omega, 1.05 * omega);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Over-damped rows: modes of damping ratio 3 at the highest frequency. */
+static void test_limit_of_damped_rows(void **unused) {
+  (void)unused;
+  static const int sizes[] = {20, 100};
+  for (int s = 0; s < 2; s++) {
+    strut_scene scene;
+    double omega = highest(sizes[s], STRUT_MASS_CONSISTENT), zeta = 3;
+    row_of_bars(&scene, sizes[s], STRUT_MASS_CONSISTENT, 2 * zeta * 1e4 / omega);
+    double expected = 2.7852935634 / (omega * (zeta + sqrt(zeta * zeta - 1)));
+    strut_step_limit limit = limit_of(&scene);
+    if (limit.exact)
+      assert_relative(limit.limit, expected, 1e-6);
+    else
+      assert_within(limit.limit, 0.8 * expected, expected);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Kinetic energy of small motions about the start after many steps, as a factor. */
+static double growth(const strut_scene *scene, double step, int64_t steps) {
+  motion m;
+  double before = 0, after = 0;
+  motion_begin(&m, scene, step);
+  for (size_t i = 0; i < 2 * scene->node_count; i++) {
+    if (scene->nodes[i / 2].fixed[i % 2]) continue;
+    m.state->v[i] = 1e-9 * sin(1.3 * (double)i + 1);
+    before += m.state->v[i] * m.state->v[i];
+  }
+  motion_steps(&m, steps);
+  for (size_t i = 0; i < 2 * scene->node_count; i++) after += m.state->v[i] * m.state->v[i];
+  motion_end(&m);
+  return after / before;
+}
+
+/* The truth of it: just below the limit small motions stay small, just above they grow. */
+static void test_the_limit_is_where_motions_begin_to_grow(void **unused) {
+  (void)unused;
+  x_frame frame = {.side = 1,
+                   .cable_stiffness = 400,
+                   .bar_stiffness = 2000,
+                   .force_density = 0,
+                   .cable_mass = 0.05,
+                   .bar_mass = 0.4,
+                   .cable_damping = 0.3,
+                   .bar_damping = 0.2};
+  for (int lumped = 0; lumped < 2; lumped++) {
+    strut_scene scene;
+    strut_scene_init(&scene);
+    scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+    structure_x_frame(&scene, &frame);
+    for (int j = 0; j < 4; j++) scene.members[j].kind = STRUT_SPRING;
+    double limit = limit_of(&scene).limit;
+    assert_true(growth(&scene, 0.99 * limit, 2000) < 100);
+    assert_true(growth(&scene, 1.02 * limit, 500) > 1e4);
+    strut_scene_free(&scene);
+  }
+}
+
+static void test_the_crawler(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  structure_crawler(&scene, 10, 1e-4, 0.1, false);
+  strut_step_limit limit = limit_of(&scene);
+  assert_true(limit.exact);
+  assert_within(limit.limit, 1.2e-4, 1.45e-4); /* the paper's step of 1e-4 s is just below it */
+  assert_within(limit.largest_frequency, 1.95e4, 2.3e4);
+  strut_scene_free(&scene);
+}
+
+/* Above 60 coordinates the estimate, below all eigenvalues: two copies of a scene tell them apart. */
+static void test_the_estimate_is_on_the_safe_side(void **unused) {
+  (void)unused;
+  int compared = 0;
+  for (uint64_t seed = 1; seed <= 150; seed++) {
+    strut_scene scene;
+    random_scene(&scene, seed);
+    strut_step_limit exact = limit_of(&scene);
+    if (!exact.exact || isinf(exact.limit)) {
+      strut_scene_free(&scene);
+      continue;
+    }
+    for (int i = 0; i < 61; i++) build_mass(&scene, i, 50, 1); /* free, they only add coordinates */
+    strut_step_limit estimate = limit_of(&scene);
+    assert_false(estimate.exact);
+    assert_true(estimate.limit <= exact.limit * (1 + 1e-9));
+    assert_true(estimate.limit >= 0.3 * exact.limit);
+    compared++;
+    strut_scene_free(&scene);
+  }
+  assert_true(compared > 50);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_limits_on_the_axes),
+      cmocka_unit_test(test_limits_of_damped_modes),
+      cmocka_unit_test(test_limit_of_a_damped_oscillator),
+      cmocka_unit_test(test_nothing_limits_free_masses),
+      cmocka_unit_test(test_limit_of_rows_of_bars),
+      cmocka_unit_test(test_limit_of_damped_rows),
+      cmocka_unit_test(test_the_limit_is_where_motions_begin_to_grow),
+      cmocka_unit_test(test_the_crawler),
+      cmocka_unit_test(test_the_estimate_is_on_the_safe_side),
+  };
+  return cmocka_run_group_tests_name("step_limit", tests, NULL, NULL);
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sine and cosine of turns against the C library's long double. */
+#include <math.h>
+
+#include "engine/base/trig.h"
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+static const double BOUND = 1.5 * 0x1p-52; /* units in the last place of 1 */
+
+/* The turn is reduced in long double, exactly, before it becomes an angle. */
+static void check(double turns) {
+  double sine, cosine;
+  long double rest = turns - floorl(turns + 0.5L), angle = 2 * acosl(-1) * rest;
+  strut_sincos_turns(turns, &sine, &cosine);
+  assert_near(sine, (double)sinl(angle), BOUND);
+  assert_near(cosine, (double)cosl(angle), BOUND);
+  assert_near(sine * sine + cosine * cosine, 1, 4 * BOUND);
+}
+
+static void test_random_turns(void **unused) {
+  (void)unused;
+  uint64_t r = 1;
+  for (int i = 0; i < 200000; i++) {
+    check(random_between(&r, -1, 1));
+    check(random_between(&r, -1e3, 1e3));
+    check(random_between(&r, -1e9, 1e9));
+    check(random_scale(&r, 1e-300, 1));
+    check(-random_scale(&r, 1, 0x1p52));
+  }
+}
+
+/* About the places where the quadrant changes. */
+static void test_quadrant_borders(void **unused) {
+  (void)unused;
+  for (int eighth = -40; eighth <= 40; eighth++)
+    for (int k = -3; k <= 3; k++) {
+      double turns = eighth / 8.0, step = k < 0 ? -HUGE_VAL : HUGE_VAL;
+      for (int n = 0; n < (k < 0 ? -k : k); n++) turns = nextafter(turns, step);
+      check(turns);
+    }
+}
+
+static void test_quarter_turns_are_exact(void **unused) {
+  (void)unused;
+  static const double sines[] = {0, 1, 0, -1};
+  for (int quarter = -4000; quarter < 4000; quarter++) {
+    double sine, cosine;
+    strut_sincos_turns(quarter / 4.0, &sine, &cosine);
+    assert_true(sine == sines[(quarter + 4000) % 4]);
+    assert_true(cosine == sines[(quarter + 4001) % 4]);
+  }
+}
+
+/* A drive must not drift, however long it runs: whole turns fall away exactly. */
+static void test_whole_turns_change_nothing(void **unused) {
+  (void)unused;
+  for (double whole = 1; whole < 0x1p44; whole *= 2)
+    for (int k = 0; k < 64; k++) {
+      double turns = k / 64.0, s1, c1, s2, c2;
+      strut_sincos_turns(turns, &s1, &c1);
+      strut_sincos_turns(turns + whole, &s2, &c2);
+      assert_near(s2, s1, 2 * BOUND);
+      assert_near(c2, c1, 2 * BOUND);
+    }
+}
+
+static void test_the_sine_is_odd_and_the_cosine_even(void **unused) {
+  (void)unused;
+  uint64_t r = 2;
+  for (int i = 0; i < 100000; i++) {
+    double turns = random_between(&r, -100, 100), s1, c1, s2, c2;
+    strut_sincos_turns(turns, &s1, &c1);
+    strut_sincos_turns(-turns, &s2, &c2);
+    assert_true(s1 == -s2 && c1 == c2);
+  }
+}
+
+static void test_huge_turns_stay_within_one(void **unused) {
+  (void)unused;
+  for (double turns = 1; turns < 1e300; turns *= 3.7)
+    for (int sign = -1; sign <= 1; sign += 2) {
+      double sine, cosine;
+      strut_sincos_turns(sign * turns, &sine, &cosine);
+      assert_true(fabs(sine) <= 1 && fabs(cosine) <= 1);
+      assert_near(sine * sine + cosine * cosine, 1, 4 * BOUND);
+    }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_random_turns),
+      cmocka_unit_test(test_quadrant_borders),
+      cmocka_unit_test(test_quarter_turns_are_exact),
+      cmocka_unit_test(test_whole_turns_change_nothing),
+      cmocka_unit_test(test_the_sine_is_odd_and_the_cosine_even),
+      cmocka_unit_test(test_huge_turns_stay_within_one),
+  };
+  return cmocka_run_group_tests_name("trig", tests, NULL, NULL);
+}
