@@ -47,9 +47,7 @@ static bool node_place(strut_reader *reader, const strut_finding *finding, strut
   if ((mass || !finding->key) && reader->ends_unknown) return false;
   if (mass && reader->masses_unknown) return false;
   if (!velocity) return thing_place(reader, source, finding->key, place);
-  const strut_slot *all = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
-  const strut_tree *own =
-      all->state == STRUT_GIVEN ? strut_tree_find(all->value, source->key->text, NULL) : NULL;
+  const strut_tree *own = reader->velocity_source ? reader->velocity_source[finding->index] : NULL;
   *place = own ? own->place : source->key->place;
   return true;
 }

@@ -4,13 +4,6 @@
 
 #include "parser/reader.h"
 
-static const char *keep_name(strut_reader *reader, const char *name) {
-  char *copy = strut_arena_text(&reader->scene->arena, name, strlen(name));
-  if (copy) return copy;
-  reader->out_of_memory = true;
-  return "";
-}
-
 static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_actuator *actuator) {
   strut_owner owner = {"actuator", actuator->name};
   strut_dimension length = STRUT_DIM_LENGTH;
@@ -40,7 +33,7 @@ static void read_actuators(strut_reader *reader) {
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = scene->actuator_count++;
-    scene->actuators[i] = (strut_actuator){keep_name(reader, key->text), -1, -1};
+    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
     reader->actuator_source[i] = (strut_source){key, key->next, !fine};
@@ -83,7 +76,8 @@ static void read_loads(strut_reader *reader) {
   if (!scene->loads || !reader->load_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = scene->load_count++;
-    scene->loads[i] = (strut_load){.name = keep_name(reader, key->text), .node = -1, .signal = -1};
+    scene->loads[i] =
+        (strut_load){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
     strut_add_name(reader, &reader->load_names, scene->loads[i].name, i);
     bool fine = read_load(reader, key, &scene->loads[i]);
     reader->load_source[i] = (strut_source){key, key->next, !fine};

@@ -12,8 +12,8 @@ static void take_start(strut_reader *reader, int32_t node, const double pair[2],
 
 static void take_velocity(strut_reader *reader, int32_t node, const double pair[2],
                           const strut_tree *value) {
-  (void)value;
   memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
+  if (reader->velocity_source) reader->velocity_source[node] = value;
 }
 
 static const char *configuration_name(const void *context, size_t i) {
@@ -106,10 +106,12 @@ static void read_state(strut_reader *reader, int32_t configuration) {
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
-  if (velocities->state == STRUT_GIVEN)
-    strut_read_node_pairs(reader, velocities->value,
-                          (strut_owner){"'velocities' of the initial state", NULL},
-                          STRUT_DIM_VELOCITY, take_velocity);
+  if (velocities->state != STRUT_GIVEN) return;
+  reader->velocity_source =
+      strut_take(reader, &reader->scratch, scene->node_count, sizeof *reader->velocity_source);
+  strut_read_node_pairs(reader, velocities->value,
+                        (strut_owner){"'velocities' of the initial state", NULL},
+                        STRUT_DIM_VELOCITY, take_velocity);
 }
 
 void strut_read_initial(strut_reader *reader) {
@@ -187,9 +189,7 @@ static void read_of(strut_reader *reader) {
     reader->run.broken = true;
   } else if (of->state == STRUT_GIVEN) {
     e->period_signal = find_signal_of(reader, of->value, &broken);
-    e->period_of =
-        strut_arena_text(&reader->scene->arena, of->value->text, strlen(of->value->text));
-    if (!e->period_of) reader->out_of_memory = true;
+    e->period_of = strut_keep_text(reader, of->value->text);
     if (broken) reader->run.broken = true;
   }
 }

@@ -11,11 +11,7 @@
 static const char *keep_text(strut_reader *reader, int key) {
   const strut_slot *slot = strut_slot_of(&reader->top, key);
   if (slot->state != STRUT_GIVEN) return "";
-  const char *copy =
-      strut_arena_text(&reader->scene->arena, slot->value->text, strlen(slot->value->text));
-  if (copy) return copy;
-  reader->out_of_memory = true;
-  return "";
+  return strut_keep_text(reader, slot->value->text);
 }
 
 static void read_head(strut_reader *reader) {

@@ -15,14 +15,6 @@ const char *strut_member_name(const void *context, size_t i) {
   return i < reader->scene->member_count ? reader->scene->members[i].name : NULL;
 }
 
-/* A name in the scene's own memory. */
-static const char *keep_name(strut_reader *reader, const char *name) {
-  char *copy = strut_arena_text(&reader->scene->arena, name, strlen(name));
-  if (copy) return copy;
-  reader->out_of_memory = true;
-  return "";
-}
-
 /* Reads one node; returns false where something about it could not be read. */
 static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *node) {
   const strut_tree *value = key->next;
@@ -64,7 +56,7 @@ void strut_read_nodes(strut_reader *reader) {
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = scene->node_count++;
     scene->nodes[i] = strut_node_default();
-    scene->nodes[i].name = keep_name(reader, key->text);
+    scene->nodes[i].name = strut_keep_text(reader, key->text);
     strut_add_name(reader, &reader->node_names, scene->nodes[i].name, i);
     bool fine = read_node(reader, key, &scene->nodes[i]);
     memcpy(scene->nodes[i].start, scene->nodes[i].position, sizeof scene->nodes[i].start);
@@ -131,7 +123,7 @@ void strut_read_members(strut_reader *reader) {
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = scene->member_count++;
     scene->members[i] = strut_member_default();
-    scene->members[i].name = keep_name(reader, key->text);
+    scene->members[i].name = strut_keep_text(reader, key->text);
     strut_add_name(reader, &reader->member_names, scene->members[i].name, i);
     bool fine = read_member(reader, key, &scene->members[i]);
     reader->member_source[i] = (strut_source){key, key->next, !fine};

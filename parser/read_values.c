@@ -30,6 +30,13 @@ void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name,
   if (strut_name_map_add(map, name, (int32_t)index) == -2) reader->out_of_memory = true;
 }
 
+const char *strut_keep_text(strut_reader *reader, const char *text) {
+  char *copy = strut_arena_text(&reader->scene->arena, text, strlen(text));
+  if (copy) return copy;
+  reader->out_of_memory = true;
+  return "";
+}
+
 /* What arena functions give, or a stand-in that remembers that memory is out. */
 static const char *kept(strut_reader *reader, const char *text) {
   if (text) return text;

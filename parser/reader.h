@@ -108,6 +108,7 @@ typedef struct strut_reader {
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source;
+  const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
@@ -171,6 +172,9 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
 /** count * size zeroed bytes of an arena; remembers when memory is out. */
 void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t size);
+
+/** A copy in the scene's own memory; "" where that is out. */
+const char *strut_keep_text(strut_reader *reader, const char *text);
 
 /* read_fields.c: mappings */
 

@@ -52,8 +52,7 @@ bool strut_find_range(strut_checker *checker, strut_subject subject, size_t inde
   return false;
 }
 
-/* A name for the text of messages: "member 'm1'", or "member number 3" where it has none. */
-static const char *called(char buffer[200], const char *kind, const char *name, size_t index) {
+const char *strut_called(char buffer[200], const char *kind, const char *name, size_t index) {
   if (name && *name)
     snprintf(buffer, 200, "%s '%.150s'", kind, name);
   else
@@ -99,7 +98,7 @@ void strut_check_nodes(strut_checker *checker) {
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
     char owner[200];
-    called(owner, "node", node->name, i);
+    strut_called(owner, "node", node->name, i);
     strut_find_range(checker, STRUT_ON_NODE, i, "mass", owner, node->mass, STRUT_NOT_NEGATIVE);
     if (!isfinite(node->position[0]) || !isfinite(node->position[1]))
       strut_find(checker, STRUT_ON_NODE, i, "position", "the position of %s is not finite", owner);
@@ -225,7 +224,7 @@ static void check_shape(strut_checker *checker, size_t index, const char *owner)
 void strut_check_members(strut_checker *checker) {
   for (size_t i = 0; i < checker->scene->member_count; i++) {
     char owner[200];
-    called(owner, "member", checker->scene->members[i].name, i);
+    strut_called(owner, "member", checker->scene->members[i].name, i);
     checker->loose[i] = !check_ends(checker, i, owner);
     bool fine = check_numbers(checker, i, owner) && check_law(checker, i, owner);
     if (fine && !checker->loose[i]) check_shape(checker, i, owner);
@@ -253,7 +252,7 @@ void strut_check_use(strut_checker *checker) {
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
     char owner[200];
-    called(owner, "node", node->name, i);
+    strut_called(owner, "node", node->name, i);
     if (node->mass != 0.0) state[i] |= USED | HEAVY;
     if (!(state[i] & USED))
       strut_find(checker, STRUT_ON_NODE, i, NULL,

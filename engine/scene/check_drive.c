@@ -9,14 +9,6 @@ enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
 static const double QUARTER_TURN = 1.57079632679489661923;
 
-static const char *called(char buffer[200], const char *kind, const char *name, size_t index) {
-  if (name && *name)
-    snprintf(buffer, 200, "%s '%.150s'", kind, name);
-  else
-    snprintf(buffer, 200, "%s number %zu", kind, index + 1);
-  return buffer;
-}
-
 static bool check_table(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
   if (!s->point_count) {
@@ -96,13 +88,13 @@ static void call_signal(char owner[200], const strut_scene *scene, const size_t 
   char thing[200];
   size_t u = user[i];
   if (scene->signals[i].name || !u) {
-    called(owner, "signal", scene->signals[i].name, i);
+    strut_called(owner, "signal", scene->signals[i].name, i);
     return;
   }
   bool actuator = u <= scene->actuator_count;
   size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
-  called(thing, actuator ? "actuator" : "load",
-         actuator ? scene->actuators[index].name : scene->loads[index].name, index);
+  strut_called(thing, actuator ? "actuator" : "load",
+               actuator ? scene->actuators[index].name : scene->loads[index].name, index);
   snprintf(owner, 200, "the signal of %.180s", thing);
 }
 
@@ -185,7 +177,7 @@ void strut_check_ground(strut_checker *checker) {
       continue;
     }
     char owner[200];
-    called(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
+    strut_called(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
     if (i && c->node <= scene->contacts[i - 1].node)
       strut_find(checker, STRUT_ON_CONTACT, i, NULL,
                  "%s is out of order: contacts follow their nodes, one for each at most", owner);
@@ -204,7 +196,7 @@ void strut_check_drives(strut_checker *checker) {
   char owner[200];
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
-    called(owner, "actuator", a->name, i);
+    strut_called(owner, "actuator", a->name, i);
     if (!there(a->member, scene->member_count))
       strut_find(checker, STRUT_ON_ACTUATOR, i, "member", "%s drives a member that does not exist",
                  owner);
@@ -213,7 +205,7 @@ void strut_check_drives(strut_checker *checker) {
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
-    called(owner, "load", l->name, i);
+    strut_called(owner, "load", l->name, i);
     if (!there(l->node, scene->node_count))
       strut_find(checker, STRUT_ON_LOAD, i, "node", "%s acts on a node that does not exist", owner);
     if (!isfinite(l->force[0]) || !isfinite(l->force[1]))

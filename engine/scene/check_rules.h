@@ -21,6 +21,9 @@ typedef struct strut_checker {
 void strut_find(strut_checker *checker, strut_subject subject, size_t index, const char *key,
                 const char *format, ...) __attribute__((format(printf, 5, 6)));
 
+/** A name for messages: "member 'm1'", or "member number 3" where it has none. */
+const char *strut_called(char buffer[200], const char *kind, const char *name, size_t index);
+
 typedef enum strut_range { STRUT_ANY_NUMBER, STRUT_NOT_NEGATIVE, STRUT_ABOVE_ZERO } strut_range;
 
 /** Finds a number that is not finite or outside its range; returns true where it is fine. */
