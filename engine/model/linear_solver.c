@@ -70,6 +70,19 @@ static strut_factor *copy_out(const cholmod_factor *l) {
   return factor;
 }
 
+/*
+ * The row of A at which it shows not to be positive definite, or -1. CHOLMOD's L D L' stops at a
+ * zero in D only, so the signs are looked at here.
+ */
+static int32_t bad_row(const cholmod_factor *l) {
+  const int *start = l->p, *order = l->Perm;
+  const double *value = l->x;
+  if (l->minor < l->n) return order[l->minor];
+  for (size_t j = 0; j < l->n; j++)
+    if (!(value[start[j]] > 0)) return order[j];
+  return -1;
+}
+
 strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **factor,
                                  strut_error *error) {
   cholmod_common common;
@@ -78,12 +91,15 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
   cholmod_factor *l = cholmod_analyze(&a, &common);
   strut_status status = STRUT_OK;
   *factor = NULL;
-  if (l && cholmod_factorize(&a, l, &common) && common.status == CHOLMOD_OK && l->minor == l->n &&
-      cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common))
-    *factor = copy_out(l);
-  else if (l && common.status != CHOLMOD_OUT_OF_MEMORY)
-    status = strut_fail(error, STRUT_SINGULAR, "the matrix is not positive definite (row %zu of %d)",
-                        l->minor, matrix->n);
+  if (l && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
+      cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common)) {
+    int32_t row = bad_row(l);
+    if (row < 0)
+      *factor = copy_out(l);
+    else
+      status = strut_fail(error, STRUT_SINGULAR,
+                          "the matrix is not positive definite (row %d of %d)", row, matrix->n);
+  }
   if (!*factor && status == STRUT_OK)
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
   cholmod_free_factor(&l, &common);
