@@ -4,17 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/cli/command_check.h"
-#include "parser/cli/command_keys.h"
-#include "parser/cli/command_run.h"
-#include "parser/cli/command_write.h"
-#include "parser/cli/options.h"
+#include "parser/cli/commands.h"
 #include "parser/cli/streams.h"
-
-static const strut_command *const commands[] = {&strut_command_run, &strut_command_check,
-                                                &strut_command_write, &strut_command_keys, NULL};
-
-const strut_command *strut_command_at(size_t i) { return commands[i]; }
 
 static strut_status run_command(const strut_command *command, int argc, char **argv) {
   strut_arguments arguments;

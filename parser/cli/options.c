@@ -25,23 +25,6 @@ static const char *option_name_at(const void *context, size_t i) {
   return option ? option->name : NULL;
 }
 
-static const char *command_name_at(const void *context, size_t i) {
-  (void)context;
-  const strut_command *command = strut_command_at(i);
-  return command ? command->name : NULL;
-}
-
-const strut_command *strut_command_find(const char *name) {
-  for (size_t i = 0; strut_command_at(i); i++) {
-    if (strcmp(strut_command_at(i)->name, name) == 0) return strut_command_at(i);
-  }
-  const char *near = strut_did_you_mean(name, command_name_at, NULL);
-  fprintf(stderr, "strut: unknown command '%s'", name);
-  if (near) fprintf(stderr, "; did you mean '%s'?", near);
-  fprintf(stderr, "\n'strut help' lists the commands\n");
-  return NULL;
-}
-
 static strut_status wrong(const strut_command *command) {
   fprintf(stderr, "'strut %s --help' lists the options\n", command->name);
   return STRUT_USAGE;
@@ -212,18 +195,4 @@ void strut_command_help(const strut_command *command) {
   if (command->details) printf("%s", command->details);
   printf("\nOptions:\n");
   for (size_t i = 0; option_at(command, i); i++) print_option(option_at(command, i));
-}
-
-void strut_program_help(void) {
-  printf("strut %s: structures of bars, springs and cables, described in YAML\n\n", STRUT_VERSION);
-  printf("usage: strut COMMAND [OPTION]... [MODEL]\n\nCommands:\n");
-  for (size_t i = 0; strut_command_at(i); i++) {
-    printf("  %-8s %s\n", strut_command_at(i)->name, strut_command_at(i)->summary);
-  }
-  printf(
-      "\n'strut COMMAND --help' explains one of them; 'strut --version' prints the version.\n"
-      "MODEL is a file in strut's language ('strut keys' explains it), or - for the standard "
-      "input.\n\n"
-      "Exit code: 0 done, 1 wrong use, 2 the scene is not valid, 3 the computation failed,\n"
-      "4 trouble with files or memory, 130 interrupted.\n");
 }

@@ -54,18 +54,12 @@ typedef struct strut_command {
   strut_status (*run)(const strut_arguments *arguments);
 } strut_command;
 
-/** All commands; NULL after the last. Defined beside main. */
-const strut_command *strut_command_at(size_t i);
-/** The command of that name, or NULL with the reason and a suggestion on stderr. */
-const strut_command *strut_command_find(const char *name);
-
 /** Reads argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
                                   strut_arguments *arguments);
 void strut_arguments_free(strut_arguments *arguments);
 
-/** The help of a command, and of the program as a whole, on stdout. */
+/** The help of a command on stdout. */
 void strut_command_help(const strut_command *command);
-void strut_program_help(void);
 
 #endif
