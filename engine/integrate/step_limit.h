@@ -16,7 +16,8 @@ typedef struct strut_step_limit {
 /**
  * Limits at the model's start with every contact closed, its stiffness and damping counted. Up to
  * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
- * power iterations estimate the largest frequency and damping rate. The model must have a mass.
+ * the largest frequency and damping rate are estimated (Lanczos), and the limit errs on the safe side.
+ * The model must have a mass.
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);

@@ -51,13 +51,12 @@ static void test_limit_of_a_damped_oscillator(void **unused) {
       const double k = 900, mass = 4, omega = 15;
       strut_scene scene;
       strut_scene_init(&scene);
-      build_support(&scene, 0, 0);
       build_mass(&scene, 1, 0.5, mass);
       double damping = known[i][0] * 2 * sqrt(k * mass);
       if (grounded)
-        build_contact(&scene, 1, k, damping);
+        build_contact(&scene, 0, k, damping);
       else
-        build_member(&scene, STRUT_SPRING, 0, 1, k, damping, 0);
+        build_member(&scene, STRUT_SPRING, build_support(&scene, 0, 0), 0, k, damping, 0);
       strut_step_limit limit = limit_of(&scene);
       assert_true(limit.exact);
       assert_relative(limit.largest_frequency, omega, 1e-9);
@@ -106,8 +105,8 @@ static void test_limit_of_rows_of_bars(void **unused) {
     if (limit.exact)
       assert_relative(limit.limit, expected, 1e-6);
     else
-      assert_within(limit.limit, 0.9 * expected, expected);
-    assert_within(limit.largest_frequency, 0.98 * omega, 1.05 * omega);
+      assert_within(limit.limit, 0.98 * expected, expected);
+    assert_within(limit.largest_frequency, 0.9999 * omega, 1.01 * omega);
     strut_scene_free(&scene);
   }
 }
@@ -198,7 +197,7 @@ static void test_the_estimate_is_on_the_safe_side(void **unused) {
     strut_step_limit estimate = limit_of(&scene);
     assert_false(estimate.exact);
     assert_true(estimate.limit <= exact.limit * (1 + 1e-9));
-    assert_true(estimate.limit >= 0.3 * exact.limit);
+    assert_true(estimate.limit >= 0.5 * exact.limit); /* a damped mode may look worse than it is */
     compared++;
     strut_scene_free(&scene);
   }
