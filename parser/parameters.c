@@ -104,6 +104,7 @@ static int look_up(void *context, const char *name, size_t length, strut_quantit
   text[length] = '\0';
   strut_parameter_state *p = strut_parameter_find(reader, text);
   if (!p) return 0;
+  p->used = true;
   if (p->text) {
     strut_say(reader, asking_place(reader), "parameter '%s' is a text and has no value here",
               p->name);
@@ -197,5 +198,14 @@ void strut_keep_parameters(strut_reader *reader) {
     kept->text = strut_arena_text(&scene->arena, text, strlen(text));
     kept->value = p->text ? (double)NAN : p->quantity.value;
     if (!kept->name || !kept->text) reader->out_of_memory = true;
+  }
+}
+
+void strut_report_idle_overrides(strut_reader *reader) {
+  for (size_t i = 0; i < reader->parameter_count; i++) {
+    const strut_parameter_state *p = &reader->parameters[i];
+    if (p->override && !p->used)
+      strut_say(reader, p->key->place, "--set %s=%s: nothing in the scene uses parameter '%s'",
+                p->name, strut_shown(reader, p->override), p->name);
   }
 }

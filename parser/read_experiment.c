@@ -27,7 +27,7 @@ static int32_t find_configuration(strut_reader *reader) {
   strut_owner owner = {"the initial state", NULL};
   if (slot->state != STRUT_GIVEN) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
-  const strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
+  strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
   int32_t direct = strut_name_map_find(&reader->configuration_names, slot->value->text);
   if (!p || !p->text)
     return strut_read_reference(reader, slot->value, "configuration", owner, "configuration",
@@ -38,6 +38,7 @@ static int32_t find_configuration(strut_reader *reader) {
               "'%s' is both a configuration and a text parameter; rename one of them", p->name);
     return -1;
   }
+  p->used = true;
   const char *text = p->override ? p->override : p->value->text;
   int32_t index = strut_name_map_find(&reader->configuration_names, text);
   strut_place place = p->override ? p->key->place : p->value->place;

@@ -42,6 +42,7 @@ static void read_sections(strut_reader *reader, const strut_override *overrides,
   strut_keep_signals(reader);
   strut_keep_parameters(reader);
   strut_report_unused_groups(reader);
+  if (!reader->failed) strut_report_idle_overrides(reader);
 }
 
 /* The mappings of which there is one: before they are read, and where they are not there. */

@@ -66,6 +66,7 @@ typedef struct strut_parameter_state {
   const strut_tree *key, *value;
   enum { STRUT_UNREAD, STRUT_READING, STRUT_READ, STRUT_FAILED } state;
   bool text;
+  bool used; /* something refers to it */
   strut_quantity quantity;
 } strut_parameter_state;
 
@@ -218,6 +219,8 @@ void strut_report_unused_groups(strut_reader *reader);
 void strut_read_parameters(strut_reader *reader, const strut_override *overrides, size_t count);
 /** The record of what was used, for the scene. */
 void strut_keep_parameters(strut_reader *reader);
+/** A --set that changes nothing is an error: it cannot be what was meant. */
+void strut_report_idle_overrides(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
 /** The parameter of that name, or NULL. */
 strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name);

@@ -19,29 +19,39 @@ static void put_text(strut_writer *writer, const char *key, const char *text) {
   strut_put(writer, "\n");
 }
 
-/* What the parameters were: for people only, since the numbers below contain them. */
+/* An expression, on one line however it was written. */
+static void put_expression(strut_writer *writer, const char *text) {
+  char one[2] = {0};
+  for (; *text; text++) {
+    one[0] = *text;
+    strut_put(writer, strchr("\r\n\t", *text) ? " " : one);
+  }
+}
+
+/* For the record only: the numbers below contain them already. */
 static void put_parameters(strut_writer *writer) {
+  if (!writer->scene->parameter_count) return;
+  strut_put(writer, "parameters: # as they were; their values stand in the numbers below\n");
   for (size_t i = 0; i < writer->scene->parameter_count; i++) {
     const strut_parameter *p = &writer->scene->parameters[i];
-    strut_put(writer, "# ");
+    strut_put(writer, "  ");
     strut_put(writer, p->name);
-    strut_put(writer, " = ");
-    if (isnan(p->value) || strpbrk(p->text, "\r\n\t"))
+    strut_put(writer, ": ");
+    if (isnan(p->value))
       strut_put_quoted(writer, p->text);
     else
-      strut_put(writer, p->text);
+      put_expression(writer, p->text);
     strut_put(writer, "\n");
   }
 }
 
 static void put_head(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
-  strut_put(writer, "# The scene as it was used, in SI units. Its parameters have been put in:\n");
-  put_parameters(writer);
-  strut_put(writer, "strut: 1\n");
+  strut_put(writer, "# The scene as it was used, in SI units.\nstrut: 1\n");
   put_text(writer, "name", scene->name);
   put_text(writer, "description", scene->description);
   put_text(writer, "source", scene->source);
+  put_parameters(writer);
   strut_put(writer, "mass_model: ");
   strut_put(writer, scene->mass_model == STRUT_MASS_LUMPED ? "lumped\n" : "consistent\n");
   strut_put(writer, "gravity: ");
