@@ -6,9 +6,7 @@ include(CMakePackageConfigHelpers)
 
 set(strut_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/strut")
 
-if(TARGET strut)
-  install(TARGETS strut RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-endif()
+install(TARGETS strut RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(
   TARGETS strut_engine strut_output strut_parser
   EXPORT strut

@@ -37,30 +37,10 @@ function(strut_compile_options target)
   endif()
 endfunction()
 
-# strut_existing(RESULT FILE...): the planned files that are there already.
-function(strut_existing result)
-  set(found)
-  foreach(file IN LISTS ARGN)
-    if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
-      list(APPEND found "${file}")
-    else()
-      message(STATUS "not there yet: ${CMAKE_CURRENT_SOURCE_DIR}/${file}")
-    endif()
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-                                           "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
-  endforeach()
-  set(${result} ${found} PARENT_SCOPE)
-endfunction()
-
 # strut_library(ROOM SOURCE...): the library strut_ROOM; other projects know it as strut::ROOM.
 function(strut_library room)
   set(name strut_${room})
-  strut_existing(sources ${ARGN})
-  if(NOT sources)
-    set(sources "${CMAKE_CURRENT_BINARY_DIR}/${name}_empty.c")
-    file(WRITE "${sources}" "extern int ${name}_is_empty;\nint ${name}_is_empty;\n")
-  endif()
-  add_library(${name} ${sources})
+  add_library(${name} ${ARGN})
   add_library(strut::${room} ALIAS ${name})
   strut_compile_options(${name})
   target_include_directories(
