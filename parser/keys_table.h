@@ -93,10 +93,11 @@
   X(INITIAL, POSITIONS, "positions", THINGS, NONE, ANY, false, 0, "", "`[x, y]`", "Positions of single nodes; they win over the configuration.") \
   X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, false, 0, "", "`[vx, vy]`", "Velocities of single nodes.") \
   X(INITIAL, VELOCITY, "velocity", PAIR, VELOCITY, ANY, false, 0, "[0, 0]", "", "Velocity of every other node, where it is free.") \
-  X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, false, 0, "false", "", "Come to rest before t = 0, with actuators, driven loads, belt and friction off: `true`, or a mapping.") \
+  X(INITIAL, SETTLE, "settle", SETTLE, NONE, ANY, false, 0, "false", "", "Come to rest before t = 0, with actuators, driven loads, belt and, as in the paper, friction off: `true`, or a mapping.") \
   X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "1e-8", "", "At rest when every node is slower than this") \
   X(SETTLE, ACCELERATION, "acceleration", NUMBER, ACCELERATION, ABOVE_ZERO, false, 0, "1e-8", "", "and accelerates less than this.") \
   X(SETTLE, LIMIT, "limit", NUMBER, TIME, ABOVE_ZERO, false, 0, "100", "", "Give up after so much simulated time.") \
+  X(SETTLE, FRICTION, "friction", WORD, NONE, ANY, false, 0, "none", "none|kept", "Without friction, as in the paper; `kept` lets it hold, as a body on a slope needs.") \
   X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4", "The method.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step. A run needs it.") \
   X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, false, 3, "", "", "Length of the run.") \

@@ -87,6 +87,8 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
   settle->acceleration =
       strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
   settle->limit = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_LIMIT, settle->limit);
+  const strut_slot *friction = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_FRICTION);
+  settle->friction = friction->state == STRUT_GIVEN && friction->word == 1;
 }
 
 /* Positions and velocities: the general first, then what is said of single nodes. */

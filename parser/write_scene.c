@@ -219,6 +219,7 @@ static void put_initial(strut_writer *writer) {
   strut_put_value(writer, &first, "speed", scene->settle.speed);
   strut_put_value(writer, &first, "acceleration", scene->settle.acceleration);
   strut_put_value(writer, &first, "limit", scene->settle.limit);
+  if (scene->settle.friction) strut_put(writer, ", friction: kept");
   strut_put(writer, "}\n");
 }
 

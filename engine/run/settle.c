@@ -20,7 +20,7 @@ static strut_status quiet_scene(const strut_scene *scene, strut_scene *quiet, st
     if (scene->loads[i].signal < 0) quiet->loads[quiet->load_count++] = scene->loads[i];
   for (size_t i = 0; i < scene->contact_count; i++) {
     quiet->contacts[i] = scene->contacts[i];
-    quiet->contacts[i].friction.law = STRUT_FRICTION_NONE;
+    if (!scene->settle.friction) quiet->contacts[i].friction.law = STRUT_FRICTION_NONE;
   }
   return STRUT_OK;
 }
@@ -65,11 +65,13 @@ static strut_status relax(const strut_model *model, strut_state *state,
     push = largest(acceleration, both);
     if (push < wanted->acceleration) return STRUT_OK;
   }
+  bool slides = model->scene->contact_count && !wanted->friction;
   return strut_fail(error, STRUT_NOT_SETTLED,
                     "the structure did not come to rest within %g s: largest speed %.3g m/s, "
                     "largest acceleration %.3g m/s^2; give a larger initial.settle.limit or "
-                    "looser speed and acceleration",
-                    wanted->limit, speed, push);
+                    "looser speed and acceleration%s",
+                    wanted->limit, speed, push,
+                    slides ? ", or let it hold by initial.settle.friction: kept" : "");
 }
 
 strut_status strut_settle_state(const strut_model *model, strut_state *state,

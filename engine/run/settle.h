@@ -10,7 +10,8 @@
 #include "engine/model/state.h"
 
 /**
- * Lets the structure come to rest with actuators, loads on a signal, belt and friction off: it is
+ * Lets the structure come to rest with actuators, loads on a signal and belt off, and friction too
+ * unless the scene keeps it: it is
  * integrated with the scene's method and step, and all velocities are set to zero whenever the
  * kinetic energy has passed a peak, until every speed and acceleration is below the scene's limits.
  * On STRUT_OK the state's positions are those of rest, its velocities 0, its time 0; *time is the

@@ -104,9 +104,10 @@ typedef struct strut_parameter {
 
 typedef enum strut_mass_model { STRUT_MASS_CONSISTENT, STRUT_MASS_LUMPED } strut_mass_model;
 
-/** Coming to rest before t = 0: actuators, loads with a signal, belt and friction are off. */
+/** Coming to rest before t = 0: actuators, loads with a signal and the belt are off. */
 typedef struct strut_settle {
   bool wanted;
+  bool friction;       /* kept; off by default, as in the paper: then nothing holds on a slope */
   double speed;        /* at rest when every speed is below this [m/s]; paper 1e-8 */
   double acceleration; /* and every acceleration below this [m/s^2]; paper 1e-8 */
   double limit;        /* gives up after this much simulated time [s] */

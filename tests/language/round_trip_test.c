@@ -121,6 +121,7 @@ static void same_scene(const strut_scene *a, const strut_scene *b) {
     SAME(settle.speed);
     SAME(settle.acceleration);
     SAME(settle.limit);
+    SAME(settle.friction);
   }
   assert_string_equal(a->experiment.integrator, b->experiment.integrator);
   SAME(experiment.step);

@@ -262,6 +262,35 @@ static void test_settling_gives_up_at_its_limit(void **unused) {
   strut_scene_free(&scene);
 }
 
+/* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
+static void test_settling_on_a_slope_needs_friction(void **unused) {
+  (void)unused;
+  for (int kept = 0; kept < 2; kept++) {
+    strut_scene scene;
+    strut_scene_init(&scene);
+    build_rough_contact(&scene, build_mass(&scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
+    scene.gravity[1] = -9.81;
+    scene.ground.slope = 0.2;
+    scene.experiment.step = 1e-4, scene.experiment.duration = 0.01;
+    scene.settle = (strut_settle){true, kept, 1e-8, 1e-6, 3};
+    strut_summary s;
+    strut_error error = {0};
+    strut_run_options options = {0};
+    strut_model *model = NULL;
+    assert_int_equal(strut_model_compile(&scene, &model, &error), STRUT_OK);
+    strut_status status = strut_simulate(model, &options, &s, &error);
+    assert_int_equal(status, kept ? STRUT_OK : STRUT_NOT_SETTLED);
+    if (kept) /* the weight's share across the slope, over the ground's stiffness */
+      assert_near(s.positions[0] * sin(0.2) - s.positions[1] * cos(0.2), 9.81 * cos(0.2) / 1e4,
+                   1e-9);
+    else
+      assert_non_null(strstr(error.message, "initial.settle.friction"));
+    strut_summary_free(&s);
+    strut_model_free(model);
+    strut_scene_free(&scene);
+  }
+}
+
 static void test_settling_can_be_interrupted(void **unused) {
   (void)unused;
   strut_scene scene;
@@ -311,6 +340,7 @@ int main(void) {
       cmocka_unit_test(test_an_interrupt_stops_within_a_second),
       cmocka_unit_test(test_settling_finds_the_static_equilibrium),
       cmocka_unit_test(test_settling_gives_up_at_its_limit),
+      cmocka_unit_test(test_settling_on_a_slope_needs_friction),
       cmocka_unit_test(test_settling_can_be_interrupted),
       cmocka_unit_test(test_a_scene_without_mass_or_method_does_not_run),
   };
