@@ -32,7 +32,7 @@ uint64_t strut_allocation_count(void) { return atomic_load(&allocation_count); }
 void strut_fail_allocation_after(int64_t n) { atomic_store(&failure_countdown, n < 0 ? -1 : n); }
 
 void *strut_allocate(size_t count, size_t size) {
-  if (must_fail()) return NULL;
+  if (must_fail() || (size && count > SIZE_MAX / size)) return NULL;
   return calloc(count ? count : 1, size ? size : 1);
 }
 
