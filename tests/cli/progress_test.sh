@@ -14,7 +14,7 @@ grep -q 'left' err && fail "a bar in a file"
 for_a_while 2>&1 </dev/null | cat >out
 grep -q 'left' out && fail "a bar in a pipe"
 
-if command -v script >/dev/null; then
+if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
   # on_terminal WORD...: the same on a terminal of its own; what it shows is in out.
   on_terminal() {
     script -qec "timeout --foreground -s INT 2 '$strut' run '$hopper' $long $*" /dev/null \
