@@ -18,7 +18,8 @@
 
 struct strut_model;
 
-/** Groups up to this many nodes keep a dense inverse. */
+/** Groups up to this many nodes keep a dense inverse: chains of bars are faster so up to 8 nodes, and
+    with the factor from 10 on (timed on 200 chains at once). */
 enum { STRUT_DENSE_BLOCK = 8 };
 
 /** Inverse of the mass matrix of one coordinate. */
