@@ -7,18 +7,17 @@
 
 #include "engine/forces/forces.h"
 
-/** A method. Its workspace belongs to one state. */
+/** A method. Its workspace belongs to one state, whose arena holds it: freeing the state frees it. */
 typedef struct strut_integrator {
   const char *name;        /* as the language calls it */
   const char *description; /* one line for documents */
   int order;               /* of convergence on smooth scenes */
   int evaluations;         /* of the forces per step */
-  /** Allocates the workspace; NULL: out of memory. */
-  void *(*create)(const strut_model *model);
+  /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
+  void *(*create)(const strut_model *model, strut_state *state);
   /** Advances the state by `count` steps of dt [s]; allocates nothing. */
   void (*advance)(const strut_model *model, strut_state *state, void *workspace, double dt,
                   int64_t count);
-  void (*destroy)(void *workspace);
 } strut_integrator;
 
 /** The i-th method, or NULL after the last. */

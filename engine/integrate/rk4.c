@@ -9,27 +9,15 @@
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
 typedef struct rk4_workspace {
   double *q, *v[4], *a[4]; /* v[0] is unused: the first stage's is the state's own */
-  strut_arena arena;
 } rk4_workspace;
 
-static void rk4_destroy(void *workspace) {
-  rk4_workspace *w = workspace;
-  if (!w) return;
-  strut_arena_free(&w->arena);
-  strut_release(w);
-}
-
-static void *rk4_create(const strut_model *model) {
-  rk4_workspace *w = strut_allocate(1, sizeof *w);
+static void *rk4_create(const strut_model *model, strut_state *state) {
+  rk4_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
   if (!w) return NULL;
-  size_t both = (size_t)model->length;
   double **all[] = {&w->q, &w->v[1], &w->v[2], &w->v[3], &w->a[0], &w->a[1], &w->a[2], &w->a[3]};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-    *all[i] = strut_arena_allocate(&w->arena, both, sizeof(double));
-    if (!*all[i]) {
-      rk4_destroy(w);
-      return NULL;
-    }
+    *all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+    if (!*all[i]) return NULL;
   }
   return w;
 }
@@ -107,5 +95,4 @@ const strut_integrator strut_integrator_rk4 = {
     .evaluations = 4,
     .create = rk4_create,
     .advance = rk4_advance,
-    .destroy = rk4_destroy,
 };

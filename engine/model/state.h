@@ -47,7 +47,7 @@ typedef struct strut_state {
   strut_arena arena;
 } strut_state;
 
-/** All memory a run needs, apart from the integrator's own. STRUT_OK or STRUT_NO_MEMORY. */
+/** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_state_create(const strut_model *model, strut_state **state,
                                           strut_error *error);
 /** Back to the start: positions and velocities of the scene, time 0, empty ledger. */

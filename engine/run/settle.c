@@ -90,7 +90,7 @@ strut_status strut_settle_state(const strut_model *model, strut_state *state,
   if (status) strut_fail(error, status, "out of memory");
   if (!status) status = strut_model_compile(&scene, &quiet, error);
   if (!status) status = strut_state_create(quiet, &rest, error);
-  if (!status && !(workspace = method->create(quiet)))
+  if (!status && !(workspace = method->create(quiet, rest)))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (!status) status = relax(quiet, rest, method, workspace, acceleration, interrupt, error);
   if (!status) {
@@ -98,7 +98,6 @@ strut_status strut_settle_state(const strut_model *model, strut_state *state,
     memcpy(state->q, rest->q, bytes);
     memset(state->v, 0, bytes);
   }
-  method->destroy(workspace);
   strut_state_free(rest);
   strut_model_free(quiet);
   strut_arena_free(&arena);

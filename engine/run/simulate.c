@@ -83,7 +83,7 @@ static strut_status prepare(run *r) {
   if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))
     return status;
-  r->workspace = r->method->create(r->model);
+  r->workspace = r->method->create(r->model, r->state);
   if (!r->workspace || strut_measure_create(r->model, r->dt, &r->measure))
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   if (scene->settle.wanted &&
@@ -231,7 +231,6 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
     if (!(summary->reason[i] = error->message[i])) break;
   strut_recording_free(&r.recording);
   strut_measure_free(&r.measure);
-  if (r.method) r.method->destroy(r.workspace);
   strut_state_free(r.state);
   return status;
 }

@@ -32,7 +32,6 @@ typedef struct engine_crawler {
 
 static void engine_free(void *crawler) {
   engine_crawler *it = crawler;
-  if (it->workspace) strut_integrator_find("rk4")->destroy(it->workspace);
   strut_state_free(it->state);
   strut_model_free(it->model);
   strut_scene_free(&it->scene);
@@ -45,7 +44,7 @@ static void *engine_make(bool ledger) {
   if (bench_crawler_scene(&it->scene, frequency, amplitude, friction) == STRUT_OK &&
       strut_model_compile(&it->scene, &it->model, NULL) == STRUT_OK &&
       strut_state_create(it->model, &it->state, NULL) == STRUT_OK)
-    it->workspace = strut_integrator_find("rk4")->create(it->model);
+    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state);
   if (!it->workspace) {
     engine_free(it);
     return NULL;

@@ -21,7 +21,7 @@ static uint64_t add(uint64_t hash, const void *data, size_t size) {
 
 static uint64_t hash_run(const strut_model *model, strut_state *state, int64_t steps) {
   const strut_integrator *method = strut_integrator_find(model->scene->experiment.integrator);
-  void *workspace = method->create(model);
+  void *workspace = method->create(model, state);
   size_t length = 2 * (size_t)model->node_count * sizeof(double);
   uint64_t hash = 14695981039346656037u;
   for (int64_t n = 0; workspace && n < steps; n += 100) {
@@ -31,7 +31,6 @@ static uint64_t hash_run(const strut_model *model, strut_state *state, int64_t s
     hash = add(hash, state->work, sizeof state->work);
     hash = add(hash, state->force, length);
   }
-  method->destroy(workspace);
   return hash;
 }
 

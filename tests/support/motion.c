@@ -28,7 +28,7 @@ void motion_begin(motion *m, const strut_scene *scene, double step) {
   assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
   m->method = strut_integrator_find("rk4");
   assert_non_null(m->method);
-  m->workspace = m->method->create(m->model);
+  m->workspace = m->method->create(m->model, m->state);
   assert_non_null(m->workspace);
   m->step = step;
 }
@@ -38,7 +38,6 @@ void motion_steps(motion *m, int64_t count) {
 }
 
 void motion_end(motion *m) {
-  m->method->destroy(m->workspace);
   strut_state_free(m->state);
   strut_model_free(m->model);
 }
