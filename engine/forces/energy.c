@@ -5,7 +5,7 @@
 
 #include "engine/forces/forces.h"
 
-static double kinetic(const strut_model *model, const double *v) {
+double strut_energy_kinetic(const strut_model *model, const double *v) {
   const strut_member_table *t = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   double sum = 0.0;
@@ -55,8 +55,8 @@ static double contact(const strut_model *model, const double *q) {
 
 strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t) {
   strut_drive_apply(model, state, t);
-  return (strut_stored){kinetic(model, state->v), elastic(model, state), gravity(model, state->q),
-                        contact(model, state->q)};
+  return (strut_stored){strut_energy_kinetic(model, state->v), elastic(model, state),
+                        gravity(model, state->q), contact(model, state->q)};
 }
 
 double strut_energy_of_loads(const strut_model *model, const strut_state *state) {

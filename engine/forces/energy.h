@@ -18,6 +18,9 @@ typedef struct strut_stored {
 /** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
 STRUT_API strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t);
 
+/** The first of them alone, at velocities v (length) [J]. */
+STRUT_API double strut_energy_kinetic(const strut_model *model, const double *v);
+
 /** Sum of constant load times position [J]: its change is the work of the loads (gravity is none). */
 STRUT_API double strut_energy_of_loads(const strut_model *model, const strut_state *state);
 

@@ -29,6 +29,7 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t);
 /** Adds the loads that change with time at velocities v (for their power). */
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);
+
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

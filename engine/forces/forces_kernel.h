@@ -24,8 +24,8 @@ STRUT_INLINE void forces_start(const strut_model *model, double *restrict force)
 }
 
 STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
-                              const double *restrict q, const double *restrict v,
-                              double *restrict force, bool ledger) {
+                                    const double *restrict q, const double *restrict v,
+                                    double *restrict force, bool ledger) {
   member_powers powers = {0};
   members_kernel(model, state, q, v, force, ledger, &powers);
   for (int l = 0; l < STRUT_LANES && ledger; l++) {
@@ -36,7 +36,7 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
-                          const double *restrict q, const double *restrict v, bool ledger) {
+                             const double *restrict q, const double *restrict v, bool ledger) {
   unsigned plan = model->plan;
   double *restrict force = state->force;
   state->evaluations++;

@@ -69,6 +69,10 @@ static void add_contacts(strut_buffer *table, const strut_summary *s) {
   }
   for (size_t i = 0; i < s->contact_count && i < MOST_ROWS; i++) {
     const strut_contact_summary *contact = &s->contacts[i];
+    if (isnan(contact->duty)) { /* the run did not come to its window */
+      strut_buffer_add(table, "  %-16s %14s %14s\n", contact->node, "none", "none");
+      continue;
+    }
     strut_buffer_add(table, "  %-16s %12.1f %% %14s\n", contact->node, 100.0 * contact->duty,
                      in(contact->max_height, "m").text);
   }
