@@ -53,10 +53,14 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/strutConfigVersion.cmake
 install(FILES "${PROJECT_BINARY_DIR}/strutConfig.cmake"
               "${PROJECT_BINARY_DIR}/strutConfigVersion.cmake"
               "${PROJECT_SOURCE_DIR}/.cmake/FindSuiteSparse.cmake"
+              "${PROJECT_SOURCE_DIR}/.cmake/FindGLPK.cmake"
         DESTINATION "${strut_package_dir}")
 
 # pkg-config: a static libstrut needs everything named at every link, a shared one only itself.
-set(strut_pc_beneath "-lhdf5_hl -lcholmod -lm")
+set(strut_pc_beneath "-lhdf5_hl -lspqr -lcholmod -lglpk -lm")
+if(OpenMP_C_FOUND)
+  string(APPEND strut_pc_beneath " ${OpenMP_C_FLAGS}")
+endif()
 if(BUILD_SHARED_LIBS)
   set(strut_pc_private ".private")
   set(strut_pc_libraries "\nLibs.private: ${strut_pc_beneath}")

@@ -7,10 +7,10 @@
 set -eu
 
 packages="gcc libc6-dev make cmake pkg-config
-  libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev"
+  libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev"
 case ${1:-} in
   '') ;;
-  tests) packages="$packages g++ clang libcmocka-dev locales" ;;
+  tests) packages="$packages g++ clang libcmocka-dev locales jq" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
 esac
 

@@ -9,6 +9,8 @@ void strut_scene_init(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
   scene->name = scene->description = scene->source = "";
   scene->settle = (strut_settle){.speed = 1e-8, .acceleration = 1e-8, .limit = 100.0};
+  scene->start_equilibrium = -1;
+  scene->search.seed = 1;
   scene->experiment.integrator = "rk4";
   scene->experiment.period_signal = -1;
   scene->experiment.measure_node = -1;

@@ -122,6 +122,29 @@ typedef enum strut_channel {
   STRUT_CHANNEL_ENERGY = 32
 } strut_channel;
 
+/** Some nodes, in the order they were given. */
+typedef struct strut_node_set {
+  size_t count;
+  int32_t *node; /* (count) */
+} strut_node_set;
+
+/** A shape with a name: a place to start from, and what an equilibrium is called by. */
+typedef struct strut_configuration {
+  const char *name;
+  bool shaped;           /* some position was given; else contacts alone tell it */
+  double (*position)[2]; /* (node_count) [m]; as drawn where the scene gives none */
+  size_t set_count;      /* sets of contact nodes on any of which it stands; 0: not said */
+  strut_node_set *sets;  /* (set_count) */
+} strut_configuration;
+
+/** How all equilibria are looked for. */
+typedef struct strut_search {
+  size_t support_count;     /* sets of contact nodes to hold in turn; 0: every one that is needed */
+  strut_node_set *supports; /* (support_count) of each set the first node is pinned, others roll */
+  int64_t starts;           /* random starts for each set; 0: until little can be missing */
+  uint64_t seed;
+} strut_search;
+
 /** What to integrate, for how long, and what to measure. */
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
@@ -143,7 +166,7 @@ typedef struct strut_scene {
   strut_mass_model mass_model;
   double gravity[2]; /* [m/s^2]; default 0, 0 */
   size_t node_count, member_count, contact_count, actuator_count, load_count, signal_count,
-      parameter_count;
+      parameter_count, configuration_count;
   strut_node *nodes;
   strut_member *members;
   strut_ground ground;
@@ -152,6 +175,10 @@ typedef struct strut_scene {
   strut_load *loads;
   strut_signal *signals;
   strut_parameter *parameters;
+  strut_configuration *configurations;
+  int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
+                                it resolved into positions: strut_stand_resolve */
+  strut_search search;
   strut_settle settle;
   strut_experiment experiment;
   strut_arena arena; /* owns every text and array above */

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * From a shape downhill to a stationary point of the potential: Newton's method in a trust region.
+ *
+ * Up to STRUT_DENSE_STATICS free coordinates by the eigenvectors of the Hessian; above by its sparse
+ * L D L' factor, shifted until it is positive definite. Directions without stiffness and without
+ * force (free bodies, mechanisms) are left alone. Deterministic.
+ */
+#ifndef STRUT_ENGINE_STATICS_MINIMISE_H
+#define STRUT_ENGINE_STATICS_MINIMISE_H
+
+#include "engine/statics/potential.h"
+
+enum { STRUT_DENSE_STATICS = 120 };
+
+typedef enum strut_descent_end {
+  STRUT_DESCENT_REACHED,  /* the gradient is zero to what rounding allows */
+  STRUT_DESCENT_RUNAWAY,  /* the energy falls without end: q left all bounds */
+  STRUT_DESCENT_EXHAUSTED /* no progress within the iterations allowed */
+} strut_descent_end;
+
+typedef struct strut_descent {
+  strut_descent_end end;
+  int32_t iterations;
+  double residual; /* largest entry of g at the end [N] */
+  double rounding; /* strut_potential_rounding there [N] */
+} strut_descent;
+
+/** Memory of descents on one potential, for one thread at a time. */
+typedef struct strut_minimiser strut_minimiser;
+STRUT_API strut_status strut_minimiser_create(const strut_potential *potential,
+                                              strut_minimiser **minimiser, strut_error *error);
+STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
+
+/**
+ * Moves q (length) downhill to a point where g = 0, never uphill. It may end on a saddle only if
+ * the start lies exactly on its ridge; then it leaves along the unstable direction. At the end it is
+ * polished until |g| <= max(tolerance, a few times the rounding). tolerance [N]; 0: rounding alone.
+ */
+STRUT_API strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double tolerance);
+
+/** Plain Newton steps to the nearest stationary point of any kind, for a q that is close already. */
+STRUT_API strut_descent strut_polish(strut_minimiser *minimiser, double *q, double tolerance);
+
+#endif

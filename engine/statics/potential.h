@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The potential energy of a structure at rest, with its first and second derivatives.
+ *
+ * It is the scene without what moves: actuators at rest, loads with a signal left out, no friction,
+ * no damping. Free coordinates are those that neither the scene nor `held` fixes. Positions q are
+ * (length) as everywhere; g and the Hessian are over the free coordinates, in their order.
+ */
+#ifndef STRUT_ENGINE_STATICS_POTENTIAL_H
+#define STRUT_ENGINE_STATICS_POTENTIAL_H
+
+#include "engine/model/model.h"
+#include "engine/model/sparse.h"
+
+typedef struct strut_potential {
+  const strut_model *model;
+  bool ground;         /* contacts push with c_g depth; else the ground is not there */
+  int32_t n;           /* free coordinates */
+  int32_t *coordinate; /* (n) index into coordinate arrays */
+  int32_t *row_of;     /* (length) row of a coordinate, -1 where held */
+  strut_sparse *pattern; /* of the Hessian: every member and contact, touching or not */
+  int32_t *place;      /* where the entries of members and contacts stand in the pattern's values */
+  double *force;       /* (length) gravity and constant loads [N] */
+  double force_scale;  /* sum of their magnitudes [N]: "the weight"; 0 without any */
+  strut_arena arena;
+} strut_potential;
+
+/**
+ * held: (length) 1 where a static support holds a coordinate besides the scene's own, or NULL. The
+ * model must outlive it. STRUT_OK or STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_potential_create(const strut_model *model, const uint8_t *held,
+                                              bool ground, strut_potential **potential,
+                                              strut_error *error);
+STRUT_API void strut_potential_free(strut_potential *potential);
+
+/** What is stationary in equilibrium: (13), minus load times position, plus the ground's springs. */
+STRUT_API double strut_potential_value(const strut_potential *potential, const double *q);
+
+/** (13) alone: elastic energy of the members and gravity's, zero at the origin [J]. */
+STRUT_API double strut_potential_energy(const strut_potential *potential, const double *q);
+
+/** g (n) = dE/dq [N]: minus the net force. */
+STRUT_API void strut_potential_gradient(const strut_potential *potential, const double *q,
+                                        double *g);
+
+/** Net force on every coordinate (length), held ones too [N]: minus the support reactions there. */
+STRUT_API void strut_potential_force(const strut_potential *potential, const double *q,
+                                     double *force);
+
+/**
+ * The rounding error that g may carry at best [N]: that of the largest sum of member forces and of
+ * stiffness times the last bit of a coordinate. A residual below it says nothing.
+ */
+STRUT_API double strut_potential_rounding(const strut_potential *potential, const double *q);
+
+/** A Hessian of zeros to be filled, in the arena; NULL: out of memory. */
+STRUT_API strut_sparse *strut_potential_matrix(const strut_potential *potential,
+                                               strut_arena *arena);
+/** Fills it with the second derivatives at q; slack cables and open contacts give none [N/m]. */
+STRUT_API void strut_potential_hessian(const strut_potential *potential, const double *q,
+                                       strut_sparse *hessian);
+
+#endif
