@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The potential energy, its gradient and Hessian against differences and the engine's own sums. */
+#include "engine/statics/potential.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/energy.h"
+#include "engine/forces/stiffness.h"
+#include "tests/physics/random_scene.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+enum { SCENES = 120 };
+
+typedef struct fixture {
+  strut_scene scene;
+  strut_model *model;
+  strut_potential *potential;
+  double *q, *g, *up, *down;
+} fixture;
+
+/* Is every cable clear of slackness and every contact clear of the ground's line? */
+static bool clear_of_kinks(const strut_model *model, const double *q, double margin) {
+  const strut_member_table *t = &model->members;
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t j = 0; j < t->count; j++) {
+    const double *a = q + t->from[j], *b = q + t->to[j];
+    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    if (length < 20 * margin) return false;
+    if (t->slack[j] == 0 && fabs(length - t->rest[j]) < margin) return false;
+  }
+  for (int32_t i = 0; i < c->count; i++) {
+    const double *at = q + c->at[i];
+    double gap = at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
+    if (fabs(gap) < margin) return false;
+  }
+  return true;
+}
+
+static bool set_up(fixture *f, uint64_t seed) {
+  uint64_t r = seed ^ 0x5bd1e995u;
+  double t, *v;
+  random_scene(&f->scene, seed);
+  assert_int_equal(strut_model_compile(&f->scene, &f->model, NULL), STRUT_OK);
+  size_t length = (size_t)f->model->length;
+  uint8_t *held = strut_arena_allocate(&f->scene.arena, length, 1);
+  f->q = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
+  f->g = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
+  f->up = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
+  f->down = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
+  v = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
+  for (size_t i = 0; i < length; i++) held[i] = (uint8_t)random_once_in(&r, 10);
+  assert_int_equal(strut_potential_create(f->model, random_once_in(&r, 2) ? held : NULL,
+                                          !random_once_in(&r, 4), &f->potential, NULL),
+                   STRUT_OK);
+  for (uint64_t again = 0; again < 20; again++) {
+    random_motion(&f->scene, seed + 1000 * again, &t, f->q, v);
+    if (clear_of_kinks(f->model, f->q, 3e-3)) return f->potential->n > 0;
+  }
+  return false;
+}
+
+static void tear_down(fixture *f) {
+  strut_potential_free(f->potential);
+  strut_model_free(f->model);
+  strut_scene_free(&f->scene);
+}
+
+/* Richardson's extrapolation of central differences with steps h, h/2, h/4: error of sixth order. */
+static double extrapolated(double a, double b, double c) {
+  double first = (4 * b - a) / 3, second = (4 * c - b) / 3;
+  return (16 * second - first) / 15;
+}
+
+static double value_slope(fixture *f, int32_t at, double h) {
+  double keep = f->q[at];
+  f->q[at] = keep + h;
+  double up = strut_potential_value(f->potential, f->q);
+  f->q[at] = keep - h;
+  double down = strut_potential_value(f->potential, f->q);
+  f->q[at] = keep;
+  return (up - down) / (2 * h);
+}
+
+static void gradient_slope(fixture *f, int32_t at, double h, double *slope) {
+  double keep = f->q[at];
+  f->q[at] = keep + h;
+  strut_potential_gradient(f->potential, f->q, f->up);
+  f->q[at] = keep - h;
+  strut_potential_gradient(f->potential, f->q, f->down);
+  f->q[at] = keep;
+  for (int32_t i = 0; i < f->potential->n; i++) slope[i] = (f->up[i] - f->down[i]) / (2 * h);
+}
+
+static void the_gradient_is_the_values_slope(void **state) {
+  int tried = 0;
+  (void)state;
+  for (uint64_t seed = 0; seed < SCENES; seed++) {
+    fixture f = {0};
+    if (set_up(&f, seed)) {
+      const double h = 2e-3;
+      double largest = 1.0;
+      strut_potential_gradient(f.potential, f.q, f.g);
+      for (int32_t i = 0; i < f.potential->n; i++) largest = fmax(largest, fabs(f.g[i]));
+      for (int32_t i = 0; i < f.potential->n; i++) {
+        int32_t at = f.potential->coordinate[i];
+        double d = extrapolated(value_slope(&f, at, h), value_slope(&f, at, h / 2),
+                                value_slope(&f, at, h / 4));
+        assert_near(f.g[i], d, 1e-9 * largest);
+      }
+      tried++;
+    }
+    tear_down(&f);
+  }
+  assert_true(tried > SCENES / 2);
+}
+
+/* Every entry, those that the pattern lacks too: they must be zero. */
+static void the_hessian_is_the_gradients_slope(void **state) {
+  int tried = 0;
+  (void)state;
+  for (uint64_t seed = 0; seed < SCENES; seed++) {
+    fixture f = {0};
+    if (set_up(&f, seed)) {
+      const double h = 2e-3;
+      size_t n = (size_t)f.potential->n;
+      strut_arena arena = {0};
+      strut_sparse *k = strut_potential_matrix(f.potential, &arena);
+      double *slope[3], *unit = strut_arena_allocate(&arena, n, sizeof *unit);
+      double *column = strut_arena_allocate(&arena, n, sizeof *column), largest = 1.0;
+      for (int i = 0; i < 3; i++) slope[i] = strut_arena_allocate(&arena, n, sizeof(double));
+      strut_potential_hessian(f.potential, f.q, k);
+      for (int32_t i = 0; i < k->start[k->n]; i++) largest = fmax(largest, fabs(k->value[i]));
+      for (size_t j = 0; j < n; j++) {
+        int32_t at = f.potential->coordinate[j];
+        for (int i = 0; i < 3; i++) gradient_slope(&f, at, h / (1 << i), slope[i]);
+        memset(unit, 0, n * sizeof *unit);
+        unit[j] = 1;
+        strut_sparse_multiply(k, unit, column);
+        for (size_t i = 0; i < n; i++)
+          assert_near(column[i], extrapolated(slope[0][i], slope[1][i], slope[2][i]),
+                      1e-9 * largest);
+      }
+      strut_arena_free(&arena);
+      tried++;
+    }
+    tear_down(&f);
+  }
+  assert_true(tried > SCENES / 2);
+}
+
+/* The engine's forces, energies and tangent stiffness know nothing of this room. */
+static void it_agrees_with_the_engine(void **state) {
+  (void)state;
+  for (uint64_t seed = 0; seed < SCENES; seed++) {
+    fixture f = {0};
+    if (!set_up(&f, seed)) {
+      tear_down(&f);
+      continue;
+    }
+    strut_arena arena = {0};
+    strut_tangent tangent;
+    strut_potential *all;
+    assert_int_equal(strut_potential_create(f.model, NULL, true, &all, NULL), STRUT_OK);
+    strut_sparse *k = strut_potential_matrix(all, &arena);
+    strut_potential_hessian(all, f.q, k);
+    assert_int_equal(strut_tangent_assemble(f.model, f.q, f.model->members.rest,
+                                            STRUT_CLOSED_TOUCHING, &arena, &tangent),
+                     STRUT_OK);
+    assert_int_equal(tangent.n, all->n);
+    double *x = strut_arena_allocate(&arena, (size_t)all->n, sizeof *x);
+    double *y = strut_arena_allocate(&arena, (size_t)all->n, sizeof *y);
+    double *z = strut_arena_allocate(&arena, (size_t)all->n, sizeof *z);
+    for (int32_t i = 0; i < all->n; i++) x[i] = sin(1.0 + 3.0 * i);
+    strut_sparse_multiply(k, x, y);
+    strut_sparse_multiply(tangent.stiffness, x, z);
+    for (int32_t i = 0; i < all->n; i++) assert_near(y[i], z[i], 1e-9 * (1 + fabs(z[i])));
+
+    f.scene.actuator_count = 0;
+    strut_model *quiet;
+    strut_state *still;
+    assert_int_equal(strut_model_compile(&f.scene, &quiet, NULL), STRUT_OK);
+    assert_int_equal(strut_state_create(quiet, &still, NULL), STRUT_OK);
+    memcpy(still->q, f.q, (size_t)f.model->length * sizeof *f.q);
+    memset(still->v, 0, (size_t)f.model->length * sizeof *f.q);
+    strut_stored stored = strut_energy_stored(quiet, still, 0);
+    double sum = stored.elastic + stored.gravity + stored.contact;
+    double loads = strut_energy_of_loads(quiet, still);
+    double scale = fabs(stored.elastic) + fabs(stored.gravity) + fabs(loads) + stored.contact;
+    assert_near(strut_potential_value(all, f.q), sum - loads, 1e-13 * scale);
+    assert_near(strut_potential_energy(all, f.q), stored.elastic + stored.gravity, 1e-13 * scale);
+    strut_potential_gradient(all, f.q, f.g);
+    strut_potential_force(all, f.q, f.up);
+    for (int32_t i = 0; i < all->n; i++) assert_same_bits(0 - f.g[i], 0 + f.up[all->coordinate[i]]);
+    strut_state_free(still);
+    strut_model_free(quiet);
+    strut_potential_free(all);
+    strut_arena_free(&arena);
+    tear_down(&f);
+  }
+}
+
+/* A spring of no length and no rest length pulls alike everywhere; one with a rest length not. */
+static void members_of_zero_length(void **state) {
+  strut_scene scene;
+  strut_model *model;
+  strut_potential *p;
+  strut_arena arena = {0};
+  (void)state;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_node(&scene, 0, 0);
+  build_node(&scene, 1, 0);
+  build_sized(&scene, STRUT_SPRING, 0, 1, 7, 0, 0, 0);
+  build_sized(&scene, STRUT_SPRING, 0, 2, 5, 0, 0, 1);
+  build_sized(&scene, STRUT_CABLE, 0, 1, 3, 0, 0, 0);
+  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+  assert_int_equal(strut_potential_create(model, NULL, true, &p, NULL), STRUT_OK);
+  strut_sparse *k = strut_potential_matrix(p, &arena);
+  double g[4];
+  strut_potential_hessian(p, model->start, k);
+  strut_potential_gradient(p, model->start, g);
+  for (int i = 0; i < 4; i++) assert_near(g[i], 0, 0);
+  assert_near(k->value[k->start[0]], 7, 0);
+  assert_near(k->value[k->start[1]], 7, 0);
+  assert_near(k->value[k->start[2]], 5, 0);
+  assert_near(k->value[k->start[3]], 0, 0);
+  double q[12] = {0};
+  strut_potential_hessian(p, q, k);
+  assert_near(k->value[k->start[2]], 0, 0);
+  assert_near(k->value[k->start[3]], 0, 0);
+  strut_arena_free(&arena);
+  strut_potential_free(p);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* A weight on a soft ground that slopes: the force is the load's plus the ground's push. */
+static void a_slope_pushes_along_its_normal(void **state) {
+  strut_scene scene;
+  strut_model *model;
+  strut_potential *p;
+  (void)state;
+  strut_scene_init(&scene);
+  build_mass(&scene, 1, 0.4, 2);
+  build_contact(&scene, 0, 1000, 5);
+  build_load(&scene, 0, 3, 4, -1);
+  scene.ground.slope = 0.5;
+  scene.gravity[1] = -10;
+  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+  assert_int_equal(strut_potential_create(model, NULL, true, &p, NULL), STRUT_OK);
+  double depth = sin(0.5) - 0.4 * cos(0.5), force[8];
+  assert_true(depth > 0);
+  strut_potential_force(p, model->start, force);
+  assert_near(force[0], 3 - 1000 * depth * sin(0.5), 1e-11);
+  assert_near(force[1], 4 - 20 + 1000 * depth * cos(0.5), 1e-11);
+  assert_near(p->force_scale, 25, 1e-14);
+  strut_potential_free(p);
+  assert_int_equal(strut_potential_create(model, NULL, false, &p, NULL), STRUT_OK);
+  strut_potential_force(p, model->start, force);
+  assert_near(force[0], 3, 0);
+  assert_near(force[1], -16, 0);
+  strut_potential_free(p);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* A refusal of memory at any place is passed on. */
+static void refused_memory(void **state) {
+  strut_scene scene;
+  strut_model *model;
+  (void)state;
+  random_scene(&scene, 3);
+  assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+  for (int64_t n = 0;; n++) {
+    strut_potential *p;
+    strut_fail_allocation_after(n);
+    strut_status status = strut_potential_create(model, NULL, true, &p, NULL);
+    strut_fail_allocation_after(-1);
+    strut_potential_free(p);
+    if (status == STRUT_OK) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_true(n < 100);
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_gradient_is_the_values_slope),
+      cmocka_unit_test(the_hessian_is_the_gradients_slope),
+      cmocka_unit_test(it_agrees_with_the_engine),
+      cmocka_unit_test(members_of_zero_length),
+      cmocka_unit_test(a_slope_pushes_along_its_normal),
+      cmocka_unit_test(refused_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
