@@ -2,6 +2,8 @@
 #include "engine/model/linear_solver.h"
 
 #include <cholmod.h>
+#include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
@@ -50,12 +52,10 @@ static strut_factor *allocate_factor(int32_t n, size_t nonzeros) {
 }
 
 /* CHOLMOD keeps D as the first entry of each column of L; we keep 1/D apart. */
-static strut_factor *copy_out(const cholmod_factor *l) {
+static void copy_into(const cholmod_factor *l, strut_factor *factor) {
   const int *start = l->p, *row = l->i, *order = l->Perm;
   const double *value = l->x;
-  int32_t n = (int32_t)l->n;
-  strut_factor *factor = allocate_factor(n, (size_t)(start[n] - n));
-  if (!factor) return NULL;
+  int32_t n = factor->n;
   memcpy(factor->order, order, (size_t)n * sizeof *factor->order);
   int32_t at = 0;
   for (int32_t j = 0; j < n; j++) {
@@ -67,6 +67,13 @@ static strut_factor *copy_out(const cholmod_factor *l) {
     }
   }
   factor->start[n] = at;
+}
+
+static strut_factor *copy_out(const cholmod_factor *l) {
+  const int *start = l->p;
+  int32_t n = (int32_t)l->n;
+  strut_factor *factor = allocate_factor(n, (size_t)(start[n] - n));
+  if (factor) copy_into(l, factor);
   return factor;
 }
 
@@ -149,4 +156,131 @@ void strut_factor_solve_pair(const strut_factor *factor, double *restrict b) {
     b[2 * j] = x;
     b[2 * j + 1] = y;
   }
+}
+
+struct strut_ldl {
+  cholmod_common common;
+  cholmod_factor *symbolic;
+  strut_factor *factor; /* of what was factorised last; NULL before */
+  double *work;         /* (3 n) */
+  double norm;          /* |A + shift I|_1 of it */
+};
+
+strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, strut_error *error) {
+  strut_ldl *l = *ldl = strut_allocate(1, sizeof *l);
+  if (!l) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  start_cholmod(&l->common);
+  cholmod_sparse a = view(pattern);
+  l->symbolic = cholmod_analyze(&a, &l->common);
+  l->work = strut_allocate(3 * (size_t)pattern->n, sizeof *l->work);
+  if (l->symbolic && l->work) return STRUT_OK;
+  strut_ldl_free(l);
+  *ldl = NULL;
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
+}
+
+void strut_ldl_free(strut_ldl *ldl) {
+  if (!ldl) return;
+  cholmod_free_factor(&ldl->symbolic, &ldl->common);
+  cholmod_finish(&ldl->common);
+  strut_factor_free(ldl->factor);
+  strut_release(ldl->work);
+  strut_release(ldl);
+}
+
+/* The largest column sum of |A + shift I|. */
+static double norm_of(const strut_sparse *a, double shift, double *sum) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < a->n; j++) sum[j] = 0.0;
+  for (int32_t j = 0; j < a->n; j++) {
+    sum[j] += fabs(a->value[a->start[j]] + shift);
+    for (int32_t k = a->start[j] + 1; k < a->start[j + 1]; k++) {
+      sum[j] += fabs(a->value[k]);
+      sum[a->row[k]] += fabs(a->value[k]);
+    }
+  }
+  for (int32_t j = 0; j < a->n; j++) largest = fmax(largest, sum[j]);
+  return largest;
+}
+
+/* False where a pivot cannot be divided by. */
+static bool read_inertia(const cholmod_factor *l, const strut_sparse *a, double shift,
+                         strut_inertia *inertia) {
+  const int *start = l->p, *order = l->Perm;
+  const double *value = l->x;
+  *inertia = (strut_inertia){.row = -1, .smallest = HUGE_VAL, .least = HUGE_VAL};
+  if (l->minor < l->n) {
+    inertia->row = order[l->minor];
+    inertia->smallest = inertia->least = 0.0;
+    return false;
+  }
+  for (size_t j = 0; j < l->n; j++) {
+    double d = value[start[j]], size = fabs(d);
+    double before = fabs(a->value[a->start[order[j]]] + shift);
+    double left = before > 0 ? size / before : 1.0;
+    if (!(size > 0) || !isfinite(size)) {
+      *inertia = (strut_inertia){.row = order[j]};
+      return false;
+    }
+    if (d < 0) inertia->negative++;
+    if (left < inertia->smallest) inertia->smallest = left, inertia->row = order[j];
+    inertia->least = fmin(inertia->least, size);
+    inertia->largest = fmax(inertia->largest, size);
+  }
+  return true;
+}
+
+strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, double shift,
+                                 strut_inertia *inertia) {
+  cholmod_common *common = &ldl->common;
+  cholmod_sparse a = view(matrix);
+  double beta[2] = {shift, 0.0};
+  cholmod_factor *l = cholmod_copy_factor(ldl->symbolic, common);
+  strut_status status = STRUT_NO_MEMORY;
+  *inertia = (strut_inertia){.row = -1};
+  ldl->norm = norm_of(matrix, shift, ldl->work);
+  if (l && cholmod_factorize_p(&a, beta, NULL, 0, l, common) && common->status >= CHOLMOD_OK &&
+      cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, common)) {
+    const int *start = l->p;
+    bool good = read_inertia(l, matrix, shift, inertia);
+    if (!ldl->factor) ldl->factor = allocate_factor(matrix->n, (size_t)(start[l->n] - matrix->n));
+    if (ldl->factor && good) copy_into(l, ldl->factor);
+    if (ldl->factor) status = good ? STRUT_OK : STRUT_SINGULAR;
+  }
+  cholmod_free_factor(&l, common);
+  return status;
+}
+
+void strut_ldl_solve(strut_ldl *ldl, double *b) {
+  const strut_factor *f = ldl->factor;
+  double *x = ldl->work;
+  for (int32_t i = 0; i < f->n; i++) x[i] = b[f->order[i]];
+  strut_factor_solve(f, x);
+  for (int32_t i = 0; i < f->n; i++) b[f->order[i]] = x[i];
+}
+
+/* Hager's method: climbs to a column of A^-1 with a large sum; then Higham's second guess. */
+double strut_ldl_rcond(strut_ldl *ldl) {
+  int32_t n = ldl->factor->n;
+  double *x = ldl->work + n, *y = ldl->work + 2 * (size_t)n, best = 0.0, other = 0.0;
+  if (n == 0 || !(ldl->norm > 0)) return n == 0 ? 1.0 : 0.0;
+  for (int32_t i = 0; i < n; i++) x[i] = 1.0 / n;
+  for (int turn = 0; turn < 5; turn++) {
+    double sum = 0.0;
+    int32_t at = 0;
+    strut_ldl_solve(ldl, x);
+    for (int32_t i = 0; i < n; i++) sum += fabs(x[i]);
+    if (turn > 0 && !(sum > best)) break;
+    best = sum;
+    for (int32_t i = 0; i < n; i++) y[i] = x[i] < 0 ? -1.0 : 1.0;
+    strut_ldl_solve(ldl, y);
+    for (int32_t i = 0; i < n; i++)
+      if (fabs(y[i]) > fabs(y[at])) at = i;
+    for (int32_t i = 0; i < n; i++) x[i] = i == at ? 1.0 : 0.0;
+  }
+  for (int32_t i = 0; i < n; i++)
+    x[i] = (i % 2 ? -1.0 : 1.0) * (1.0 + (n > 1 ? (double)i / (n - 1) : 0.0));
+  strut_ldl_solve(ldl, x);
+  for (int32_t i = 0; i < n; i++) other += fabs(x[i]);
+  return 1.0 / (ldl->norm * fmax(best, 2.0 * other / (3.0 * n)));
 }

@@ -42,4 +42,38 @@ void strut_factor_solve(const strut_factor *factor, double *restrict b);
 /** The same for two right-hand sides side by side: b is (n, 2), row by row. */
 void strut_factor_solve_pair(const strut_factor *factor, double *restrict b);
 
+/**
+ * L D L' of a matrix that need not be positive definite, factorised again and again with the same
+ * pattern. Rows and columns are never swapped for the sake of the numbers, so the signs of D count
+ * the negative eigenvalues only where no pivot is much smaller than the diagonal it came from.
+ */
+typedef struct strut_ldl strut_ldl;
+
+typedef struct strut_inertia {
+  int32_t negative;     /* entries of D below zero: as many as eigenvalues, if `smallest` is large */
+  int32_t row;          /* of A, at the pivot that `smallest` belongs to */
+  double smallest;      /* least |D| / |its diagonal in A| (1 for a diagonal of 0): what the
+                           subtractions left; 0: no factor, rounding (1e-16) and little above: the
+                           pivot is noise */
+  double least, largest; /* |D| */
+} strut_inertia;
+
+/** Orders and analyses a pattern; its numbers do not matter. STRUT_OK or STRUT_NO_MEMORY. */
+strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, strut_error *error);
+void strut_ldl_free(strut_ldl *ldl);
+
+/**
+ * Factorises matrix + shift * I. STRUT_SINGULAR where a pivot is zero to the last bit or not finite
+ * (then nothing can be solved), STRUT_NO_MEMORY.
+ */
+strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, double shift,
+                                 strut_inertia *inertia);
+/** b (n) becomes (matrix + shift I)^-1 b, in the matrix's own order. */
+void strut_ldl_solve(strut_ldl *ldl, double *b);
+/**
+ * Estimate of 1 / (|A| |A^-1|) in the 1-norm of what was factorised last, by a few solves (Hager,
+ * Higham); it is seldom off by more than a factor of 3. Solutions lose that many digits.
+ */
+double strut_ldl_rcond(strut_ldl *ldl);
+
 #endif

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Factors of matrices that need not be positive definite: solutions, signs, condition. */
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/model/sparse.h"
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+enum { N = 40 };
+
+static strut_sparse *random_matrix(uint64_t *r, double lift, strut_arena *arena) {
+  strut_triplets triplets = {0};
+  assert_true(strut_triplets_reserve(&triplets, 5 * N, arena));
+  for (int32_t i = 0; i < N; i++)
+    strut_triplets_add(&triplets, i, i, random_between(r, -1, 1) + lift);
+  for (int32_t k = 0; k < 3 * N; k++) {
+    int32_t i = random_below(r, N), j = random_below(r, N);
+    if (i != j) strut_triplets_add(&triplets, i, j, random_between(r, -1, 1));
+  }
+  return strut_sparse_build(N, &triplets, arena);
+}
+
+static gsl_matrix *dense_of(const strut_sparse *m, double shift) {
+  gsl_matrix *a = gsl_matrix_calloc((size_t)m->n, (size_t)m->n);
+  for (int32_t j = 0; j < m->n; j++)
+    for (int32_t k = m->start[j]; k < m->start[j + 1]; k++) {
+      size_t i = (size_t)m->row[k], c = (size_t)j;
+      double value = m->value[k] + (i == c ? shift : 0);
+      gsl_matrix_set(a, i, c, value), gsl_matrix_set(a, c, i, value);
+    }
+  return a;
+}
+
+static int negative_eigenvalues(const strut_sparse *m, double shift) {
+  int32_t n = m->n, count = 0;
+  gsl_matrix *a = dense_of(m, shift);
+  gsl_vector *values = gsl_vector_alloc((size_t)n);
+  gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc((size_t)n);
+  gsl_eigen_symm(a, values, w);
+  for (int32_t i = 0; i < n; i++) count += gsl_vector_get(values, (size_t)i) < 0;
+  gsl_eigen_symm_free(w);
+  gsl_vector_free(values);
+  gsl_matrix_free(a);
+  return count;
+}
+
+/* 1 / (|A| |A^-1|) in the 1-norm, from the inverse itself. */
+static double true_rcond(const strut_sparse *m) {
+  size_t n = (size_t)m->n;
+  gsl_matrix *a = dense_of(m, 0), *inverse = gsl_matrix_alloc(n, n);
+  gsl_permutation *order = gsl_permutation_alloc(n);
+  double norm = 0, inverse_norm = 0;
+  int sign;
+  for (size_t j = 0; j < n; j++) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum += fabs(gsl_matrix_get(a, i, j));
+    norm = fmax(norm, sum);
+  }
+  gsl_linalg_LU_decomp(a, order, &sign);
+  gsl_linalg_LU_invert(a, order, inverse);
+  for (size_t j = 0; j < n; j++) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum += fabs(gsl_matrix_get(inverse, i, j));
+    inverse_norm = fmax(inverse_norm, sum);
+  }
+  gsl_permutation_free(order);
+  gsl_matrix_free(inverse);
+  gsl_matrix_free(a);
+  return 1 / (norm * inverse_norm);
+}
+
+static void it_solves_and_counts_signs(void **state) {
+  uint64_t r = 11;
+  (void)state;
+  for (int turn = 0; turn < 40; turn++) {
+    strut_arena arena = {0};
+    strut_sparse *m = random_matrix(&r, random_between(&r, -4, 4), &arena);
+    strut_ldl *ldl;
+    assert_int_equal(strut_ldl_create(m, &ldl, NULL), STRUT_OK);
+    for (int again = 0; again < 3; again++) { /* new numbers, the same pattern */
+      double b[N], x[N], back[N], shift = again * random_between(&r, -2, 2);
+      strut_inertia inertia;
+      for (int32_t k = 0; k < m->start[N] && again == 2; k++) m->value[k] *= 1.5;
+      assert_int_equal(strut_ldl_factorise(ldl, m, shift, &inertia), STRUT_OK);
+      if (inertia.smallest < 1e-4) continue;
+      assert_int_equal(inertia.negative, negative_eigenvalues(m, shift));
+      for (int i = 0; i < N; i++) b[i] = x[i] = random_between(&r, -1, 1);
+      strut_ldl_solve(ldl, x);
+      strut_sparse_multiply(m, x, back);
+      for (int i = 0; i < N; i++) assert_near(back[i] + shift * x[i], b[i], 1e-8);
+    }
+    strut_ldl_free(ldl);
+    strut_arena_free(&arena);
+  }
+}
+
+static void its_condition_is_estimated(void **state) {
+  uint64_t r = 12;
+  (void)state;
+  for (int turn = 0; turn < 40; turn++) {
+    strut_arena arena = {0};
+    strut_sparse *m = random_matrix(&r, 5, &arena);
+    strut_ldl *ldl;
+    strut_inertia inertia;
+    assert_int_equal(strut_ldl_create(m, &ldl, NULL), STRUT_OK);
+    assert_int_equal(strut_ldl_factorise(ldl, m, 0, &inertia), STRUT_OK);
+    double known = true_rcond(m), estimate = strut_ldl_rcond(ldl);
+    assert_within(estimate, 0.999 * known, 4 * known);
+    strut_ldl_free(ldl);
+    strut_arena_free(&arena);
+  }
+}
+
+/* Springs of 1 and 1e12 in turn: CHOLMOD is content, the estimate is not. */
+static void an_ill_conditioned_chain_shows(void **state) {
+  strut_arena arena = {0};
+  strut_triplets triplets = {0};
+  strut_ldl *ldl;
+  strut_inertia inertia;
+  (void)state;
+  assert_true(strut_triplets_reserve(&triplets, 4 * N, &arena));
+  for (int32_t i = 0; i < N; i++) {
+    double stiffness = i % 2 ? 1e12 : 1;
+    strut_triplets_add(&triplets, i, i, stiffness);
+    if (i == 0) continue;
+    strut_triplets_add(&triplets, i - 1, i - 1, stiffness);
+    strut_triplets_add(&triplets, i, i - 1, -stiffness);
+  }
+  strut_sparse *m = strut_sparse_build(N, &triplets, &arena);
+  assert_int_equal(strut_ldl_create(m, &ldl, NULL), STRUT_OK);
+  assert_int_equal(strut_ldl_factorise(ldl, m, 0, &inertia), STRUT_OK);
+  assert_within(strut_ldl_rcond(ldl), 1e-18, 1e-12);
+  assert_true(inertia.smallest < 1e-11);
+  strut_ldl_free(ldl);
+  strut_arena_free(&arena);
+}
+
+static void a_zero_pivot_is_refused_and_a_shift_helps(void **state) {
+  strut_arena arena = {0};
+  strut_triplets triplets = {0};
+  strut_ldl *ldl;
+  strut_inertia inertia;
+  double b[2] = {1, 2};
+  (void)state;
+  assert_true(strut_triplets_reserve(&triplets, 2, &arena));
+  strut_triplets_add(&triplets, 0, 0, 1);
+  strut_sparse *m = strut_sparse_build(2, &triplets, &arena);
+  assert_int_equal(strut_ldl_create(m, &ldl, NULL), STRUT_OK);
+  assert_int_equal(strut_ldl_factorise(ldl, m, 0, &inertia), STRUT_SINGULAR);
+  assert_int_equal(inertia.row, 1);
+  assert_int_equal(strut_ldl_factorise(ldl, m, 1, &inertia), STRUT_OK);
+  strut_ldl_solve(ldl, b);
+  assert_near(b[0], 0.5, 0);
+  assert_near(b[1], 2, 0);
+  assert_int_equal(strut_ldl_factorise(ldl, m, -0.5, &inertia), STRUT_OK);
+  assert_int_equal(inertia.negative, 1);
+  strut_ldl_free(ldl);
+  strut_arena_free(&arena);
+}
+
+static void refused_memory(void **state) {
+  strut_arena arena = {0};
+  uint64_t r = 13;
+  strut_sparse *m = random_matrix(&r, 5, &arena);
+  (void)state;
+  for (int64_t n = 0;; n++) {
+    strut_ldl *ldl;
+    strut_inertia inertia;
+    strut_fail_allocation_after(n);
+    strut_status status = strut_ldl_create(m, &ldl, NULL);
+    if (!status) status = strut_ldl_factorise(ldl, m, 0, &inertia);
+    strut_fail_allocation_after(-1);
+    strut_ldl_free(ldl);
+    if (!status) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_true(n < 100);
+  }
+  strut_arena_free(&arena);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(it_solves_and_counts_signs),
+      cmocka_unit_test(its_condition_is_estimated),
+      cmocka_unit_test(an_ill_conditioned_chain_shows),
+      cmocka_unit_test(a_zero_pivot_is_refused_and_a_shift_helps),
+      cmocka_unit_test(refused_memory),
+  };
+  return cmocka_run_group_tests_name("ldl", tests, NULL, NULL);
+}
