@@ -15,21 +15,22 @@ static const strut_key table[] = {
 };
 
 /* First key of each room, and one more that ends the last; a test compares it with the table. */
-static const int first[] = {STRUT_KEY_SCENE_VERSION,       STRUT_KEY_NODE_POSITION,
-                            STRUT_KEY_MEMBER_GROUP,        STRUT_KEY_GROUND_HEIGHT,
-                            STRUT_KEY_FRICTION_LAW,        STRUT_KEY_CONTACT_GROUP,
-                            STRUT_KEY_ACTUATOR_MEMBER,     STRUT_KEY_LOAD_NODE,
-                            STRUT_KEY_SIGNAL_CONSTANT,     STRUT_KEY_SINE_AMPLITUDE,
-                            STRUT_KEY_HALF_SINE_AMPLITUDE, STRUT_KEY_SQUARE_AMPLITUDE,
-                            STRUT_KEY_RAMP_AMPLITUDE,      STRUT_KEY_INITIAL_CONFIGURATION,
-                            STRUT_KEY_SETTLE_SPEED,        STRUT_KEY_SOLVER_INTEGRATOR,
-                            STRUT_KEY_RUN_DURATION,        STRUT_KEY_MEASURE_LAST,
-                            STRUT_KEY_OUTPUT_EVERY,        STRUT_KEY_COUNT};
+static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSITION,
+                            STRUT_KEY_MEMBER_GROUP,          STRUT_KEY_GROUND_HEIGHT,
+                            STRUT_KEY_FRICTION_LAW,          STRUT_KEY_CONTACT_GROUP,
+                            STRUT_KEY_ACTUATOR_MEMBER,       STRUT_KEY_LOAD_NODE,
+                            STRUT_KEY_SIGNAL_CONSTANT,       STRUT_KEY_SINE_AMPLITUDE,
+                            STRUT_KEY_HALF_SINE_AMPLITUDE,   STRUT_KEY_SQUARE_AMPLITUDE,
+                            STRUT_KEY_RAMP_AMPLITUDE,        STRUT_KEY_CONFIGURATION_CONTACTS,
+                            STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,
+                            STRUT_KEY_EQUILIBRIA_SUPPORTS,   STRUT_KEY_SOLVER_INTEGRATOR,
+                            STRUT_KEY_RUN_DURATION,          STRUT_KEY_MEASURE_LAST,
+                            STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_COUNT};
 
-static const char *const room_names[] = {"scene",     "node",     "member",  "ground",  "friction",
-                                         "contact",   "actuator", "load",    "signal",  "sine",
-                                         "half_sine", "square",   "ramp",    "initial", "settle",
-                                         "solver",    "run",      "measure", "output"};
+static const char *const room_names[] = {
+    "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
+    "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
+    "initial", "settle", "equilibria", "solver",    "run",      "measure", "output"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
 _Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");
@@ -132,6 +133,8 @@ static const char *expected_shape(strut_key_type type) {
       return "two nodes such as [n1, n2]";
     case STRUT_TYPE_CONTACT_NODES:
       return "all, or a list of nodes such as [n1, n2]";
+    case STRUT_TYPE_NODE_SETS:
+      return "nodes such as [n1, n2], or a list of such lists";
     case STRUT_TYPE_GROUPS:
       return "a group, or a list of groups";
     case STRUT_TYPE_SIGNAL:

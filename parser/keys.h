@@ -28,8 +28,10 @@ typedef enum strut_room {
   STRUT_ROOM_HALF_SINE,
   STRUT_ROOM_SQUARE,
   STRUT_ROOM_RAMP,
+  STRUT_ROOM_CONFIGURATION,
   STRUT_ROOM_INITIAL,
   STRUT_ROOM_SETTLE,
+  STRUT_ROOM_EQUILIBRIA,
   STRUT_ROOM_SOLVER,
   STRUT_ROOM_RUN,
   STRUT_ROOM_MEASURE,
@@ -48,6 +50,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_NAME,          /* the name of a thing */
   STRUT_TYPE_NODE_PAIR,     /* the names of two nodes */
   STRUT_TYPE_CONTACT_NODES, /* all, or a list of nodes */
+  STRUT_TYPE_NODE_SETS,     /* a list of nodes, or a list of such lists */
   STRUT_TYPE_GROUPS,        /* the name of a group, or a list of them */
   STRUT_TYPE_SIGNAL,        /* a signal or its name */
   STRUT_TYPE_SIGNALS,       /* a list of signals */
@@ -99,7 +102,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 19 }; /* of one room */
+enum { STRUT_MOST_KEYS = 20 }; /* of one room */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a room. */

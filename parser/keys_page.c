@@ -29,8 +29,14 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
     [STRUT_ROOM_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
     [STRUT_ROOM_SQUARE] = "`{square: {...}}`.",
     [STRUT_ROOM_RAMP] = "`{ramp: {...}}`.",
+    [STRUT_ROOM_CONFIGURATION] =
+        "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with "
+        "these keys. `{}` is the drawn shape. Where a node is called `contacts`, two plain values "
+        "behind that key are its position.",
     [STRUT_ROOM_INITIAL] = "`initial: {...}`.",
     [STRUT_ROOM_SETTLE] = "`initial: {settle: {...}}`.",
+    [STRUT_ROOM_EQUILIBRIA] =
+        "`equilibria: {...}`: what `strut equilibria` and `initial: {equilibrium: NAME}` look for.",
     [STRUT_ROOM_SOLVER] = "`solver: {...}`.",
     [STRUT_ROOM_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
     [STRUT_ROOM_MEASURE] = "`run: {measure: {...}}`.",
@@ -68,6 +74,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NAME] = "name",
       [STRUT_TYPE_NODE_PAIR] = "names of two nodes",
       [STRUT_TYPE_CONTACT_NODES] = "`all`, or list of nodes",
+      [STRUT_TYPE_NODE_SETS] = "list of nodes, or list of such lists",
       [STRUT_TYPE_GROUPS] = "group, or list of groups",
       [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
       [STRUT_TYPE_SIGNALS] = "list of signals",

@@ -24,8 +24,9 @@
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, false, 0, "", "the keys of an actuator", "Members whose rest length a signal changes. Several on one member add up.") \
   X(SCENE, LOADS, "loads", THINGS, NONE, ANY, false, 0, "", "the keys of a load", "Forces on nodes.") \
   X(SCENE, SIGNALS, "signals", THINGS, NONE, ANY, false, 0, "", "a signal", "Signals with a name, for use in several places.") \
-  X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, false, 0, "", "`{NODE: [x, y], ...}`", "Named sets of positions to start from. A node that is not listed stays as drawn.") \
+  X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, false, 0, "", "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", "Shapes with a name: to start from, and to call equilibria by. A node that is not listed stays as drawn.") \
   X(SCENE, INITIAL, "initial", MAP, NONE, ANY, false, 0, "", "", "The state at t = 0. Without it: at rest, as drawn.") \
+  X(SCENE, EQUILIBRIA, "equilibria", MAP, NONE, ANY, false, 0, "", "", "How equilibria are looked for.") \
   X(SCENE, SOLVER, "solver", MAP, NONE, ANY, false, 0, "", "", "How to integrate. A run needs it.") \
   X(SCENE, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "How long, and what to measure. A run needs it.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "What to record.") \
@@ -89,7 +90,10 @@
   X(RAMP, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, true, 0, "", "", "Value at stop and after.") \
   X(RAMP, START, "start", NUMBER, TIME, ANY, false, 0, "0", "", "When it leaves 0.") \
   X(RAMP, STOP, "stop", NUMBER, TIME, ANY, true, 0, "", "", "When it reaches amplitude.") \
+  X(CONFIGURATION, CONTACTS, "contacts", NODE_SETS, NONE, ANY, false, 0, "", "", "The nodes it rests on; several lists are alternatives.") \
+  X(CONFIGURATION, SHAPE, "shape", THINGS, NONE, ANY, false, 0, "", "`[x, y]`", "Positions near it; a node that is not listed is as drawn. Without `shape` the contacts alone tell it.") \
   X(INITIAL, CONFIGURATION, "configuration", NAME, NONE, ANY, false, 0, "", "", "A configuration, or a text parameter that names one.") \
+  X(INITIAL, EQUILIBRIUM, "equilibrium", NAME, NONE, ANY, false, 0, "", "", "A configuration, or a text parameter that names one, at whose equilibrium the run begins; instead of `configuration`, `positions` and `settle`.") \
   X(INITIAL, POSITIONS, "positions", THINGS, NONE, ANY, false, 0, "", "`[x, y]`", "Positions of single nodes; they win over the configuration.") \
   X(INITIAL, VELOCITIES, "velocities", THINGS, NONE, ANY, false, 0, "", "`[vx, vy]`", "Velocities of single nodes.") \
   X(INITIAL, VELOCITY, "velocity", PAIR, VELOCITY, ANY, false, 0, "[0, 0]", "", "Velocity of every other node, where it is free.") \
@@ -98,6 +102,9 @@
   X(SETTLE, ACCELERATION, "acceleration", NUMBER, ACCELERATION, ABOVE_ZERO, false, 0, "1e-8", "", "and accelerates less than this.") \
   X(SETTLE, LIMIT, "limit", NUMBER, TIME, ABOVE_ZERO, false, 0, "100", "", "Give up after so much simulated time.") \
   X(SETTLE, FRICTION, "friction", WORD, NONE, ANY, false, 0, "none", "none|kept", "Without friction, as in the paper; `kept` lets it hold, as a body on a slope needs.") \
+  X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, false, 0, "every pair that can carry", "", "Contact nodes to hold in turn: of each list the first is pinned, the others roll on the ground.") \
+  X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, NOT_NEGATIVE, false, 0, "until little can be missing", "", "Random starts for each list of supports.") \
+  X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, NOT_NEGATIVE, false, 0, "1", "", "Of the random starts; the same seed gives the same answer.") \
   X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4", "The method.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step. A run needs it.") \
   X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, false, 3, "", "", "Length of the run.") \

@@ -80,9 +80,11 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
                                    [STRUT_ON_MEMBER] = reader->member_source,
                                    [STRUT_ON_CONTACT] = reader->contact_source,
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
-                                   [STRUT_ON_LOAD] = reader->load_source};
+                                   [STRUT_ON_LOAD] = reader->load_source,
+                                   [STRUT_ON_CONFIGURATION] = reader->configuration_source};
   const strut_source *source = &sources[finding->subject][finding->index];
   if (source->broken) return false;
+  if (finding->subject == STRUT_ON_CONFIGURATION && reader->ground.broken) return false;
   if (finding->subject == STRUT_ON_NODE) return node_place(reader, finding, place);
   if (finding->subject == STRUT_ON_CONTACT) return contact_place(reader, finding, place);
   return thing_place(reader, source, finding->key, place);
@@ -104,6 +106,10 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_INITIAL:
       fields = &reader->settle, section = STRUT_KEY_SCENE_INITIAL;
       broken = fields->broken;
+      break;
+    case STRUT_ON_EQUILIBRIA:
+      fields = &reader->search, section = STRUT_KEY_SCENE_EQUILIBRIA;
+      broken = fields->broken || reader->ground.broken;
       break;
     case STRUT_ON_SOLVER:
       fields = &reader->solver, section = STRUT_KEY_SCENE_SOLVER;
@@ -133,7 +139,7 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     strut_place place;
     bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
                 finding->subject == STRUT_ON_CONTACT || finding->subject == STRUT_ON_ACTUATOR ||
-                finding->subject == STRUT_ON_LOAD;
+                finding->subject == STRUT_ON_LOAD || finding->subject == STRUT_ON_CONFIGURATION;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Configurations and the initial state; solver, run and output. See reader.h. */
+/* The initial state; solver, run and output. See reader.h. */
 #include <string.h>
 
 #include "parser/reader.h"
@@ -14,59 +14,6 @@ static void take_velocity(strut_reader *reader, int32_t node, const double pair[
                           const strut_tree *value) {
   memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
   if (reader->velocity_source) reader->velocity_source[node] = value;
-}
-
-static const char *configuration_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->configuration_count ? reader->configurations[i].key->text : NULL;
-}
-
-/* Which configuration the scene starts from; -1: none. */
-static int32_t find_configuration(strut_reader *reader) {
-  const strut_slot *slot = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_CONFIGURATION);
-  strut_owner owner = {"the initial state", NULL};
-  if (slot->state != STRUT_GIVEN) return -1;
-  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
-  strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
-  int32_t direct = strut_name_map_find(&reader->configuration_names, slot->value->text);
-  if (!p || !p->text)
-    return strut_read_reference(reader, slot->value, "configuration", owner, "configuration",
-                                &reader->configuration_names, configuration_name,
-                                reader->configuration_count);
-  if (direct >= 0) {
-    strut_say(reader, slot->value->place,
-              "'%s' is both a configuration and a text parameter; rename one of them", p->name);
-    return -1;
-  }
-  p->used = true;
-  const char *text = p->override ? p->override : p->value->text;
-  int32_t index = strut_name_map_find(&reader->configuration_names, text);
-  strut_place place = p->override ? p->key->place : p->value->place;
-  if (index < 0)
-    strut_say(reader, place, "unknown configuration '%s' in parameter '%s'%s",
-              strut_shown(reader, text), p->name,
-              strut_hint(reader, text, configuration_name, reader, reader->configuration_count));
-  return index;
-}
-
-static void read_configurations(strut_reader *reader) {
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_CONFIGURATIONS);
-  if (!map) return;
-  reader->configurations =
-      strut_take(reader, &reader->scratch, map->count, sizeof *reader->configurations);
-  for (const strut_tree *key = map->first; key && reader->configurations; key = key->next->next) {
-    strut_owner owner = {"configuration", key->text};
-    reader->configurations[reader->configuration_count] = (strut_source){key, key->next, false};
-    strut_add_name(reader, &reader->configuration_names, key->text, reader->configuration_count++);
-    strut_read_name(reader, key, "configuration");
-    if (key->next->kind == STRUT_TREE_MAP) {
-      strut_read_node_pairs(reader, key->next, owner, STRUT_DIM_LENGTH, NULL);
-      continue;
-    }
-    strut_say(reader, key->next->place,
-              "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
-              strut_owner_text(reader, owner), strut_found(reader, key->next));
-  }
 }
 
 static void read_settle(strut_reader *reader, const strut_slot *slot) {
@@ -97,10 +44,9 @@ static void read_state(strut_reader *reader, int32_t configuration) {
   const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
   const strut_slot *velocities = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
   const strut_slot *velocity = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITY);
-  bool told = reader->failed; /* the configuration has been read once already */
-  if (configuration >= 0 && !told)
-    strut_read_node_pairs(reader, reader->configurations[configuration].value,
-                          (strut_owner){"the configuration", NULL}, STRUT_DIM_LENGTH, take_start);
+  for (size_t i = 0; configuration >= 0 && i < scene->node_count; i++)
+    memcpy(scene->nodes[i].start, scene->configurations[configuration].position[i],
+           sizeof scene->nodes[i].start);
   if (positions->state == STRUT_GIVEN)
     strut_read_node_pairs(reader, positions->value,
                           (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
@@ -117,12 +63,29 @@ static void read_state(strut_reader *reader, int32_t configuration) {
                         STRUT_DIM_VELOCITY, take_velocity);
 }
 
+/* An equilibrium says where every node is, and that it rests. */
+static void read_equilibrium(strut_reader *reader) {
+  static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
+                               STRUT_KEY_INITIAL_SETTLE};
+  const strut_slot *equilibrium = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  int32_t index = strut_find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  for (size_t i = 0; equilibrium->key && i < sizeof rivals / sizeof rivals[0]; i++) {
+    const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
+    if (!rival->key) continue;
+    strut_say(reader, rival->key->place,
+              "the initial state gives both 'equilibrium' and '%s', expected one of them",
+              rival->key->text);
+    return;
+  }
+  reader->scene->start_equilibrium = index;
+}
+
 void strut_read_initial(strut_reader *reader) {
-  read_configurations(reader);
   if (!strut_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
                      &reader->initial))
     return;
-  read_state(reader, find_configuration(reader));
+  read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
+  read_equilibrium(reader);
   const strut_slot *settle = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE);
   if (settle->state == STRUT_GIVEN) read_settle(reader, settle);
 }

@@ -37,6 +37,8 @@ static void read_sections(strut_reader *reader, const strut_override *overrides,
   strut_read_signals(reader);
   strut_read_drives(reader);
   strut_read_ground(reader);
+  strut_read_configurations(reader);
+  strut_read_search(reader);
   strut_read_initial(reader);
   strut_read_experiment(reader);
   strut_keep_signals(reader);
@@ -50,6 +52,7 @@ static void prepare(strut_reader *reader) {
   reader->ground.room = STRUT_ROOM_GROUND;
   reader->initial.room = STRUT_ROOM_INITIAL;
   reader->settle.room = STRUT_ROOM_SETTLE;
+  reader->search.room = STRUT_ROOM_EQUILIBRIA;
   reader->solver.room = STRUT_ROOM_SOLVER;
   reader->run.room = STRUT_ROOM_RUN;
   reader->measure.room = STRUT_ROOM_MEASURE;

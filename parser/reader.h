@@ -116,9 +116,8 @@ typedef struct strut_reader {
   strut_signal *signals; /* strut_allocate; moves to the scene at the end */
   strut_signal_state *signal_state;
   size_t signal_count;
-  strut_source *configurations;
-  size_t configuration_count;
-  strut_fields ground, initial, settle, solver, run, measure, output;
+  strut_source *configuration_source;
+  strut_fields ground, initial, settle, search, solver, run, measure, output;
   const strut_tree *asking; /* the value whose expression is being evaluated */
   const char *asking_set;   /* or the parameter whose --set is */
   size_t suggestions;       /* names compared so far, to bound the effort */
@@ -236,6 +235,8 @@ void strut_read_signals(strut_reader *reader);
 void strut_read_drives(strut_reader *reader);
 /** Moves the signals into the scene. */
 void strut_keep_signals(strut_reader *reader);
+void strut_read_configurations(strut_reader *reader);
+void strut_read_search(strut_reader *reader);
 void strut_read_initial(strut_reader *reader);
 void strut_read_experiment(strut_reader *reader);
 
@@ -245,6 +246,11 @@ void strut_read_experiment(strut_reader *reader);
  */
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected);
+/**
+ * The configuration that a key of the initial state names, itself or through a text parameter; -1
+ * where the key is absent or was reported.
+ */
+int32_t strut_find_configuration(strut_reader *reader, int key);
 /** Reads `{NODE: [x, y], ...}` and calls back for each node that could be read. */
 typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double pair[2],
                               const strut_tree *value);

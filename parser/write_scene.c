@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The structure and its state as YAML, and the order of the whole file. See write_scene.h. */
+/* The structure as YAML, and the order of the whole file. See write_scene.h. */
 #include "parser/write_scene.h"
 
 #include <math.h>
@@ -186,43 +186,6 @@ static void put_ground(strut_writer *writer) {
     begun = put_contact(writer, &all[i], shared, begun);
 }
 
-static void put_initial(strut_writer *writer) {
-  static const double rest[2] = {0.0, 0.0};
-  const strut_scene *scene = writer->scene;
-  bool any = false, positions = false, velocities = false;
-  for (size_t i = 0; i < scene->node_count; i++) {
-    const strut_node *node = &scene->nodes[i];
-    if (same(node->start, node->position)) continue;
-    if (!positions) strut_put(writer, "initial:\n  positions:\n");
-    any = positions = true;
-    strut_put(writer, "    ");
-    strut_put_name(writer, node->name);
-    strut_put(writer, ": ");
-    strut_put_pair(writer, node->start);
-    strut_put(writer, "\n");
-  }
-  for (size_t i = 0; i < scene->node_count; i++) {
-    const strut_node *node = &scene->nodes[i];
-    if (same(node->velocity, rest)) continue;
-    if (!any) strut_put(writer, "initial:\n");
-    if (!velocities) strut_put(writer, "  velocities:\n");
-    any = velocities = true;
-    strut_put(writer, "    ");
-    strut_put_name(writer, node->name);
-    strut_put(writer, ": ");
-    strut_put_pair(writer, node->velocity);
-    strut_put(writer, "\n");
-  }
-  if (!scene->settle.wanted) return;
-  bool first = true;
-  strut_put(writer, any ? "  settle: {" : "initial:\n  settle: {");
-  strut_put_value(writer, &first, "speed", scene->settle.speed);
-  strut_put_value(writer, &first, "acceleration", scene->settle.acceleration);
-  strut_put_value(writer, &first, "limit", scene->settle.limit);
-  if (scene->settle.friction) strut_put(writer, ", friction: kept");
-  strut_put(writer, "}\n");
-}
-
 /* Is the signal whose periods count one that nothing names? Then it gets a name of its own. */
 static int32_t nameless_period(const strut_scene *scene) {
   const strut_experiment *e = &scene->experiment;
@@ -242,7 +205,7 @@ char *strut_scene_write(const strut_scene *scene) {
   put_members(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
-  put_initial(&writer);
+  strut_put_shapes(&writer);
   strut_put_experiment(&writer);
   strut_c_locale_leave(locale);
   if (!writer.failed) return writer.text;

@@ -73,7 +73,8 @@ static void check_name(strut_checker *checker, strut_name_map *map, strut_subjec
 
 void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
-  strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0};
+  strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
+                 configurations = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
@@ -85,11 +86,15 @@ void strut_check_names(strut_checker *checker) {
   for (size_t i = 0; i < s->signal_count; i++)
     if (s->signals[i].name)
       check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
+  for (size_t i = 0; i < s->configuration_count; i++)
+    check_name(checker, &configurations, STRUT_ON_CONFIGURATION, "configuration",
+               s->configurations[i].name, i);
   strut_name_map_free(&nodes);
   strut_name_map_free(&members);
   strut_name_map_free(&actuators);
   strut_name_map_free(&loads);
   strut_name_map_free(&signals);
+  strut_name_map_free(&configurations);
 }
 
 void strut_check_nodes(strut_checker *checker) {
@@ -270,8 +275,9 @@ void strut_check_use(strut_checker *checker) {
 strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
-      strut_check_names,   strut_check_nodes,  strut_check_members, strut_check_use,
-      strut_check_signals, strut_check_ground, strut_check_drives,  strut_check_experiment};
+      strut_check_names,  strut_check_nodes,   strut_check_members,
+      strut_check_use,    strut_check_signals, strut_check_ground,
+      strut_check_drives, strut_check_shapes,  strut_check_experiment};
   size_t before = findings->count;
   strut_checker checker = {.scene = scene, .purpose = purpose, .findings = findings};
   checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);

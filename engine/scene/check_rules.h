@@ -38,6 +38,7 @@ void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);
 void strut_check_signals(strut_checker *checker);
 void strut_check_drives(strut_checker *checker);
+void strut_check_shapes(strut_checker *checker);
 void strut_check_experiment(strut_checker *checker);
 
 #endif

@@ -137,12 +137,16 @@ typedef struct strut_configuration {
   strut_node_set *sets;  /* (set_count) */
 } strut_configuration;
 
+enum { STRUT_MOST_STARTS = 1000000000 };
+#define STRUT_MOST_SEED 9007199254740992.0 /* 2^53: every seed is a number of the language */
+
 /** How all equilibria are looked for. */
 typedef struct strut_search {
   size_t support_count;     /* sets of contact nodes to hold in turn; 0: every one that is needed */
   strut_node_set *supports; /* (support_count) of each set the first node is pinned, others roll */
-  int64_t starts;           /* random starts for each set; 0: until little can be missing */
-  uint64_t seed;
+  int64_t starts;           /* random starts for each set, up to STRUT_MOST_STARTS; 0: until
+                               little can be missing */
+  uint64_t seed;            /* up to STRUT_MOST_SEED */
 } strut_search;
 
 /** What to integrate, for how long, and what to measure. */

@@ -19,7 +19,7 @@ for compiler in gcc clang; do
     # shellcheck disable=SC2086
     "$compiler" -std=c17 -D_POSIX_C_SOURCE=200809L -DSTRUT_VERSION='"golden"' -ffp-contract=off \
       -fno-math-errno -Wno-psabi $level -I. $includes $sources -o "$scratch/golden" $libraries -lm
-    found=$("$scratch/golden" models/crawler/crawler.yaml 20000)
+    found=$("$scratch/golden" tests/golden/crawler.yaml 20000)
     echo "$compiler $level: $found"
     [ "$found" = "$expected" ] || failed=1
   done

@@ -99,9 +99,7 @@ static void mutate(mutation *m, const strut_tree *value) {
   if (value->kind != STRUT_TREE_MAP) return;
   for (const strut_tree *key = value->first; key; key = key->next->next) {
     mutate_key(m, value, key);
-    /* Configurations that nobody starts from are a store of alternatives: they are checked, but
-       leave no trace in the scene. */
-    if (strcmp(key->text, "configurations") != 0) mutate(m, key->next);
+    mutate(m, key->next);
   }
 }
 

@@ -105,6 +105,30 @@ static void same_drives(const strut_scene *a, const strut_scene *b) {
   }
 }
 
+static void same_sets(const strut_node_set *a, const strut_node_set *b, size_t count) {
+  for (size_t i = 0; i < count; i++, a++, b++) {
+    SAME(count);
+    same_bits("nodes of a set", a->node, b->node, a->count * sizeof *a->node);
+  }
+}
+
+static void same_shapes(const strut_scene *a, const strut_scene *b) {
+  SAME(configuration_count);
+  for (size_t i = 0; i < a->configuration_count; i++) {
+    const strut_configuration *c = &a->configurations[i], *d = &b->configurations[i];
+    assert_string_equal(c->name, d->name);
+    SAME(configurations[i].shaped);
+    SAME(configurations[i].set_count);
+    same_bits("positions", c->position, d->position, a->node_count * sizeof *c->position);
+    same_sets(c->sets, d->sets, c->set_count);
+  }
+  SAME(start_equilibrium);
+  SAME(search.starts);
+  SAME(search.seed);
+  SAME(search.support_count);
+  same_sets(a->search.supports, b->search.supports, a->search.support_count);
+}
+
 static void same_scene(const strut_scene *a, const strut_scene *b) {
   assert_string_equal(a->name, b->name);
   assert_string_equal(a->description, b->description);
@@ -116,6 +140,7 @@ static void same_scene(const strut_scene *a, const strut_scene *b) {
   same_ground(a, b);
   same_signals(a, b);
   same_drives(a, b);
+  same_shapes(a, b);
   SAME(settle.wanted);
   if (a->settle.wanted) {
     SAME(settle.speed);

@@ -309,6 +309,62 @@ static void drives(void **state) {
   expect(&s, STRUT_ON_LOAD, 0, "signal", "does not exist");
 }
 
+static void shapes(void **state) {
+  (void)state;
+  sample s;
+  int32_t nodes[2] = {1, 2};
+  double position[3][2] = {{0, 0}, {1, 0}, {2, 0}};
+  strut_node_set set = {2, nodes};
+  strut_configuration configuration = {"I", true, position, 1, &set};
+  strut_configuration two[2] = {configuration, configuration};
+  fill(&s);
+  for (int spoilt = 0; spoilt < 12; spoilt++) {
+    s.scene.configurations = two;
+    s.scene.configuration_count = 1;
+    two[0] = configuration;
+    set = (strut_node_set){2, nodes};
+    nodes[0] = 1, nodes[1] = 2, position[2][1] = 0;
+    if (spoilt == 0) {
+      s.scene.configuration_count = 2;
+      expect(&s, STRUT_ON_CONFIGURATION, 1, NULL, "two configurations 'I'");
+    } else if (spoilt == 1) {
+      nodes[1] = 0;
+      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "'nodes' of the ground lacks it");
+    } else if (spoilt == 2) {
+      nodes[1] = 3;
+      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "does not exist");
+    } else if (spoilt == 3) {
+      nodes[1] = 1;
+      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "twice");
+    } else if (spoilt == 4) {
+      set.count = 0;
+      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "empty");
+    } else if (spoilt == 5) {
+      position[2][1] = (double)NAN;
+      expect(&s, STRUT_ON_CONFIGURATION, 0, NULL, "not finite");
+    } else if (spoilt == 6) {
+      s.scene.search.supports = &set, s.scene.search.support_count = 1;
+      s.scene.configuration_count = 0, nodes[0] = -1;
+      expect(&s, STRUT_ON_EQUILIBRIA, 0, "supports", "does not exist");
+    } else if (spoilt == 7) {
+      s.scene.search.starts = -1;
+      expect(&s, STRUT_ON_EQUILIBRIA, 0, "starts", "from 0");
+    } else if (spoilt == 8) {
+      s.scene.search.seed = UINT64_MAX;
+      expect(&s, STRUT_ON_EQUILIBRIA, 0, "seed", "at most");
+    } else if (spoilt == 9) {
+      s.scene.start_equilibrium = 1;
+      expect(&s, STRUT_ON_INITIAL, 0, NULL, "does not exist");
+    } else if (spoilt == 10) {
+      s.scene.start_equilibrium = 0;
+      expect(&s, STRUT_ON_INITIAL, 0, NULL, "nothing to settle");
+    } else {
+      s.scene.ground.present = false, s.scene.contact_count = 0;
+      expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "need a ground");
+    }
+  }
+}
+
 static void experiment(void **state) {
   (void)state;
   sample s;
@@ -396,6 +452,7 @@ int main(void) {
       cmocka_unit_test(signals),
       cmocka_unit_test(sums_cannot_explode),
       cmocka_unit_test(drives),
+      cmocka_unit_test(shapes),
       cmocka_unit_test(experiment),
       cmocka_unit_test(statics_need_neither_mass_nor_run),
       cmocka_unit_test(no_memory),

@@ -111,6 +111,44 @@ static void overrides(void **state) {
   assert_int_equal(read_text(&s, text, &wrong, 1), STRUT_BAD_SCENE); /* where it is used */
 }
 
+static void configurations(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {start: \"I\"}\n"
+      "nodes: {a: [0, 0], b: [1, 0], c: [1, 1], shape: [2, 2]}\n"
+      "groups: {rod: {kind: bar, stiffness: 1, mass: 1}}\n"
+      "members: {ab: {group: rod, nodes: [a, b]}, cs: {group: rod, nodes: [c, shape]}}\n"
+      "ground: {stiffness: 1, nodes: [a, b]}\n"
+      "configurations:\n"
+      "  I: {contacts: [b, a], shape: {c: [0, 3]}}\n"
+      "  II: {contacts: [[a], [b, a]]}\n"
+      "  III: {}\n"
+      "  IV: {shape: [5, 6]}\n"
+      "equilibria: {supports: [[b, a]], starts: 20*5, seed: 12}\n"
+      "initial: {equilibrium: start, velocity: [0, 1]}\n" RUN;
+  const strut_override set = {"start", "II"};
+  strut_scene s;
+  read_good(&s, text, NULL, 0);
+  assert_int_equal(s.configuration_count, 4);
+  const strut_configuration *c = s.configurations;
+  assert_true(c[0].shaped && c[0].set_count == 1 && c[0].sets[0].count == 2);
+  assert_true(c[0].sets[0].node[0] == 1 && c[0].sets[0].node[1] == 0);
+  assert_true(c[0].position[2][0] == 0 && c[0].position[2][1] == 3 && c[0].position[1][0] == 1);
+  assert_true(!c[1].shaped && c[1].set_count == 2 && c[1].sets[1].node[1] == 0);
+  assert_true(c[1].position[3][0] == 2);
+  assert_true(c[2].shaped && c[2].set_count == 0);
+  assert_true(c[3].shaped && c[3].position[3][0] == 5 && c[3].position[3][1] == 6);
+  assert_true(s.search.support_count == 1 && s.search.supports[0].node[0] == 1);
+  assert_true(s.search.starts == 100 && s.search.seed == 12);
+  assert_true(s.start_equilibrium == 0 && s.nodes[2].velocity[1] == 1);
+  assert_true(s.nodes[2].start[0] == 1); /* as drawn, until it is resolved */
+  strut_scene_free(&s);
+  read_good(&s, text, &set, 1);
+  assert_int_equal(s.start_equilibrium, 1);
+  strut_scene_free(&s);
+}
+
 static void groups_give_defaults(void **state) {
   (void)state;
   static const char text[] =
@@ -351,6 +389,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_crawler_page),
       cmocka_unit_test(overrides),
+      cmocka_unit_test(configurations),
       cmocka_unit_test(groups_give_defaults),
       cmocka_unit_test(friction_comes_in_layers),
       cmocka_unit_test(signals_and_their_names),
