@@ -85,6 +85,10 @@ static strut_status take_model(const strut_command *command, const char *text,
 }
 
 static strut_status take(const strut_command *command, int id, strut_arguments *to) {
+  if (id >= (int)STRUT_OPTION_TEXTS && id < (int)STRUT_OPTION_TEXTS_END) {
+    to->texts[id - (int)STRUT_OPTION_TEXTS] = optarg;
+    return STRUT_OK;
+  }
   switch (id) {
     case POSITIONAL:
       return take_model(command, optarg, to);
@@ -170,6 +174,10 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
     status = wrong(command);
   }
   return status;
+}
+
+const char *strut_option_text(const strut_arguments *arguments, strut_option_id id) {
+  return arguments->texts[(int)id - (int)STRUT_OPTION_TEXTS];
 }
 
 void strut_arguments_free(strut_arguments *arguments) {

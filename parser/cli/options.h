@@ -23,7 +23,22 @@ typedef enum strut_option_id {
   STRUT_OPTION_QUIET = 'q',
   STRUT_OPTION_SET = 256, /* no letters from here on */
   STRUT_OPTION_JSON,
-  STRUT_OPTION_FORCE
+  STRUT_OPTION_FORCE,
+  /* kept as text: strut_option_text, and option_values.h for numbers */
+  STRUT_OPTION_TEXTS,
+  STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
+  STRUT_OPTION_COUNT,
+  STRUT_OPTION_SUPPORTS,
+  STRUT_OPTION_STARTS,
+  STRUT_OPTION_SEED,
+  STRUT_OPTION_MATRICES,
+  STRUT_OPTION_LOAD,
+  STRUT_OPTION_UNTIL,
+  STRUT_OPTION_STEPS,
+  STRUT_OPTION_FROM,
+  STRUT_OPTION_LEAST_TENSION,
+  STRUT_OPTION_OBJECTIVE,
+  STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
 /** One row of a command's table; the last has the id STRUT_OPTION_END. */
@@ -39,6 +54,7 @@ typedef struct strut_arguments {
   const char *model; /* NULL where the command takes none or none is given */
   const char *output;
   bool help, json, quiet, force;
+  const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides; /* (override_count) */
   size_t override_count;
 } strut_arguments;
@@ -58,6 +74,9 @@ typedef struct strut_command {
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
                                   strut_arguments *arguments);
 void strut_arguments_free(strut_arguments *arguments);
+
+/** What was given for an option that is kept as text, or NULL. */
+const char *strut_option_text(const strut_arguments *arguments, strut_option_id id);
 
 /** The help of a command on stdout. */
 void strut_command_help(const strut_command *command);

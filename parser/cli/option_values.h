@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Options that are numbers, with units where they have a dimension; and options that are words.
+ */
+#ifndef STRUT_PARSER_CLI_OPTION_VALUES_H
+#define STRUT_PARSER_CLI_OPTION_VALUES_H
+
+#include <stdint.h>
+
+#include "parser/cli/options.h"
+#include "parser/units.h"
+
+/**
+ * Reads an option such as --least-tension "5 N" into *value [SI], which keeps what it holds where the
+ * option was not given. STRUT_USAGE with the reason on stderr.
+ */
+strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
+                                 strut_option_id id, strut_dimension dimension, double *value);
+/** The same for whole numbers from low to high. */
+strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
+                                  strut_option_id id, int64_t low, int64_t high, int64_t *value);
+/** The same for one of some words, the last followed by NULL: the word's index into *value. */
+strut_status strut_option_word(const strut_command *command, const strut_arguments *arguments,
+                               strut_option_id id, const char *const *words, int *value);
+
+#endif
