@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What filters of tests/gallery/*.answers may use besides jq's own. See run_gallery.sh.
+
+# Are two values the same, numbers within the tolerance? Lists and mappings entry by entry.
+def agrees($got; $want; $tolerance):
+  if ($got | type) != ($want | type) then false
+  elif ($got | type) == "number" then (($got - $want) | fabs) <= $tolerance
+  elif ($got | type) == "array" then
+    ($got | length) == ($want | length) and
+    all(range($got | length); agrees($got[.]; $want[.]; $tolerance))
+  elif ($got | type) == "object" then
+    ($got | keys) == ($want | keys) and
+    all($want | keys[]; . as $key | agrees($got[$key]; $want[$key]; $tolerance))
+  else $got == $want end;
+
+# Of strut equilibria.
+def labelled($sort): [.equilibria[] | select(.label == $sort)];
+def named($name): .equilibria[] | select(.name == $name);
+# How many of a label, and their energies in order.
+def stable: labelled("stable") | length;
+def saddles: labelled("saddle") | length;
+def energies($sort): labelled($sort) | map(.energy) | sort;
+# The equilibrium whose energy is nearest.
+def at_energy($energy): .equilibria | min_by((.energy - $energy) | fabs);
+# The equilibrium of a label whose node is nearest to a place.
+def near($sort; $node; $x; $y):
+  labelled($sort) | min_by((.nodes[$node][0] - $x) * (.nodes[$node][0] - $x) +
+                            (.nodes[$node][1] - $y) * (.nodes[$node][1] - $y));
+
+# Of a mapping from nodes to places: how far apart two are.
+def distance($a; $b):
+  (.[$a][0] - .[$b][0]) as $x | (.[$a][1] - .[$b][1]) as $y | ($x * $x + $y * $y | sqrt);
+
+# Of strut rigidity: rank, s and f. A state of self-stress as multiples of one member's force.
+def counts: [.rank, .self_stress.count, .mechanisms.count];
+def stress($unit): .self_stress.states[0].forces | .[$unit] as $one | map_values(. / $one);
+def densities($unit): .self_stress.states[0].force_densities | .[$unit] as $one
+  | map_values(. / $one);
+
+# Of strut modes: angular frequencies [rad/s] and frequencies [Hz], in order; n of them.
+def omegas: [.modes[].angular_frequency];
+def hertz: [.modes[].frequency];
+
+# Of strut path: the first event of a kind; the place of a node on the path at a factor that it has.
+def event($kind): [.events[] | select(.kind == $kind)][0];
+def at_factor($factor): [.points[] | select(((.factor - $factor) | fabs) < 1e-12)][0];
+
+# For expected numbers: root(2) instead of (2 | sqrt), since | divides the fields of a line.
+def root(f): f | sqrt;

@@ -1,0 +1,161 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Every known answer about the structures of models/gallery, asked of the program with --json.
+#
+#   sh tests/gallery/run_gallery.sh ROOT STRUT [NAME...]     NAMEs: only these models
+#
+# tests/gallery/NAME.answers belongs to models/gallery/NAME.yaml. Its lines:
+#
+#   # a comment
+#   COMMAND [OPTIONS...] [%VARIANT] | FILTER | EXPECTED | TOLERANCE
+#   %VARIANT = SED-SCRIPT
+#
+# The first runs `strut COMMAND MODEL OPTIONS... --json`, puts its output through the jq filter (which
+# may contain |, may use tests/gallery/gallery.jq, and gives one value) and compares. TOLERANCE is
+# absolute; EXPECTED then is a number, a list or a mapping of numbers, as jq writes or computes them
+# (without any |):
+#   0.995454545, (95 + 1000)/1100, root(2*3), [1, 2.5, 1e-3], {n1: [0, 1]}
+# With the TOLERANCE `=` the filter's value, as a text, must be EXPECTED to the letter:
+#   rigidity | .class | 1 | =        equilibria | stable | 1 | =       equilibria | .remark | null | =
+# A command that fails gives {"status": its exit status, "message": what it said}:
+#   modes --set load=20 | .status | 3 | =
+# The second line makes a variant of the scene by sed, for what a parameter cannot change:
+#   %free = s/fixed: [a-z]*/mass: 1/
+# A line that ends with a backslash goes on in the next. A command that several lines ask is run once.
+set -eu
+root=$(cd "$1" && pwd)
+strut=$2
+shift 2
+here=$root/tests/gallery
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failures=0
+asked=0
+
+# compare FILTER EXPECTED TOLERANCE ANSWER: prints what is wrong, nothing if all is right.
+compare() {
+  if [ "$3" = "=" ]; then
+    got=$(jq -r "include \"gallery\"; ($1) | tostring" -L "$here" "$4" 2>&1) || true
+    [ "$got" = "$2" ] || echo "got $got, expected $2"
+    return
+  fi
+  jq -r -L "$here" "include \"gallery\"; ($1) as \$got | ($2) as \$want | ($3) as \$tolerance
+    | if agrees(\$got; \$want; \$tolerance) then empty
+      else \"got \(\$got | tojson), expected \(\$want | tojson) within \(\$tolerance)\" end" \
+    "$4" 2>&1 || true
+}
+
+# ask MODEL COMMAND: runs it unless it has been run, and sets `answer` to the file of its output.
+ask() {
+  answer=$scratch/$(printf '%s %s' "$1" "$2" | cksum | tr ' ' -)
+  [ ! -e "$answer" ] || return 0
+  model=$1
+  # shellcheck disable=SC2086
+  set -- $2
+  command=$1
+  shift
+  options=
+  for word; do
+    case $word in
+      %*) [ -e "$scratch/${word#%}.sed" ] || { echo "no variant $word"; return 1; }
+          sed -f "$scratch/${word#%}.sed" "$model" >"$scratch/variant.yaml"
+          model=$scratch/variant.yaml ;;
+      *) options="$options $word" ;;
+    esac
+  done
+  status=0
+  # shellcheck disable=SC2086
+  "$strut" "$command" "$model" $options --json >"$answer" 2>"$scratch/message" || status=$?
+  [ "$status" = 0 ] || jq -n --arg message "$(tr '\n' ' ' <"$scratch/message")" --argjson status "$status" \
+    '{$status, $message}' >"$answer"
+}
+
+trim() { printf '%s' "$1" | sed 's/^[ \t]*//; s/[ \t]*$//'; }
+
+# answers FILE MODEL: all lines of a file; one line of output for each that is wrong.
+answers() {
+  rm -f "$scratch"/*.sed
+  awk '{ if (!start) start = NR }
+       /\\$/ { sub(/\\$/, ""); held = held $0; next }
+       { print start ": " held $0; held = ""; start = 0 }' "$1" >"$scratch/lines"
+  while IFS= read -r line; do
+    number=${line%%: *}
+    line=${line#*: }
+    case $line in
+      '' | '#'*) continue ;;
+      %*) printf '%s\n' "$(trim "${line#*=}")" >"$scratch/$(trim "$(echo "${line%%=*}" | tr -d %)").sed"
+          continue ;;
+      *'|'*'|'*'|'*) ;;
+      *) echo "${1##*/}:$number: not COMMAND | FILTER | EXPECTED | TOLERANCE: $line"; continue ;;
+    esac
+    command=$(trim "${line%%|*}")
+    rest=${line#*|}
+    tolerance=$(trim "${rest##*|}")
+    rest=${rest%|*}
+    expected=$(trim "${rest##*|}")
+    filter=$(trim "${rest%|*}")
+    ask "$2" "$command" || { echo "${1##*/}:$number: $command: cannot be asked"; continue; }
+    wrong=$(compare "$filter" "$expected" "$tolerance" "$answer" | tr '\n' ' ')
+    [ -z "$wrong" ] || echo "${1##*/}:$number: $command: $filter: $wrong" \
+      "$(jq -r '.message? // empty' "$answer")"
+    echo x >>"$scratch/asked"
+  done <"$scratch/lines"
+}
+
+# Self-test: right answers pass, wrong ones are noticed.
+: >"$scratch/asked"
+cat >"$scratch/self.yaml" <<'YAML'
+strut: 1
+name: itself
+parameters: {long: 3 m}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [long, 4 m], mass: 1}}
+members: {m: {kind: bar, nodes: [a, b], stiffness: 1 N/m}}
+YAML
+cat >"$scratch/good.answers" <<'TEXT'
+# right, all of them
+%wide = s/4 m/40 m/
+check | .name | itself | =
+check | .members.m.drawn_length | 5 | 1e-12
+check | .members[] | [.drawn_length, .stiffness] | [root(9 + 16), 1] | 1e-12
+check --set long=30 %wide | .members.m.drawn_length | 50 | \
+  1e-12
+check --set long=2kg | .status | 2 | =
+TEXT
+cat >"$scratch/bad.answers" <<'TEXT'
+check | .name | itsel | =
+check | .members.m.drawn_length | 5.1 | 1e-2
+check | .members.m.drawn_length | [5] | 1e-2
+check | .members.m.no_length | 5 | 1e-2
+check | .members[] | [.drawn_length] | [5, 1] | 1e-2
+check --set long=2kg | .members.m.drawn_length | 5 | 1e-2
+check --set long=30 | .members.m.drawn_length | 5 | 1e-2
+check %none | .members.m.drawn_length | 5 | 1e-2
+check | .members.m.drawn_length | 5
+check | .members.( | 5 | 1
+TEXT
+answers "$scratch/good.answers" "$scratch/self.yaml" >"$scratch/wrong"
+[ ! -s "$scratch/wrong" ] || { cat "$scratch/wrong"; echo "self-test fails"; exit 1; }
+answers "$scratch/bad.answers" "$scratch/self.yaml" >"$scratch/wrong"
+for number in 1 2 3 4 5 6 7 8 9 10; do
+  grep -q "^bad.answers:$number: " "$scratch/wrong" ||
+    { echo "self-test: bad.answers:$number passes"; exit 1; }
+done
+
+: >"$scratch/asked"
+for file in "$here"/*.answers "$root"/models/gallery/*.yaml; do
+  name=${file##*/}
+  name=${name%.*}
+  case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
+  if [ ! -e "$here/$name.answers" ] || [ ! -e "$root/models/gallery/$name.yaml" ]; then
+    echo "$name: has only one of models/gallery/$name.yaml, tests/gallery/$name.answers"
+    failures=$((failures + 1))
+    continue
+  fi
+  [ "$file" = "$here/$name.answers" ] || continue
+  answers "$file" "$root/models/gallery/$name.yaml" >"$scratch/wrong"
+  cat "$scratch/wrong"
+  failures=$((failures + $(wc -l <"$scratch/wrong")))
+done
+asked=$(wc -l <"$scratch/asked")
+echo "$asked answers, $failures wrong"
+exit "$((failures > 0))"
