@@ -24,6 +24,7 @@ typedef struct strut_descent {
   int32_t iterations;
   double residual; /* largest entry of g at the end [N] */
   double rounding; /* strut_potential_rounding there [N] */
+  double step;     /* length of the last Newton step: how far q may still be off [m] */
 } strut_descent;
 
 /** Memory of descents on one potential, for one thread at a time. */

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the descent asks of the Hessian, answered by eigenvectors or by a sparse factor.
+ */
+#ifndef STRUT_ENGINE_STATICS_DESCENT_PARTS_H
+#define STRUT_ENGINE_STATICS_DESCENT_PARTS_H
+
+#include "engine/statics/minimise.h"
+
+/** A step and what the quadratic model makes of it. */
+typedef struct strut_model_step {
+  double length;    /* |s| [m] */
+  double reduction; /* -(g's + s'Hs/2) [J] */
+} strut_model_step;
+
+/** The two ways to take a Hessian apart. Rows are those of the potential; all arrays are (n). */
+typedef struct strut_curvature {
+  /** Takes the Hessian at q apart; false: not finite, or out of memory. */
+  bool (*look)(void *room, const double *q);
+  /** The lowest point of the model within |s| <= radius. still [N]: a force that rounding explains. */
+  strut_model_step (*descend)(void *room, const double *g, double radius, double still, double *s);
+  /** The Newton step, directions without stiffness left out; its length. */
+  double (*newton)(void *room, const double *g, double *s);
+  /** The unit direction of most negative curvature; false where none is negative beyond rounding. */
+  bool (*ridge)(void *room, double *s);
+  void (*free)(void *room);
+} strut_curvature;
+
+extern const strut_curvature strut_curvature_dense, strut_curvature_sparse;
+/** Rooms for the two; NULL: out of memory. */
+void *strut_curvature_dense_create(const strut_potential *potential);
+void *strut_curvature_sparse_create(const strut_potential *potential);
+
+#endif

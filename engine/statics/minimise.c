@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The trust region itself: how far a step may go, whether it was any good, and when to stop. */
+#include "engine/statics/minimise.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/descent_parts.h"
+
+enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 60 };
+
+struct strut_minimiser {
+  const strut_potential *potential;
+  const strut_curvature *curvature;
+  void *room;
+  double size;                /* of the structure [m] */
+  double *g, *g_trial, *step; /* (n) */
+  double *trial, *before;     /* (length) */
+  strut_arena arena;
+};
+
+strut_status strut_minimiser_create(const strut_potential *potential, strut_minimiser **minimiser,
+                                    strut_error *error) {
+  strut_minimiser *m = *minimiser = strut_allocate(1, sizeof *m);
+  size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
+  if (!m) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  bool dense = potential->n <= STRUT_DENSE_STATICS;
+  m->potential = potential;
+  m->size = potential->model->size > 0 ? potential->model->size : 1.0;
+  m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
+  m->room = dense ? strut_curvature_dense_create(potential)
+                  : strut_curvature_sparse_create(potential);
+  m->g = strut_arena_allocate(&m->arena, n, sizeof *m->g);
+  m->g_trial = strut_arena_allocate(&m->arena, n, sizeof *m->g_trial);
+  m->step = strut_arena_allocate(&m->arena, n, sizeof *m->step);
+  m->trial = strut_arena_allocate(&m->arena, length, sizeof *m->trial);
+  m->before = strut_arena_allocate(&m->arena, length, sizeof *m->before);
+  if (m->room && m->g && m->g_trial && m->step && m->trial && m->before) return STRUT_OK;
+  strut_minimiser_free(m);
+  *minimiser = NULL;
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+}
+
+void strut_minimiser_free(strut_minimiser *minimiser) {
+  if (!minimiser) return;
+  if (minimiser->room) minimiser->curvature->free(minimiser->room);
+  strut_arena_free(&minimiser->arena);
+  strut_release(minimiser);
+}
+
+static double largest_of(const double *g, int32_t n) {
+  double largest = 0.0;
+  for (int32_t i = 0; i < n; i++)
+    if (!(fabs(g[i]) <= largest)) largest = fabs(g[i]); /* a NAN stays */
+  return largest;
+}
+
+/* trial = q + factor * step. */
+static void move(strut_minimiser *m, const double *q, double factor) {
+  const strut_potential *p = m->potential;
+  memcpy(m->trial, q, (size_t)p->model->length * sizeof *q);
+  for (int32_t i = 0; i < p->n; i++) m->trial[p->coordinate[i]] += factor * m->step[i];
+}
+
+static void keep_trial(strut_minimiser *m, double *q) {
+  memcpy(q, m->trial, (size_t)m->potential->model->length * sizeof *q);
+  double *swap = m->g;
+  m->g = m->g_trial, m->g_trial = swap;
+}
+
+/* The largest coordinate, in sizes of the structure: beyond some thousands nothing comes back. */
+static bool ran_away(const strut_minimiser *m, const double *q, const double *start) {
+  double largest = 0.0;
+  for (int32_t i = 0; i < m->potential->n; i++) {
+    int32_t at = m->potential->coordinate[i];
+    largest = fmax(largest, fabs(q[at] - start[at]));
+  }
+  return !(largest <= 1e4 * m->size);
+}
+
+static double tolerated(const strut_minimiser *m, const double *q, double tolerance,
+                        double *rounding) {
+  *rounding = strut_potential_rounding(m->potential, q);
+  return fmax(tolerance, 8.0 * *rounding);
+}
+
+/*
+ * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may be
+ * all rounding long before soft directions have converged. Ends with the last residual.
+ */
+static void polish(strut_minimiser *m, double *q, double tolerance, double reach,
+                   strut_descent *end) {
+  int32_t n = m->potential->n;
+  double earlier = HUGE_VAL;
+  for (int i = 0; i < MOST_POLISH; i++) {
+    double length = m->curvature->look(m->room, q)
+                        ? m->curvature->newton(m->room, m->g, m->step)
+                        : HUGE_VAL;
+    if (!(length < 0.9 * earlier) || length > reach) break;
+    move(m, q, 1.0);
+    strut_potential_gradient(m->potential, m->trial, m->g_trial);
+    double residual = largest_of(m->g_trial, n);
+    double allowed = tolerated(m, m->trial, tolerance, &end->rounding);
+    if (!(residual <= fmax(allowed, end->residual))) break;
+    keep_trial(m, q);
+    end->residual = residual;
+    end->step = earlier = length;
+    end->iterations++;
+    if (length <= 4.0 * DBL_EPSILON * m->size) break;
+  }
+}
+
+/* From a stationary point that is no minimum: the lower of both ways along the ridge's direction. */
+static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
+  double here = strut_potential_value(m->potential, q);
+  if (!m->curvature->ridge(m->room, m->step)) return false;
+  for (double far = radius; far > 1e-6 * m->size; far *= 0.25) {
+    move(m, q, far);
+    double up = strut_potential_value(m->potential, m->trial);
+    move(m, q, -far);
+    double down = strut_potential_value(m->potential, m->trial);
+    if (!(up < here) && !(down < here)) continue;
+    if (!(down < up)) move(m, q, far);
+    strut_potential_gradient(m->potential, m->trial, m->g_trial);
+    keep_trial(m, q);
+    return true;
+  }
+  return false;
+}
+
+/*
+ * The energy lost from q to the trial. Where it drowns in the rounding of the energies themselves,
+ * it is the work of the mean of both gradients.
+ */
+static double energy_lost(const strut_minimiser *m, double here, double there, double expected) {
+  if (expected > 1e-9 * (fabs(here) + fabs(there))) return here - there;
+  double work = 0.0;
+  for (int32_t i = 0; i < m->potential->n; i++)
+    work -= 0.5 * (m->g[i] + m->g_trial[i]) * m->step[i];
+  return work;
+}
+
+/* One trust-region step; false where the radius has shrunk to nothing. */
+static bool descend_once(strut_minimiser *m, double *q, double still, double *radius,
+                         double *energy) {
+  strut_model_step step = m->curvature->descend(m->room, m->g, *radius, still, m->step);
+  if (!(step.length > 0)) return false;
+  for (int tries = 0; tries < 60; tries++) {
+    move(m, q, 1.0);
+    double there = strut_potential_value(m->potential, m->trial);
+    strut_potential_gradient(m->potential, m->trial, m->g_trial);
+    double ratio = energy_lost(m, *energy, there, step.reduction) / step.reduction;
+    if (ratio > 1e-4) {
+      if (ratio > 0.75 && step.length > 0.99 * *radius) *radius *= 2.5;
+      if (ratio < 0.25) *radius = 0.5 * step.length;
+      keep_trial(m, q);
+      *energy = there;
+      return true;
+    }
+    *radius = (ratio > -1.0 ? 0.25 : 0.1) * step.length;
+    if (!(*radius > DBL_EPSILON * m->size)) return false;
+    step = m->curvature->descend(m->room, m->g, *radius, still, m->step);
+  }
+  return false;
+}
+
+/*
+ * A gradient within rounding ends it only where little is left to go as well: beside very stiff
+ * members rounding hides forces that soft ones still yield to.
+ */
+strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
+  strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
+  int32_t n = m->potential->n, extra = 0;
+  double radius = 0.1 * m->size, energy = strut_potential_value(m->potential, q);
+  memcpy(m->before, q, (size_t)m->potential->model->length * sizeof *q);
+  strut_potential_gradient(m->potential, q, m->g);
+  for (; end.iterations < MOST_STEPS; end.iterations++) {
+    end.residual = largest_of(m->g, n);
+    double allowed = tolerated(m, q, tolerance, &end.rounding);
+    end.end = STRUT_DESCENT_EXHAUSTED;
+    if (ran_away(m, q, m->before)) {
+      end.end = STRUT_DESCENT_RUNAWAY;
+      return end;
+    }
+    if (!m->curvature->look(m->room, q)) return end;
+    if (end.residual <= allowed) {
+      if (leave_ridge(m, q, radius)) {
+        energy = strut_potential_value(m->potential, q);
+        continue;
+      }
+      end.end = STRUT_DESCENT_REACHED;
+      double left = m->curvature->newton(m->room, m->g, m->step);
+      end.step = left;
+      if (left <= 1e-3 * m->size || extra++ == MOST_EXTRA) break;
+    }
+    if (!descend_once(m, q, sqrt((double)n) * allowed, &radius, &energy)) break;
+  }
+  if (end.end != STRUT_DESCENT_REACHED) return end;
+  polish(m, q, tolerance, 1e-3 * m->size, &end);
+  if (end.step > 1e-5 * m->size) end.end = STRUT_DESCENT_EXHAUSTED;
+  return end;
+}
+
+strut_descent strut_polish(strut_minimiser *m, double *q, double tolerance) {
+  strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
+  strut_potential_gradient(m->potential, q, m->g);
+  end.residual = largest_of(m->g, m->potential->n);
+  polish(m, q, tolerance, 0.1 * m->size, &end);
+  end.residual = largest_of(m->g, m->potential->n);
+  if (end.residual <= tolerated(m, q, tolerance, &end.rounding)) end.end = STRUT_DESCENT_REACHED;
+  return end;
+}

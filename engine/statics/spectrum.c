@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/spectrum.h"
+
+#include <float.h>
+#include <gsl/gsl_eigen.h>
+#include <math.h>
+#include <string.h>
+
+struct strut_spectrum_room {
+  const strut_potential *potential;
+  strut_arena arena;
+  strut_sparse *hessian;
+  gsl_eigen_symmv_workspace *workspace, *soft_workspace; /* the latter for soft_n rows */
+  int32_t soft_n;
+  double *dense, *basis;          /* (n, n) each: Hessian, eigenvectors in columns */
+  double *soft, *soft_basis;      /* (n, n) room for the form on soft modes and its eigenvectors */
+  double *raw, *value, *noise;    /* (n) */
+  double *vector, *turned;        /* (n, n) */
+  double *along, *across, *form_noise; /* (n) of one member in each soft mode; noise of the form */
+  int32_t *order;                 /* (n) */
+};
+
+static double *numbers(strut_arena *arena, size_t count) {
+  return strut_arena_allocate(arena, count, sizeof(double));
+}
+
+strut_spectrum_room *strut_spectrum_create(const strut_potential *potential) {
+  strut_spectrum_room *room = strut_allocate(1, sizeof *room);
+  size_t n = (size_t)potential->n;
+  if (!room) return NULL;
+  room->potential = potential;
+  double **square[] = {&room->dense,      &room->basis,  &room->soft,
+                       &room->soft_basis, &room->vector, &room->turned};
+  double **line[] = {&room->raw,   &room->value,  &room->noise,
+                     &room->along, &room->across, &room->form_noise};
+  bool good = true;
+  for (size_t i = 0; i < 6; i++) {
+    good = good && (*square[i] = numbers(&room->arena, n * n));
+    good = good && (*line[i] = numbers(&room->arena, n));
+  }
+  good = good && (room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order));
+  good = good && (room->hessian = strut_potential_matrix(potential, &room->arena));
+  if (good && n > 0) good = (room->workspace = gsl_eigen_symmv_alloc(n));
+  if (good) return room;
+  strut_spectrum_free(room);
+  return NULL;
+}
+
+void strut_spectrum_free(strut_spectrum_room *room) {
+  if (!room) return;
+  if (room->workspace) gsl_eigen_symmv_free(room->workspace);
+  if (room->soft_workspace) gsl_eigen_symmv_free(room->soft_workspace);
+  strut_arena_free(&room->arena);
+  strut_release(room);
+}
+
+/* The order of values from small to large; equal ones keep theirs. */
+static void sort_order(const double *value, int32_t n, int32_t *order) {
+  for (int32_t i = 0; i < n; i++) {
+    int32_t k = i;
+    for (; k > 0 && value[order[k - 1]] > value[i]; k--) order[k] = order[k - 1];
+    order[k] = i;
+  }
+}
+
+/* Eigenvalues and eigenvectors of a dense symmetric matrix (n, n), which is destroyed. */
+static void solve(double *matrix, int32_t n, gsl_eigen_symmv_workspace *workspace, double *value,
+                  double *basis) {
+  gsl_matrix_view a = gsl_matrix_view_array(matrix, (size_t)n, (size_t)n);
+  gsl_matrix_view v = gsl_matrix_view_array(basis, (size_t)n, (size_t)n);
+  gsl_vector_view d = gsl_vector_view_array(value, (size_t)n);
+  gsl_eigen_symmv(&a.matrix, &d.vector, &v.matrix, workspace);
+}
+
+static bool fill_dense(strut_spectrum_room *room) {
+  const strut_sparse *h = room->hessian;
+  size_t n = (size_t)h->n;
+  memset(room->dense, 0, n * n * sizeof *room->dense);
+  for (size_t j = 0; j < n; j++)
+    for (int32_t k = h->start[j]; k < h->start[j + 1]; k++) {
+      size_t i = (size_t)h->row[k];
+      if (!isfinite(h->value[k])) return false;
+      room->dense[i * n + j] = room->dense[j * n + i] = h->value[k];
+    }
+  return true;
+}
+
+/* The change of a coordinate in mode i; 0 where it is held. */
+static double moved(const strut_spectrum_room *room, const double *mode, uint32_t at) {
+  int32_t row = room->potential->row_of[at];
+  return row < 0 ? 0.0 : mode[row];
+}
+
+/*
+ * Adds stiffness * x x' + geometric * y y' to the form on `count` modes, where x, y are how a member
+ * stretches and turns in them; and to each mode's noise what the rounding of both amounts to.
+ */
+static void add_form(strut_spectrum_room *room, int32_t count, double stiffness, double geometric,
+                     double uncertain) {
+  const double *x = room->along, *y = room->across;
+  for (int32_t i = 0; i < count; i++) {
+    for (int32_t k = 0; k <= i; k++)
+      room->soft[i * count + k] += stiffness * x[i] * x[k] + geometric * y[i] * y[k];
+    room->form_noise[i] += DBL_EPSILON * (stiffness * x[i] * x[i] + fabs(geometric) * y[i] * y[i]) +
+                           uncertain * y[i] * y[i];
+  }
+}
+
+static void add_members(strut_spectrum_room *room, const double *q, int32_t count) {
+  const strut_member_table *t = &room->potential->model->members;
+  size_t n = (size_t)room->potential->n;
+  for (int32_t j = 0; j < t->count; j++) {
+    uint32_t a = t->from[j], b = t->to[j];
+    double dx = q[b] - q[a], dy = q[b + 1] - q[a + 1], length = sqrt(dx * dx + dy * dy);
+    double stretch = length - t->rest[j], c = t->stiffness[j];
+    if (!(stretch > t->slack[j])) continue;
+    if (!(length > 0) && t->rest[j] > 0) continue;
+    double ux = length > 0 ? dx / length : 1.0, uy = length > 0 ? dy / length : 0.0;
+    double geometric = length > 0 ? c * stretch / length : c;
+    double bit = fmax(fmax(fabs(q[a]), fabs(q[a + 1])), fmax(fabs(q[b]), fabs(q[b + 1])));
+    for (int32_t i = 0; i < count; i++) {
+      const double *mode = room->vector + (size_t)i * n;
+      double mx = moved(room, mode, b) - moved(room, mode, a);
+      double my = moved(room, mode, b + 1) - moved(room, mode, a + 1);
+      room->along[i] = ux * mx + uy * my;
+      room->across[i] = ux * my - uy * mx;
+    }
+    add_form(room, count, c, geometric, length > 0 ? c * DBL_EPSILON * bit / length : 0.0);
+  }
+}
+
+static void add_contacts(strut_spectrum_room *room, const double *q, int32_t count) {
+  const strut_contact_table *c = &room->potential->model->contacts;
+  size_t n = (size_t)room->potential->n;
+  for (int32_t j = 0; j < c->count && room->potential->ground; j++) {
+    uint32_t at = c->at[j];
+    double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
+    if (!(gap < 0.0)) continue;
+    for (int32_t i = 0; i < count; i++) {
+      const double *mode = room->vector + (size_t)i * n;
+      room->along[i] =
+          moved(room, mode, at) * c->normal[0] + moved(room, mode, at + 1) * c->normal[1];
+      room->across[i] = 0.0;
+    }
+    add_form(room, count, c->entry[j].stiffness, 0.0, 0.0);
+  }
+}
+
+/* Replaces the first `count` eigenpairs by those of the form summed member by member. */
+static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
+  size_t n = (size_t)room->potential->n, m = (size_t)count;
+  memset(room->soft, 0, m * m * sizeof *room->soft);
+  memset(room->form_noise, 0, m * sizeof *room->form_noise);
+  add_members(room, q, count);
+  add_contacts(room, q, count);
+  for (size_t i = 0; i < m; i++)
+    for (size_t k = 0; k < i; k++) room->soft[k * m + i] = room->soft[i * m + k];
+  if (room->soft_n != count) {
+    if (room->soft_workspace) gsl_eigen_symmv_free(room->soft_workspace);
+    room->soft_workspace = gsl_eigen_symmv_alloc(m);
+    room->soft_n = room->soft_workspace ? count : 0;
+    if (!room->soft_workspace) return false;
+  }
+  solve(room->soft, count, room->soft_workspace, room->raw, room->soft_basis);
+  sort_order(room->raw, count, room->order);
+  memset(room->turned, 0, m * n * sizeof *room->turned);
+  for (size_t i = 0; i < m; i++) {
+    size_t column = (size_t)room->order[i];
+    double noise = 0.0;
+    for (size_t k = 0; k < m; k++) {
+      double weight = room->soft_basis[k * m + column];
+      noise += weight * weight * room->form_noise[k];
+      for (size_t at = 0; at < n; at++)
+        room->turned[i * n + at] += weight * room->vector[k * n + at];
+    }
+    room->value[i] = room->raw[column];
+    room->noise[i] = noise;
+  }
+  memcpy(room->vector, room->turned, m * n * sizeof *room->vector);
+  return true;
+}
+
+bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, bool careful,
+                            strut_spectrum *spectrum) {
+  int32_t n = room->potential->n, soft = 0, lost = 0;
+  *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};
+  if (n == 0) return true;
+  strut_potential_hessian(room->potential, q, room->hessian);
+  if (!fill_dense(room)) return false;
+  solve(room->dense, n, room->workspace, room->raw, room->basis);
+  sort_order(room->raw, n, room->order);
+  size_t rows = (size_t)n;
+  for (size_t i = 0; i < rows; i++) {
+    room->value[i] = room->raw[room->order[i]];
+    for (size_t at = 0; at < rows; at++)
+      room->vector[i * rows + at] = room->basis[at * rows + (size_t)room->order[i]];
+  }
+  double largest = fmax(fabs(room->value[0]), fabs(room->value[n - 1]));
+  for (int32_t i = 0; i < n; i++) {
+    room->noise[i] = n * DBL_EPSILON * largest;
+    if (fabs(room->value[i]) < 1e-10 * largest) lost++;
+    if (room->value[i] < 1e-3 * largest) soft = i + 1;
+  }
+  if (soft == 0 || !(careful || lost > 0)) return true;
+  return refine(room, q, soft);
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * All eigenvalues and eigenvectors of a small Hessian, the soft ones to their own last digits.
+ *
+ * A dense solver leaves every eigenvalue with the rounding error of the largest: beside bars of 1e12
+ * N/m nothing is left of a spring of 1 N/m. The soft ones are therefore found again in the space of
+ * their eigenvectors, from stretches summed member by member (Rayleigh-Ritz), which loses nothing.
+ */
+#ifndef STRUT_ENGINE_STATICS_SPECTRUM_H
+#define STRUT_ENGINE_STATICS_SPECTRUM_H
+
+#include "engine/statics/potential.h"
+
+typedef struct strut_spectrum {
+  int32_t n;
+  double *value;  /* (n) ascending [N/m] */
+  double *vector; /* (n, n) the unit vector of value i in row i */
+  double *noise;  /* (n) what rounding may have done to the value, positions' last bits included */
+} strut_spectrum;
+
+/** Memory for computations with n free coordinates; for one thread at a time. */
+typedef struct strut_spectrum_room strut_spectrum_room;
+/** NULL: out of memory. */
+strut_spectrum_room *strut_spectrum_create(const strut_potential *potential);
+void strut_spectrum_free(strut_spectrum_room *room);
+
+/**
+ * The spectrum of the Hessian at q, valid until the next call. `careful`: noise is told mode by mode
+ * and soft modes are refined in any case; else only where the dense solver's error could matter, and
+ * noise is the same for all. False where the Hessian holds numbers that are not finite.
+ */
+bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, bool careful,
+                            strut_spectrum *spectrum);
+
+#endif
