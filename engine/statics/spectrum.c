@@ -101,8 +101,11 @@ static void add_form(strut_spectrum_room *room, int32_t count, double stiffness,
   for (int32_t i = 0; i < count; i++) {
     for (int32_t k = 0; k <= i; k++)
       room->soft[i * count + k] += stiffness * x[i] * x[k] + geometric * y[i] * y[k];
-    room->form_noise[i] += DBL_EPSILON * (stiffness * x[i] * x[i] + fabs(geometric) * y[i] * y[i]) +
-                           uncertain * y[i] * y[i];
+    /* modes are known to some last bits, and so is what a member stretches and turns in them */
+    double bits = 8.0 * DBL_EPSILON;
+    room->form_noise[i] += bits * (stiffness * fabs(x[i]) * (fabs(x[i]) + bits) +
+                                   fabs(geometric) * fabs(y[i]) * (fabs(y[i]) + bits)) +
+                           bits * bits * (stiffness + fabs(geometric)) + uncertain * y[i] * y[i];
   }
 }
 
