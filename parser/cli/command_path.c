@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_path.h"
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/path_report.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+
+enum { MOST_STEPS = 1000000 };
+
+static const strut_option options[] = {
+    {STRUT_OPTION_LOAD, "load", "NAME", "the load to grow; else all loads without a signal"},
+    {STRUT_OPTION_UNTIL, "until", "FACTOR", "factor of the load to end at; 1 if not given"},
+    {STRUT_OPTION_STEPS, "steps", "N", "most steps; 400 if not given"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static strut_status write_files(const char *directory, const strut_path *path,
+                                const strut_scene *scene, strut_error *error) {
+  char *json = strut_path_json(path, scene), *csv = strut_path_csv(path, scene);
+  strut_status status = json && csv ? strut_directory_create(directory, error)
+                                    : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status == STRUT_OK) status = strut_file_write_text(directory, "path.json", json, error);
+  if (status == STRUT_OK) status = strut_file_write_text(directory, "path.csv", csv, error);
+  strut_release(json);
+  strut_release(csv);
+  return status;
+}
+
+static strut_status show(const strut_arguments *arguments, const strut_path *path,
+                         const strut_scene *scene) {
+  char *text = arguments->json ? strut_path_json(path, scene) : strut_path_table(path, scene);
+  if (!text) return strut_complain_of_memory();
+  strut_status status = strut_print(text);
+  strut_release(text);
+  return status;
+}
+
+static strut_status read_options(const strut_arguments *arguments, strut_path_options *wanted) {
+  int64_t steps = 0;
+  wanted->load = strut_option_text(arguments, STRUT_OPTION_LOAD);
+  strut_status status = strut_option_number(&strut_command_path, arguments, STRUT_OPTION_UNTIL,
+                                            STRUT_DIM_NONE, &wanted->until);
+  if (status == STRUT_OK)
+    status = strut_option_integer(&strut_command_path, arguments, STRUT_OPTION_STEPS, 1,
+                                  MOST_STEPS, &steps);
+  wanted->steps = (int32_t)steps;
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_path_options wanted = {0};
+  strut_path path = {0};
+  strut_model *model = NULL;
+  strut_error error = {0};
+  strut_status status = read_options(arguments, &wanted);
+  if (status != STRUT_OK) return status;
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = strut_path_follow(model, &wanted, &path, &error);
+  if (status == STRUT_OK && arguments->output)
+    status = write_files(arguments->output, &path, &scene, &error);
+  if (status == STRUT_OK)
+    status = show(arguments, &path, &scene);
+  else
+    strut_complain(&error);
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_path = {
+    .name = "path",
+    .model = "MODEL",
+    .summary = "follows the equilibria as a load grows",
+    .details =
+        "\nBegins without the load, at the equilibrium that the start comes to rest in, and\n"
+        "follows the equilibria as the factor of the load grows, past limit points, to the\n"
+        "factor FACTOR. Finds the points where the factor turns back, where another path\n"
+        "branches off, where cables go slack or taut, where nodes touch or leave the ground.\n"
+        "Friction and drives are left out.\n",
+    .options = options,
+    .run = run,
+};
