@@ -89,8 +89,8 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   size_t every = (path->point_count + MOST_ROWS - 1) / MOST_ROWS;
   const double *from = path->points[0].q + 2 * node;
   strut_c_locale locale = strut_c_locale_enter();
-  strut_buffer_add(&table, "%s%spath of %s, %zu points\n\n", scene->name,
-                   *scene->name ? ": " : "", load_name(path), path->point_count);
+  strut_buffer_add(&table, "%s%spath of %s, %zu points\n\n", scene->name, *scene->name ? ": " : "",
+                   load_name(path), path->point_count);
   char head[2][STRUT_QUANTITY_TEXT];
   snprintf(head[0], sizeof head[0], "%.10s moves x", scene->nodes[node].name);
   snprintf(head[1], sizeof head[1], "%.10s moves y", scene->nodes[node].name);
@@ -148,8 +148,8 @@ char *strut_path_csv(const strut_path *path, const strut_scene *scene) {
     char negative[16];
     for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
       const strut_path_event *event = &path->events[at];
-      add_numbers(&csv, event->factor, event->arc, "", strut_path_event_name(event->kind),
-                  event->q, count);
+      add_numbers(&csv, event->factor, event->arc, "", strut_path_event_name(event->kind), event->q,
+                  count);
     }
     snprintf(negative, sizeof negative, "%d", (int)point->negative);
     add_numbers(&csv, point->factor, point->arc, negative, "", point->q, count);

@@ -10,6 +10,9 @@
 
 enum { DEFAULT_STEPS = 400, NAMES = 400 };
 
+/* Of the rounding in forces: what a descent may leave, as the path is corrected further anyway. */
+static const double NEARLY = 1e6;
+
 const char *strut_path_event_name(strut_path_event_kind kind) {
   static const char *const names[] = {"limit point", "bifurcation", "slack",
                                       "taut",        "touchdown",   "lift-off"};
@@ -72,7 +75,7 @@ static strut_status begin_at(const strut_model *model, const double *base, doubl
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "without the load there is no equilibrium to begin at: nothing holds the "
                           "structure; support it or give it a ground");
-    else if (descent.end == STRUT_DESCENT_EXHAUSTED)
+    else if (descent.end == STRUT_DESCENT_EXHAUSTED && descent.residual > NEARLY * descent.rounding)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "without the load no equilibrium was found to begin at: %.3g N are left",
                           descent.residual);
@@ -111,6 +114,9 @@ static strut_status walk_from(const strut_model *model, const double *base, cons
     path->end = STRUT_PATH_STEPS;
     bool on = strut_path_walk_begin(&w);
     for (int32_t i = 0; i < steps && on; i++) on = strut_path_walk_step(&w);
+    if (w.system.drifts && path->point_count == 0)
+      status = strut_fail(error, STRUT_NOT_SETTLED,
+                          "nothing holds the structure against the load: it moves as a whole");
     if (w.failed) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK && path->point_count == 0)
@@ -139,8 +145,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_path_option
     status = choose_loads(model->scene, options->load, base, load, error);
   }
   if (status == STRUT_OK) status = begin_at(model, base, q, error);
-  if (status == STRUT_OK)
-    status = walk_from(model, base, load, q, until, steps, path, error);
+  if (status == STRUT_OK) status = walk_from(model, base, load, q, until, steps, path, error);
   if (status == STRUT_OK && path->end == STRUT_PATH_STEPS)
     snprintf(path->remark, sizeof path->remark,
              "%d steps led to the factor %.6g; --steps allows more", (int)steps,

@@ -44,10 +44,10 @@ typedef struct strut_path_event {
 } strut_path_event;
 
 typedef enum strut_path_end {
-  STRUT_PATH_UNTIL,  /* the factor asked for */
-  STRUT_PATH_STEPS,  /* as many steps as allowed */
-  STRUT_PATH_AWAY,   /* a node left all bounds, or the factor fell ten times below -until */
-  STRUT_PATH_LOST    /* no equilibrium near: the remark says where */
+  STRUT_PATH_UNTIL, /* the factor asked for */
+  STRUT_PATH_STEPS, /* as many steps as allowed */
+  STRUT_PATH_AWAY,  /* a node left all bounds, or the factor fell ten times below -until */
+  STRUT_PATH_LOST   /* no equilibrium near: the remark says where */
 } strut_path_end;
 
 typedef struct strut_path {

@@ -132,6 +132,7 @@ static void rigid_motion(const strut_path_system *s, int which, double *motion) 
 static void hold_rigid_motions(strut_path_system *s) {
   size_t n = (size_t)s->n;
   double low, high, work = 0, load = 0;
+  s->drifts = false;
   gsl_matrix_minmax(s->hessian, &low, &high);
   double stiff = fmax(-low, high), scale = stiff > 0 ? stiff : 1.0;
   gsl_vector_view motion = gsl_vector_view_array(s->row, n);
@@ -143,10 +144,12 @@ static void hold_rigid_motions(strut_path_system *s) {
       double p = s->load[s->potential->coordinate[i]];
       work += p * s->row[i], load += p * p;
     }
-    if (fabs(work) > RIGID * sqrt(load)) continue;
     gsl_blas_dsymv(CblasLower, 1.0, s->hessian, &motion.vector, 0.0, &product.vector);
     if (gsl_blas_dnrm2(&product.vector) > RIGID * stiff) continue;
-    gsl_blas_dger(scale, &motion.vector, &motion.vector, s->hessian);
+    if (fabs(work) > RIGID * sqrt(load))
+      s->drifts = true;
+    else
+      gsl_blas_dger(scale, &motion.vector, &motion.vector, s->hessian);
   }
 }
 
@@ -206,16 +209,15 @@ int strut_path_correct(strut_path_system *s, const double *row, double value, do
       change = fmax(change, fabs(step));
       y[i] += step;
     }
-    if (!isfinite(change) || change > FAR || (k > 2 && change > 4 * before))
-      return -1;
-    if (change <= CONVERGED || (before <= NEAR && change > 0.3 * before)) return k;
+    if (change <= CONVERGED || (before <= NEAR && change <= NEAR && change > 0.3 * before))
+      return k;
+    if (!isfinite(change) || change > FAR || (k > 2 && change > 4 * before)) return -1;
     before = change;
   }
   return before <= NEAR ? MOST_ITERATIONS : -1;
 }
 
-bool strut_path_tangent(strut_path_system *s, const double *y, const double *row,
-                        double *tangent) {
+bool strut_path_tangent(strut_path_system *s, const double *y, const double *row, double *tangent) {
   double sum = 0;
   evaluate(s, y);
   if (!solve(s, row, NULL, 1.0)) return false;

@@ -17,10 +17,11 @@ typedef struct strut_path_system {
   strut_model model;          /* the scene's, but for a slack table of its own: what is taut now */
   strut_potential *potential; /* without the ground, and with `base` + factor `load` as its force */
   int32_t n;
-  double size, unit;  /* [m], [1] */
+  bool drifts;         /* the load works on a motion of the whole that meets no stiffness */
+  double size, unit;   /* [m], [1] */
   double *base, *load; /* (length) forces besides the load, and the load at factor 1 [N] */
-  double *slack;      /* (slots) of the model above: -INFINITY pulls, INFINITY does not */
-  uint8_t *touching;  /* (contacts) 1 where the ground pushes, and then pulls too */
+  double *slack;       /* (slots) of the model above: -INFINITY pulls, INFINITY does not */
+  uint8_t *touching;   /* (contacts) 1 where the ground pushes, and then pulls too */
   double *q, *g, *row; /* (length), (n), (n + 1) scratch */
   strut_sparse *sparse;
   gsl_matrix *hessian;  /* (n, n); NULL without a free coordinate */

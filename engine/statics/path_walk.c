@@ -9,9 +9,9 @@
 enum { SLOW = 8, ROUNDS = 4 };
 
 static const double LONGEST = 0.05, SHORTEST = 1e-9; /* steps [units of y] */
-static const double BEND = 0.97;   /* cosine that tangents of neighbouring points keep */
+static const double BEND = 0.97;    /* cosine that tangents of neighbouring points keep */
 static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
-static const double EVEN = 1e-9;   /* of the size: switches that change together */
+static const double EVEN = 1e-9;    /* of the size: switches that change together */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; factors below */
 
 static size_t bytes_of(const strut_path_walk *w) {
@@ -211,8 +211,9 @@ static bool throw_switch(strut_path_walk *w, int32_t which, const double *end) {
   if (!before && w->negative) amend_last(w, ", unstable from here");
   if (before && !w->negative) amend_last(w, ", stable from here");
   if (turn * w->tangent[s->n] < 0)
-    add_event(w, STRUT_PATH_LIMIT, w->y, 0, turn > 0 ? "the factor can grow no further, for that"
-                                                     : "the factor grows again from here");
+    add_event(
+        w, STRUT_PATH_LIMIT, w->y, 0,
+        turn > 0 ? "the factor can grow no further, for that" : "the factor grows again from here");
   return true;
 }
 
@@ -324,8 +325,7 @@ bool strut_path_walk_step(strut_path_walk *w) {
 static bool first_tangent(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   if (strut_path_tangent(s, w->y, w->upward, w->tangent)) return true;
-  for (int32_t i = 0; i < s->n; i++)
-    w->trial[i] = s->load[s->potential->coordinate[i]] * s->unit;
+  for (int32_t i = 0; i < s->n; i++) w->trial[i] = s->load[s->potential->coordinate[i]] * s->unit;
   w->trial[s->n] = 0;
   return strut_path_tangent(s, w->y, w->trial, w->tangent);
 }
@@ -351,7 +351,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     }
     if (!changed) break;
   }
-  if (!first_tangent(w)) return give_up(w, STRUT_PATH_LOST);
+  if (!first_tangent(w) || w->system.drifts) return give_up(w, STRUT_PATH_LOST);
   count_negative(w);
   add_point(w, w->negative);
   return !w->failed;

@@ -11,13 +11,13 @@
 typedef struct strut_path_walk {
   strut_path_system system;
   strut_path *path;
-  double *y, *tangent;           /* (n + 1) where it stands */
-  double *next, *next_tangent;   /* where the step leads */
+  double *y, *tangent;            /* (n + 1) where it stands */
+  double *next, *next_tangent;    /* where the step leads */
   double *trial, *spare, *upward; /* scratch; (0, ..., 0, 1) */
   double arc, step;
-  int32_t negative;              /* eigenvalues below zero, as the walk goes on from y */
+  int32_t negative; /* eigenvalues below zero, as the walk goes on from y */
   size_t point_room, event_room;
-  bool failed;                   /* memory was out */
+  bool failed; /* memory was out */
 } strut_path_walk;
 
 /** From y: what pulls and touches there, the tangent along which the load does work, a point. */

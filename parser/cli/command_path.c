@@ -47,8 +47,8 @@ static strut_status read_options(const strut_arguments *arguments, strut_path_op
   strut_status status = strut_option_number(&strut_command_path, arguments, STRUT_OPTION_UNTIL,
                                             STRUT_DIM_NONE, &wanted->until);
   if (status == STRUT_OK)
-    status = strut_option_integer(&strut_command_path, arguments, STRUT_OPTION_STEPS, 1,
-                                  MOST_STEPS, &steps);
+    status = strut_option_integer(&strut_command_path, arguments, STRUT_OPTION_STEPS, 1, MOST_STEPS,
+                                  &steps);
   wanted->steps = (int32_t)steps;
   return status;
 }

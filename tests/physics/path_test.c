@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Paths of equilibria: limit points, forks, slackening and contact against closed forms. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/statics/minimise.h"
+#include "engine/statics/path.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+typedef struct walk {
+  strut_model *model;
+  strut_path path;
+} walk;
+
+static walk follow(const strut_scene *scene, double until) {
+  walk w = {.model = motion_compile(scene)};
+  strut_path_options options = {.until = until};
+  strut_error error = {0};
+  strut_status status = strut_path_follow(w.model, &options, &w.path, &error);
+  if (status) print_error("%s\n", error.message);
+  assert_int_equal(status, STRUT_OK);
+  return w;
+}
+
+static void finish(walk *w) {
+  strut_path_free(&w->path);
+  strut_model_free(w->model);
+}
+
+static const strut_path_point *last(const walk *w) {
+  assert_int_equal(w->path.end, STRUT_PATH_UNTIL);
+  return &w->path.points[w->path.point_count - 1];
+}
+
+/* The number-th event of its kind. */
+static const strut_path_event *event(const walk *w, strut_path_event_kind kind, int number) {
+  for (size_t i = 0; i < w->path.event_count; i++)
+    if (w->path.events[i].kind == kind && number-- == 0) return &w->path.events[i];
+  fail_msg("no such event: %s", strut_path_event_name(kind));
+  return NULL;
+}
+
+static size_t count(const walk *w, strut_path_event_kind kind) {
+  size_t sum = 0;
+  for (size_t i = 0; i < w->path.event_count; i++) sum += w->path.events[i].kind == kind;
+  return sum;
+}
+
+/* Von Mises' truss: supports at (-+a, 0), apex at (0, h), pressed by 1 N times the factor. */
+static void arch(strut_scene *scene, double a, double h, double k) {
+  strut_scene_init(scene);
+  int32_t left = build_support(scene, -a, 0), right = build_support(scene, a, 0);
+  int32_t apex = build_mass(scene, 0, h, 1.0);
+  build_member(scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(scene, STRUT_BAR, apex, right, k, 0, 0);
+  build_load(scene, apex, 0, -1, -1);
+}
+
+static double arch_load(double a, double h, double k, double y) {
+  return 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
+}
+
+/* Both limit points, every point of the curve, and where it ends. */
+static void check_arch(double a, double h, double k, double expected, double digits) {
+  double rest = hypot(a, h), length = cbrt(rest * a * a), top = sqrt(length * length - a * a);
+  double limit = arch_load(a, h, k, top);
+  strut_scene scene;
+  arch(&scene, a, h, k);
+  walk w = follow(&scene, 1.5 * limit);
+  assert_near(limit, expected, digits);
+  assert_int_equal(count(&w, STRUT_PATH_LIMIT), 2);
+  for (int i = 0; i < 2; i++) {
+    const strut_path_event *e = event(&w, STRUT_PATH_LIMIT, i);
+    assert_relative(e->factor, i ? -limit : limit, 1e-12);
+    assert_relative(e->q[5], i ? -top : top, 1e-10);
+    assert_near(e->q[4], 0, 1e-12 * a);
+  }
+  for (size_t i = 0; i < w.path.point_count; i++) {
+    const strut_path_point *p = &w.path.points[i];
+    double y = p->q[5];
+    assert_near(p->factor, arch_load(a, h, k, y), 1e-10 * limit);
+    assert_int_equal(p->negative, fabs(y) > top ? 0 : 1);
+  }
+  assert_true(last(&w)->factor == 1.5 * limit);
+  assert_true(last(&w)->q[5] < -h);
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+static void test_limit_points(void **state) {
+  (void)state;
+  double b = 5, h = 1;
+  check_arch(b, h, 1280e6 / hypot(b, h), 3789.46e3, 0.005e3);
+  check_arch(0.84523652, 1.81261557, 2.625e8, 3.03160194e8, 1);
+  check_arch(1, 0.3, 1000, 9.94991696, 5e-9);
+  check_arch(1, 0.5, 1, 0.04291433, 5e-9);
+}
+
+/* The apex of a steep truss gives way sideways first: where L^3 - L0 L^2 + L0 a^2 = 0. */
+static double sideways_load(double a, double rest) {
+  double low = 2 * rest / 3, high = rest;
+  for (int i = 0; i < 200; i++) {
+    double middle = 0.5 * (low + high);
+    if (middle * middle * (middle - rest) + rest * a * a > 0)
+      high = middle;
+    else
+      low = middle;
+  }
+  return arch_load(a, sqrt(rest * rest - a * a), 1, sqrt(high * high - a * a));
+}
+
+static void test_sideways_buckling(void **state) {
+  (void)state;
+  const double steepest = 67.3624, right_angle = 90, pi = 3.14159265358979323846;
+  for (int i = 0; i < 4; i++) { /* base angles; the criterion is a / L0 < sqrt(4 / 27) */
+    double angle = (const double[]){70, 80, steepest + 0.1, steepest - 0.1}[i];
+    double a = cos(angle / right_angle * pi / 2), h = sin(angle / right_angle * pi / 2);
+    bool sideways = a < sqrt(4.0 / 27.0);
+    strut_scene scene;
+    arch(&scene, a, h, 1);
+    walk w = follow(&scene, 1);
+    const strut_path_event *first = &w.path.events[0];
+    assert_int_equal(sideways, i < 3);
+    assert_int_equal(first->kind, sideways ? STRUT_PATH_BIFURCATION : STRUT_PATH_LIMIT);
+    if (sideways) assert_relative(first->factor, sideways_load(a, 1), 1e-9);
+    finish(&w);
+    strut_scene_free(&scene);
+  }
+}
+
+/* An axial stiffness, and the rest length from the force in the drawn shape. */
+static void tension(strut_scene *scene, int32_t member, double axial_stiffness, double force) {
+  strut_member *m = &scene->members[member];
+  m->stiffness = 0, m->axial_stiffness = axial_stiffness;
+  m->rest_kind = STRUT_REST_PRETENSION, m->rest_value = force;
+}
+
+/* Half a T-bar, after TsgFEM: its published path. */
+static void half_t_bar(strut_scene *scene) {
+  strut_scene_init(scene);
+  int32_t n1 = build_support(scene, -1, 0), n2 = build_support(scene, 0, 0);
+  int32_t n3 = build_support(scene, 1, 0), n4 = build_node(scene, 0, 1);
+  tension(scene, build_member(scene, STRUT_BAR, n2, n4, 1, 0, 0), 11453019.53174, -50);
+  tension(scene, build_member(scene, STRUT_CABLE, n1, n4, 1, 0, 0), 242825.130902, 35.35533906);
+  tension(scene, build_member(scene, STRUT_CABLE, n3, n4, 1, 0, 0), 242825.130902, 35.35533906);
+  build_load(scene, n4, 1, 0, -1);
+}
+
+static void test_published_path(void **state) {
+  (void)state;
+  static const double shapes[][4] = {/* load, x, y, half a digit of what is printed */
+                                     {101.010101, 0.00089041, 0.99999515, 3e-7},
+                                     {202.020202, 0.00207840, 0.99998457, 3e-7},
+                                     {1000, 0.01153721, 0.99985050, 5.1e-9},
+                                     {5000, 0.06100022, 0.99770493, 5.1e-9},
+                                     {10000, 0.12802679, 0.99089549, 5.1e-9}};
+  for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+    strut_scene scene;
+    half_t_bar(&scene);
+    walk w = follow(&scene, shapes[i][0]);
+    assert_near(last(&w)->q[6], shapes[i][1], shapes[i][3]);
+    assert_near(last(&w)->q[7], shapes[i][2], shapes[i][3]);
+    assert_int_equal(w.path.event_count, 1);
+    assert_near(event(&w, STRUT_PATH_SLACK, 0)->factor, 49.9892459, 5e-8);
+    assert_int_equal(event(&w, STRUT_PATH_SLACK, 0)->index, 2);
+    finish(&w);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Snelson's X: a square of cables of 0.95 with two bars, on a pin and a roller. */
+static void snelson(strut_scene *scene) {
+  strut_scene_init(scene);
+  int32_t n1 = build_support(scene, 0, 0), n2 = build_node(scene, 1, 0);
+  int32_t n3 = build_node(scene, 1, 1), n4 = build_node(scene, 0, 1);
+  const int32_t ring[5] = {n1, n2, n3, n4, n1};
+  scene->nodes[n2].fixed[1] = true;
+  for (int i = 0; i < 4; i++)
+    build_sized(scene, STRUT_CABLE, ring[i], ring[i + 1], 100, 0, 0, 0.95);
+  build_member(scene, STRUT_BAR, n2, n4, 1000, 0, 0);
+  build_member(scene, STRUT_BAR, n1, n3, 1000, 0, 0);
+}
+
+static void test_slack_cables(void **state) {
+  (void)state;
+  strut_scene scene;
+  snelson(&scene);
+  build_load(&scene, 2, 0, -1, -1);
+  build_load(&scene, 3, 0, -1, -1);
+  walk w = follow(&scene, 10);
+  assert_int_equal(count(&w, STRUT_PATH_SLACK), 2); /* both upright ones, at once */
+  for (int i = 0; i < 2; i++) {
+    const strut_path_event *e = event(&w, STRUT_PATH_SLACK, i);
+    assert_near(e->factor, 7.5859404, 5e-8);
+    assert_int_equal(e->index, 2 * i + 1);
+  }
+  assert_int_equal(last(&w)->negative, 0);
+  finish(&w);
+  w = follow(&scene, 5);
+  assert_int_equal(w.path.event_count, 0);
+  assert_near(last(&w)->q[4], 1.0196838, 5e-8);
+  assert_near(last(&w)->q[5], 0.9660162, 5e-8);
+  finish(&w);
+  strut_scene_free(&scene);
+  snelson(&scene);
+  build_load(&scene, 2, 1, 0, -1);
+  w = follow(&scene, 10);
+  assert_int_equal(w.path.event_count, 1);
+  assert_near(event(&w, STRUT_PATH_SLACK, 0)->factor, 6.9110907, 5e-8);
+  assert_int_equal(event(&w, STRUT_PATH_SLACK, 0)->index, 1);
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+/* Six cables and two struts: nearly a mechanism, so that its path bends sharply. */
+static double hexagon_moves(double p, double load) {
+  const double h = sqrt(7) / 4;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t n1 = build_support(&scene, 0, 0), n2 = build_node(&scene, h, 0.75);
+  int32_t n3 = build_node(&scene, h + 1, 0.75), n4 = build_support(&scene, 2 * h + 1, 0);
+  int32_t n5 = build_node(&scene, h + 1, -0.75), n6 = build_node(&scene, h, -0.75);
+  const int32_t ring[7] = {n1, n2, n3, n4, n5, n6, n1};
+  for (int i = 0; i < 6; i++)
+    build_sized(&scene, STRUT_CABLE, ring[i], ring[i + 1], 1, 0, 0, 1 - p);
+  build_sized(&scene, STRUT_BAR, n2, n6, 0.5, 0, 0, 1.5 * (1 + p));
+  build_sized(&scene, STRUT_BAR, n3, n5, 0.5, 0, 0, 1.5 * (1 + p));
+  build_load(&scene, n6, 1, 0, -1);
+  walk w = follow(&scene, load);
+  double moved = last(&w)->q[2 * n6] - w.path.points[0].q[2 * n6];
+  finish(&w);
+  strut_scene_free(&scene);
+  return moved;
+}
+
+static void test_stiffening_mechanism(void **state) {
+  (void)state;
+  static const double load[4] = {0.001, 0.01, 0.05, 0.1};
+  static const double tight[4] = {0.00176694, 0.01762614, 0.08713378, 0.17156672};
+  /* the third is printed as 0.30517872; Newton's method written in Octave gives 0.305178712051 */
+  static const double loose[4] = {0.06937787, 0.16205271, 0.305178712, 0.40654977};
+  for (int i = 0; i < 4; i++) {
+    assert_near(hexagon_moves(0.3, load[i]), tight[i], 5.1e-9);
+    assert_near(hexagon_moves(1e-5, load[i]), loose[i], 5.1e-9);
+  }
+}
+
+/* A node on an upright spring above the ground, pressed onto it and let off again. */
+static void test_touchdown(void **state) {
+  (void)state;
+  const double k = 100, ground = 1000, gap = 0.1;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t top = build_support(&scene, 0, 1 + gap), node = build_node(&scene, 0, gap);
+  scene.nodes[node].fixed[0] = true;
+  build_member(&scene, STRUT_SPRING, top, node, k, 0, 0);
+  build_contact(&scene, node, ground, 0);
+  build_load(&scene, node, 0, -1, -1);
+  walk w = follow(&scene, 20);
+  assert_int_equal(w.path.event_count, 1);
+  assert_relative(event(&w, STRUT_PATH_TOUCHDOWN, 0)->factor, k * gap, 1e-12);
+  assert_near(last(&w)->q[3], -(20 - k * gap) / (k + ground), 1e-13);
+  finish(&w);
+  scene.nodes[node].start[1] = -0.05; /* begins in the ground: nothing holds it there */
+  scene.nodes[node].position[1] = -0.05, scene.nodes[top].position[1] = 0.95;
+  scene.nodes[top].start[1] = 0.95, scene.loads[0].force[1] = 1;
+  w = follow(&scene, 20);
+  double depth = 0.05 * k / (k + ground); /* spring force k (0.05 - depth) = ground depth */
+  assert_near(w.path.points[0].q[3], -depth, 1e-13);
+  assert_relative(event(&w, STRUT_PATH_LIFT_OFF, 0)->factor, k * 0.05, 1e-10);
+  assert_near(last(&w)->q[3], 20 / k - 0.05, 1e-12);
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+/* A box lifted at one corner tips when the load is half its weight: the others leave together. */
+static void test_lift_off(void **state) {
+  (void)state;
+  strut_scene scene;
+  snelson(&scene);
+  scene.gravity[1] = -9.81;
+  for (int32_t i = 0; i < 4; i++) {
+    scene.nodes[i].mass = 0.1;
+    scene.nodes[i].fixed[0] = scene.nodes[i].fixed[1] = false;
+    build_contact(&scene, i, 1e5, 0);
+  }
+  build_load(&scene, 2, 0, 1, -1);
+  walk w = follow(&scene, 1.9);
+  assert_int_equal(w.path.event_count, 0);
+  finish(&w);
+  strut_path path = {0};
+  strut_model *model = motion_compile(&scene);
+  strut_path_options options = {.until = 3, .steps = 60};
+  assert_int_equal(strut_path_follow(model, &options, &path, NULL), STRUT_OK);
+  assert_int_equal(path.events[0].kind, STRUT_PATH_LIFT_OFF);
+  assert_int_equal(path.events[0].index, 1);
+  assert_relative(path.events[0].factor, 0.4 * 9.81 / 2, 1e-6); /* it leans a little */
+  strut_path_free(&path);
+  scene.loads[0].force[0] = 1, scene.loads[0].force[1] = 0; /* no friction holds it */
+  assert_int_equal(strut_path_follow(model, &options, &path, NULL), STRUT_NOT_SETTLED);
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* Two bistable cells on a spring kc: does the state with one cell up, one down exist? */
+static bool mixed_state(double kc) {
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t apex[2];
+  for (int i = 0; i < 2; i++) {
+    int32_t left = build_support(&scene, -1, 2 * i), right = build_support(&scene, 1, 2 * i);
+    apex[i] = build_node(&scene, 0, 2 * i + 0.3);
+    scene.nodes[apex[i]].fixed[0] = true;
+    build_member(&scene, STRUT_BAR, left, apex[i], 1, 0, 0);
+    build_member(&scene, STRUT_BAR, right, apex[i], 1, 0, 0);
+    scene.nodes[apex[i]].start[1] = 2 * i + (i ? -0.18 : 0.18);
+  }
+  build_sized(&scene, STRUT_SPRING, apex[0], apex[1], kc, 0, 0, 2);
+  strut_model *model = motion_compile(&scene);
+  strut_potential *potential = NULL;
+  strut_minimiser *minimiser = NULL;
+  assert_int_equal(strut_potential_create(model, NULL, false, &potential, NULL), STRUT_OK);
+  assert_int_equal(strut_minimiser_create(potential, &minimiser, NULL), STRUT_OK);
+  double q[16];
+  assert_true(model->length <= 16);
+  memcpy(q, model->start, (size_t)model->length * sizeof *q);
+  strut_minimise(minimiser, q, 0);
+  bool mixed = (q[2 * apex[0] + 1] > 0) != (q[2 * apex[1] + 1] > 2);
+  strut_minimiser_free(minimiser);
+  strut_potential_free(potential);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return mixed;
+}
+
+static void test_mixed_state_is_lost(void **state) {
+  (void)state;
+  double threshold = pow(hypot(1, 0.3), 2.0 / 3.0) - 1; /* both cells at their limit height */
+  assert_near(threshold, 0.0291424666, 5e-11);
+  assert_true(mixed_state(0.01));
+  assert_true(mixed_state(threshold * (1 - 1e-4)));
+  assert_false(mixed_state(threshold * (1 + 1e-4)));
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  strut_scene scene;
+  strut_path path = {0};
+  strut_error error = {0};
+  strut_path_options options = {.load = "push"};
+  arch(&scene, 1, 0.3, 1000);
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  assert_string_equal(error.message, "there is no load 'push'; the scene's loads are: l1");
+  strut_path_free(&path);
+  strut_model_free(model);
+  scene.loads[0].node = 0; /* a support */
+  model = motion_compile(&scene);
+  options.load = NULL;
+  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  strut_path_free(&path);
+  strut_model_free(model);
+  scene.load_count = 0;
+  model = motion_compile(&scene);
+  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_memory(void **state) {
+  (void)state;
+  strut_scene scene;
+  half_t_bar(&scene);
+  strut_model *model = motion_compile(&scene);
+  strut_path_options options = {.until = 100};
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status != STRUT_OK && n < 10000; n++) {
+    strut_path path = {0};
+    strut_fail_allocation_after(n);
+    status = strut_path_follow(model, &options, &path, NULL);
+    strut_fail_allocation_after(-1);
+    strut_path_free(&path);
+    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+  }
+  assert_true(n > 10);
+  assert_int_equal(status, STRUT_OK);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_limit_points),
+      cmocka_unit_test(test_sideways_buckling),
+      cmocka_unit_test(test_published_path),
+      cmocka_unit_test(test_slack_cables),
+      cmocka_unit_test(test_stiffening_mechanism),
+      cmocka_unit_test(test_touchdown),
+      cmocka_unit_test(test_lift_off),
+      cmocka_unit_test(test_mixed_state_is_lost),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
