@@ -8,13 +8,20 @@
 #include "parser/cli/command_check.h"
 #include "parser/cli/command_keys.h"
 #include "parser/cli/command_path.h"
+#include "parser/cli/command_modes.h"
 #include "parser/cli/command_run.h"
 #include "parser/cli/command_write.h"
 #include "parser/diagnostics.h"
 
-static const strut_command *const commands[] = {&strut_command_run, &strut_command_check,
-                                                &strut_command_path, &strut_command_write,
-                                                &strut_command_keys, NULL};
+static const strut_command *const commands[] = {
+    &strut_command_run,
+    &strut_command_check,
+    &strut_command_modes,
+    &strut_command_path,
+    &strut_command_write,
+    &strut_command_keys,
+    NULL,
+};
 
 static const char *command_name_at(const void *context, size_t i) {
   (void)context;

@@ -106,6 +106,9 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     case STRUT_OPTION_FORCE:
       to->force = true;
       break;
+    case STRUT_OPTION_STUCK:
+      to->stuck = true;
+      break;
     case STRUT_OPTION_HELP:
       to->help = true;
       break;

@@ -24,6 +24,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_SET = 256, /* no letters from here on */
   STRUT_OPTION_JSON,
   STRUT_OPTION_FORCE,
+  STRUT_OPTION_STUCK,
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -53,7 +54,7 @@ typedef struct strut_option {
 typedef struct strut_arguments {
   const char *model; /* NULL where the command takes none or none is given */
   const char *output;
-  bool help, json, quiet, force;
+  bool help, json, quiet, force, stuck;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides; /* (override_count) */
   size_t override_count;

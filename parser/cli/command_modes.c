@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_modes.h"
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/modes_report.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+
+enum { MOST_MODES = 1000 };
+
+static const strut_option options[] = {
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_AT, "at", "NAME", "at this configuration's equilibrium, or 'drawn'"},
+    {STRUT_OPTION_COUNT, "count", "N", "the lowest N modes"},
+    {STRUT_OPTION_STUCK, "stuck", NULL, "hold nodes that touch along the ground too"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write modes.json and modes.csv into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static strut_status write_files(const char *directory, const char *json, const char *csv,
+                                strut_error *error) {
+  strut_status status = strut_directory_create(directory, error);
+  if (status == STRUT_OK) status = strut_file_write_text(directory, "modes.json", json, error);
+  if (status == STRUT_OK) status = strut_file_write_text(directory, "modes.csv", csv, error);
+  return status;
+}
+
+static strut_status report(const strut_arguments *arguments, const strut_model *model,
+                           const strut_modes *modes) {
+  strut_error error = {0};
+  strut_status status = STRUT_OK;
+  char *json = strut_modes_json(model, modes), *csv = strut_modes_csv(modes);
+  char *text = arguments->json ? NULL : strut_modes_table(model, modes);
+  if (!json || !csv || (!text && !arguments->json)) {
+    status = strut_complain_of_memory();
+  } else {
+    if (arguments->output) status = write_files(arguments->output, json, csv, &error);
+    if (status != STRUT_OK)
+      strut_complain(&error);
+    else
+      status = strut_print(text ? text : json);
+  }
+  strut_release(json);
+  strut_release(csv);
+  strut_release(text);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_model *model = NULL;
+  strut_modes modes = {0};
+  strut_error error = {0};
+  int64_t count = 0;
+  strut_status status = strut_option_integer(&strut_command_modes, arguments, STRUT_OPTION_COUNT, 1,
+                                             MOST_MODES, &count);
+  if (status != STRUT_OK) return status;
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  strut_modes_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT),
+                                .count = (int32_t)count,
+                                .stuck = arguments->stuck};
+  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = strut_modes_find(model, &wanted, &modes, &error);
+  if (status != STRUT_OK)
+    strut_complain(&error);
+  else
+    status = report(arguments, model, &modes);
+  strut_modes_free(&modes);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_modes = {
+    .name = "modes",
+    .model = "MODEL",
+    .summary = "natural frequencies and shapes of small motions about an equilibrium",
+    .details =
+        "\nContacts that are closed there stay closed, and slide without friction unless\n"
+        "--stuck holds them. Without --at it is the equilibrium that the start comes to\n"
+        "rest in. Up to 400 coordinates all modes are computed, above the ten lowest.\n",
+    .options = options,
+    .run = run,
+};
