@@ -47,3 +47,13 @@ def at_factor($factor): [.points[] | select(((.factor - $factor) | fabs) < 1e-12
 
 # For expected numbers: root(2) instead of (2 | sqrt), since | divides the fields of a line.
 def root(f): f | sqrt;
+
+# Of a mapping from nodes to places: the angle [deg] of the line from a to b; of the middle of two
+# seen from the origin; and, from the downward direction [rad], of two rods that hang on each other.
+def degrees: . * 45 / (1 | atan);
+def turn($a; $b):
+  (.[$b][0] - .[$a][0]) as $x | (.[$b][1] - .[$a][1]) as $y | atan2($y; $x) | degrees;
+def toward($a; $b): atan2(.[$a][1] + .[$b][1]; .[$a][0] + .[$b][0]) | degrees;
+def swing($pin; $middle; $tip):
+  [atan2(.[$middle][0] - .[$pin][0]; .[$pin][1] - .[$middle][1]),
+   atan2(.[$tip][0] - .[$middle][0]; .[$middle][1] - .[$tip][1])];
