@@ -57,3 +57,5 @@ def toward($a; $b): atan2(.[$a][1] + .[$b][1]; .[$a][0] + .[$b][0]) | degrees;
 def swing($pin; $middle; $tip):
   [atan2(.[$middle][0] - .[$pin][0]; .[$pin][1] - .[$middle][1]),
    atan2(.[$tip][0] - .[$middle][0]; .[$middle][1] - .[$tip][1])];
+# How far a place is from (0, 0).
+def distance_from_origin: .[0] * .[0] + .[1] * .[1] | sqrt;
