@@ -31,4 +31,11 @@ extern const strut_curvature strut_curvature_dense, strut_curvature_sparse;
 void *strut_curvature_dense_create(const strut_potential *potential);
 void *strut_curvature_sparse_create(const strut_potential *potential);
 
+/**
+ * From a saddle at q down one side (+1 or -1) of direction (length), by steps short enough to stay in
+ * the valley they began in; true if q has come to a minimum.
+ */
+bool strut_descend_along(strut_minimiser *minimiser, const double *direction, double side,
+                         double *q);
+
 #endif

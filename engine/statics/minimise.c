@@ -15,6 +15,7 @@ struct strut_minimiser {
   const strut_curvature *curvature;
   void *room;
   double size;                /* of the structure [m] */
+  double farthest;            /* no step may be longer [m] */
   double *g, *g_trial, *step; /* (n) */
   double *trial, *before;     /* (length) */
   strut_arena arena;
@@ -28,6 +29,7 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   bool dense = potential->n <= STRUT_DENSE_STATICS;
   m->potential = potential;
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
+  m->farthest = HUGE_VAL;
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
   m->room = dense ? strut_curvature_dense_create(potential)
                   : strut_curvature_sparse_create(potential);
@@ -152,7 +154,7 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
     double ratio = energy_lost(m, *energy, there, step.reduction) / step.reduction;
     if (ratio > 1e-4) {
-      if (ratio > 0.75 && step.length > 0.99 * *radius) *radius *= 2.5;
+      if (ratio > 0.75 && step.length > 0.99 * *radius) *radius = fmin(2.5 * *radius, m->farthest);
       if (ratio < 0.25) *radius = 0.5 * step.length;
       keep_trial(m, q);
       *energy = there;
@@ -172,7 +174,7 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
 strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   int32_t n = m->potential->n, extra = 0;
-  double radius = 0.1 * m->size, energy = strut_potential_value(m->potential, q);
+  double radius = fmin(0.1 * m->size, m->farthest), energy = strut_potential_value(m->potential, q);
   memcpy(m->before, q, (size_t)m->potential->model->length * sizeof *q);
   strut_potential_gradient(m->potential, q, m->g);
   for (; end.iterations < MOST_STEPS; end.iterations++) {
@@ -200,6 +202,21 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   polish(m, q, tolerance, 1e-3 * m->size, &end);
   if (end.step > 1e-5 * m->size) end.end = STRUT_DESCENT_EXHAUSTED;
   return end;
+}
+
+bool strut_descend_along(strut_minimiser *m, const double *direction, double side, double *q) {
+  const strut_potential *p = m->potential;
+  double here = strut_potential_value(p, q), far = 0.02 * m->size;
+  for (int32_t i = 0; i < p->n; i++) m->step[i] = direction[p->coordinate[i]];
+  for (; far > 1e-7 * m->size; far *= 0.25) {
+    move(m, q, side * far);
+    if (strut_potential_value(p, m->trial) < here) break;
+  }
+  memcpy(q, m->trial, (size_t)p->model->length * sizeof *q);
+  m->farthest = 0.03 * m->size;
+  strut_descent end = strut_minimise(m, q, 0.0);
+  m->farthest = HUGE_VAL;
+  return end.end == STRUT_DESCENT_REACHED;
 }
 
 strut_descent strut_polish(strut_minimiser *m, double *q, double tolerance) {

@@ -255,6 +255,11 @@ strut_sparse *strut_potential_matrix(const strut_potential *p, strut_arena *aren
 }
 
 void strut_potential_hessian(const strut_potential *p, const double *q, strut_sparse *hessian) {
+  strut_potential_hessian_above(p, q, 0.0, hessian);
+}
+
+void strut_potential_hessian_above(const strut_potential *p, const double *q, double least,
+                                   strut_sparse *hessian) {
   const strut_member_table *t = &p->model->members;
   const strut_contact_table *c = &p->model->contacts;
   const int32_t *place = p->place;
@@ -262,7 +267,7 @@ void strut_potential_hessian(const strut_potential *p, const double *q, strut_sp
   memset(value, 0, (size_t)hessian->start[hessian->n] * sizeof *value);
   for (int32_t j = 0; j < t->count; j++, place += MEMBER_ENTRIES) {
     pose m = pose_of(t, j, q);
-    if (!m.taut) continue;
+    if (!m.taut || (t->slack[j] == 0.0 && t->stiffness[j] * m.stretch <= least)) continue;
     /* of zero length and zero rest length: a spring alike in all directions */
     double across = m.length > 0     ? t->stiffness[j] * m.stretch / m.length
                     : t->rest[j] > 0 ? 0.0
@@ -275,8 +280,9 @@ void strut_potential_hessian(const strut_potential *p, const double *q, strut_sp
       if (place[k] >= 0) value[place[k]] += block[k];
   }
   for (int32_t i = 0; i < c->count && p->ground; i++, place += CONTACT_ENTRIES) {
-    if (!(gap_of(c, i, q) < 0.0)) continue;
-    double stiffness = c->entry[i].stiffness, nx = c->normal[0], ny = c->normal[1];
+    double gap = gap_of(c, i, q), stiffness = c->entry[i].stiffness;
+    if (!(gap < 0.0) || -stiffness * gap <= least) continue;
+    double nx = c->normal[0], ny = c->normal[1];
     const double block[CONTACT_ENTRIES] = {stiffness * nx * nx, stiffness * nx * ny,
                                            stiffness * ny * ny};
     for (int k = 0; k < CONTACT_ENTRIES; k++)

@@ -60,5 +60,11 @@ STRUT_API strut_sparse *strut_potential_matrix(const strut_potential *potential,
 /** Fills it with the second derivatives at q; slack cables and open contacts give none [N/m]. */
 STRUT_API void strut_potential_hessian(const strut_potential *potential, const double *q,
                                        strut_sparse *hessian);
+/**
+ * The same where cables and contacts that pull or push by no more than `least` [N] count as slack
+ * and open: what remains where rounding alone decides.
+ */
+STRUT_API void strut_potential_hessian_above(const strut_potential *potential, const double *q,
+                                             double least, strut_sparse *hessian);
 
 #endif

@@ -12,6 +12,7 @@ struct strut_spectrum_room {
   strut_sparse *hessian;
   gsl_eigen_symmv_workspace *workspace, *soft_workspace; /* the latter for soft_n rows */
   int32_t soft_n;
+  double least; /* of the spectrum at hand [N] */
   double *dense, *basis;          /* (n, n) each: Hessian, eigenvectors in columns */
   double *soft, *soft_basis;      /* (n, n) room for the form on soft modes and its eigenvectors */
   double *raw, *value, *noise;    /* (n) */
@@ -116,7 +117,7 @@ static void add_members(strut_spectrum_room *room, const double *q, int32_t coun
     uint32_t a = t->from[j], b = t->to[j];
     double dx = q[b] - q[a], dy = q[b + 1] - q[a + 1], length = sqrt(dx * dx + dy * dy);
     double stretch = length - t->rest[j], c = t->stiffness[j];
-    if (!(stretch > t->slack[j])) continue;
+    if (!(stretch > t->slack[j]) || (t->slack[j] == 0.0 && c * stretch <= room->least)) continue;
     if (!(length > 0) && t->rest[j] > 0) continue;
     double ux = length > 0 ? dx / length : 1.0, uy = length > 0 ? dy / length : 0.0;
     double geometric = length > 0 ? c * stretch / length : c;
@@ -138,7 +139,7 @@ static void add_contacts(strut_spectrum_room *room, const double *q, int32_t cou
   for (int32_t j = 0; j < c->count && room->potential->ground; j++) {
     uint32_t at = c->at[j];
     double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
-    if (!(gap < 0.0)) continue;
+    if (!(gap < 0.0) || -c->entry[j].stiffness * gap <= room->least) continue;
     for (int32_t i = 0; i < count; i++) {
       const double *mode = room->vector + (size_t)i * n;
       room->along[i] =
@@ -183,12 +184,13 @@ static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
   return true;
 }
 
-bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, bool careful,
+bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, double least, bool careful,
                             strut_spectrum *spectrum) {
   int32_t n = room->potential->n, soft = 0, lost = 0;
   *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};
   if (n == 0) return true;
-  strut_potential_hessian(room->potential, q, room->hessian);
+  room->least = least;
+  strut_potential_hessian_above(room->potential, q, least, room->hessian);
   if (!fill_dense(room)) return false;
   solve(room->dense, n, room->workspace, room->raw, room->basis);
   sort_order(room->raw, n, room->order);

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/merge.h"
+
+#include <math.h>
+#include <string.h>
+
+struct strut_placement {
+  const double *q;
+  strut_placement *next;
+};
+
+/* What rigid motions of the whole change nothing: no support, no load, no ground is in their way. */
+static void see_motions(strut_gathering *g) {
+  const strut_potential *p = g->potential;
+  const strut_model *model = p->model;
+  int32_t fixed[2] = {0, 0}, first = -1;
+  bool at_one_node = true, loaded = p->force_scale > 0;
+  for (int32_t at = 0; at < 2 * model->node_count; at++) {
+    if (p->row_of[at] >= 0) continue;
+    fixed[at % 2]++;
+    at_one_node = at_one_node && (first < 0 || first == at / 2);
+    first = at / 2;
+  }
+  bool grounded = p->ground && model->contacts.count > 0;
+  double net[2] = {0.0, 0.0};
+  for (int32_t at = 0; at < 2 * model->node_count; at++) net[at % 2] += p->force[at];
+  g->congruent = fixed[0] + fixed[1] <= 3;
+  g->shifts[0] = fixed[0] == 0 && net[0] == 0 && !(grounded && model->contacts.normal[0] != 0);
+  g->shifts[1] = fixed[1] == 0 && net[1] == 0 && !grounded;
+  g->turns = at_one_node && !loaded && !grounded;
+}
+
+void strut_gathering_start(strut_gathering *g, const strut_potential *potential,
+                           strut_arena *arena) {
+  const strut_model *model = potential->model;
+  double size = model->size > 0 ? model->size : 1.0, stiffest = 0.0;
+  *g = (strut_gathering){.potential = potential, .arena = arena};
+  for (int32_t j = 0; j < model->members.count; j++)
+    stiffest = fmax(stiffest, model->members.stiffness[j]);
+  g->near = 1e-6 * size;
+  g->flat = 1e-15 * stiffest * size * size + 1e-12 * potential->force_scale * size;
+  see_motions(g);
+}
+
+void strut_gathering_free(strut_gathering *g) {
+  strut_release(g->points);
+  strut_release(g->placement);
+  g->points = NULL, g->placement = NULL, g->count = g->room = 0;
+}
+
+/* The largest distance between two placements, motions apart that change nothing. */
+static double place_distance(const strut_gathering *g, const double *a, const double *b) {
+  const strut_model *model = g->potential->model;
+  double mean[2] = {0.0, 0.0}, largest = 0.0;
+  if (g->turns) return strut_shape_distance(model, a, b, false, NULL);
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    if (g->shifts[at % 2]) mean[at % 2] += (a[at] - b[at]) / model->node_count;
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    largest = fmax(largest, fabs(a[at] - b[at] - mean[at % 2]));
+  return largest;
+}
+
+static bool same_energy(const strut_gathering *g, double a, double b) {
+  return fabs(a - b) <= g->flat + 1e-9 * fmin(fabs(a), fabs(b));
+}
+
+static bool same_point(const strut_gathering *g, const double *q, const double *known) {
+  if (place_distance(g, q, known) <= g->near) return true;
+  return g->congruent &&
+         strut_shape_distance(g->potential->model, q, known, true, NULL) <= g->near;
+}
+
+static int32_t find(const strut_gathering *g, const double *q, double energy) {
+  for (size_t i = 0; i < g->count; i++)
+    if (same_energy(g, energy, g->points[i].potential) && same_point(g, q, g->points[i].q))
+      return (int32_t)i;
+  return -1;
+}
+
+int32_t strut_gathering_find(const strut_gathering *g, const double *q) {
+  return find(g, q, strut_potential_value(g->potential, q));
+}
+
+static bool remember_placement(strut_gathering *g, int32_t index, const double *q) {
+  strut_placement **end = &g->placement[index];
+  for (; *end; end = &(*end)->next)
+    if (place_distance(g, q, (*end)->q) <= g->near) return true;
+  size_t length = (size_t)g->potential->model->length;
+  double *copy = strut_arena_allocate(g->arena, length, sizeof *copy);
+  *end = strut_arena_allocate(g->arena, 1, sizeof **end);
+  if (!copy || !*end) {
+    *end = NULL;
+    return false;
+  }
+  memcpy(copy, q, length * sizeof *q);
+  (*end)->q = copy;
+  return true;
+}
+
+static bool make_room(strut_gathering *g) {
+  if (g->count < g->room) return true;
+  size_t room = g->room ? 2 * g->room : 16;
+  strut_critical_point *points = strut_reallocate(g->points, room, sizeof *points);
+  if (!points) return false;
+  g->points = points;
+  strut_placement **placement = strut_reallocate(g->placement, room, sizeof *placement);
+  if (!placement) return false;
+  g->placement = placement;
+  g->room = room;
+  return true;
+}
+
+/* A floppy shape is one of a continuum: all of one energy count as one. */
+static int32_t find_floppy(const strut_gathering *g, const strut_critical_point *point) {
+  for (size_t i = 0; i < g->count; i++)
+    if (g->points[i].label == STRUT_FLOPPY &&
+        same_energy(g, point->potential, g->points[i].potential))
+      return (int32_t)i;
+  return -1;
+}
+
+static int32_t count_placements(const strut_gathering *g, int32_t index) {
+  int32_t count = 0;
+  for (const strut_placement *at = g->placement[index]; at; at = at->next) count++;
+  return count;
+}
+
+strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *index, bool *fresh,
+                                 strut_error *error) {
+  strut_critical_point point;
+  *index = strut_gathering_find(g, q);
+  *fresh = *index < 0;
+  if (*fresh) {
+    strut_status status = strut_critical_judge(g->potential, q, g->arena, &point, error);
+    if (status) return status;
+    if (point.label == STRUT_FLOPPY) *index = find_floppy(g, &point);
+    *fresh = *index < 0;
+  }
+  if (*fresh) {
+    if (!make_room(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    *index = (int32_t)g->count++;
+    g->placement[*index] = NULL;
+    g->points[*index] = point;
+    g->points[*index].found = 0;
+  }
+  strut_critical_point *known = &g->points[*index];
+  known->found++;
+  if (known->label == STRUT_FLOPPY && !*fresh) return STRUT_OK;
+  if (!remember_placement(g, *index, q))
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  known->placements = count_placements(g, *index);
+  return STRUT_OK;
+}
+
+const double *strut_gathering_placement(const strut_gathering *g, int32_t index, int32_t k) {
+  const strut_placement *at = g->placement[index];
+  while (at && k-- > 0) at = at->next;
+  return at ? at->q : NULL;
+}
+
+void strut_number_shapes(const strut_gathering *like, strut_critical_point *points, size_t count) {
+  const strut_model *model = like->potential->model;
+  int32_t next = 0;
+  for (size_t i = 0; i < count; i++) {
+    points[i].shape = -1;
+    for (size_t k = 0; k < i && points[i].shape < 0; k++)
+      if (same_energy(like, points[i].potential, points[k].potential) &&
+          strut_shape_distance(model, points[i].q, points[k].q, true, NULL) <= like->near)
+        points[i].shape = points[k].shape;
+    if (points[i].shape < 0) points[i].shape = next++;
+  }
+}
