@@ -195,6 +195,8 @@ static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *m
   strut_status status = strut_extended_create(v->shape->pattern, &work->factor, error);
   if (status == STRUT_OK) status = check_problem(work, error);
   if (status != STRUT_OK) return status;
+  if (modes->at_rest) status = strut_modes_settle(work, error);
+  if (status != STRUT_OK) return status;
   modes->coordinates = v->n;
   modes->dense = v->n <= STRUT_DENSE_MODES;
   status = modes->dense ? strut_modes_dense(work, error)
@@ -206,7 +208,7 @@ static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *m
   work->set.residual = strut_arena_allocate(work->arena, count, sizeof(double));
   if (!work->set.noise || !work->set.error || !work->set.residual)
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  status = strut_modes_polish(work, modes->at_rest, error);
+  status = strut_modes_noise(work, modes->at_rest, error);
   if (status == STRUT_OK) status = strut_modes_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_refine(work, error);
   return status ? status : report(work, wanted, modes, error);

@@ -112,17 +112,11 @@ static void invert(dense *d) {
     }
 }
 
-/* The i-th of the inverse's eigenpairs, t = 1 / (z + soft), where it is the better one. */
-static void merge(dense *d, const gsl_matrix *small, const size_t *order, size_t i,
-                  bool alone) {
-  strut_eigen_set *set = &d->work->set;
-  size_t from = order[i];
-  double t = gsl_vector_get(d->value, from), top = 0.0, soft = d->work->soft;
-  for (size_t k = 0; k < d->massive; k++) top = fmax(top, fabs(gsl_vector_get(d->value, k)));
-  double here = top / fabs(t), there = d->work->v->largest / fmax(fabs(set->value[i]), DBL_MIN);
-  if (!alone && here > there) return;
-  set->value[i] = 1.0 / t - soft;
-  double *x = set->vector + i * d->n;
+/* The i-th of the inverse's eigenpairs, t = 1 / (z + soft), into the set. */
+static void take_inverse(dense *d, const gsl_matrix *small, size_t from, size_t i) {
+  double t = gsl_vector_get(d->value, from);
+  double *x = d->work->set.vector + i * d->n;
+  d->work->set.value[i] = 1.0 / t - d->work->soft;
   memset(x, 0, d->n * sizeof *x);
   for (size_t c = 0; c < d->massive; c++) {
     double z = gsl_matrix_get(small, c, from) / t;
@@ -130,20 +124,45 @@ static void merge(dense *d, const gsl_matrix *small, const size_t *order, size_t
   }
 }
 
-/* Ascending eigenvalues are 1/t: the negative t from 0 down, then the positive from the largest. */
-static bool comes_before(double s, double t) { return (s < 0) != (t < 0) ? s < 0 : s > t; }
-
-static void merge_all(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
+/*
+ * Ascending eigenvalues are 1/t: first the negative t from 0 down, then the positive from the largest.
+ * A negative one within the rounding of the largest is a huge eigenvalue.
+ */
+static void sort_inverse(const dense *d, double top, size_t *order) {
+  double least = 1e-12 * top;
   for (size_t i = 0; i < d->massive; i++) {
     size_t rank = 0;
     double t = gsl_vector_get(d->value, i);
     for (size_t k = 0; k < d->massive; k++) {
       double s = gsl_vector_get(d->value, k);
-      rank += comes_before(s, t) || (s == t && k < i);
+      bool before = (s < -least) != (t < -least) ? s < -least : s > t;
+      rank += before || (s == t && k < i);
     }
     order[rank] = i;
   }
-  for (size_t i = 0; i < d->massive; i++) merge(d, small, order, i, alone);
+}
+
+/*
+ * Where the direct way begins to be the better one: its errors, relative, are those of the largest
+ * over the eigenvalue, the inverse's the other way round. Equal eigenvalues are not torn apart, for
+ * the two ways choose different vectors among theirs.
+ */
+static size_t find_cut(const dense *d, double top, const size_t *order) {
+  const double *value = d->work->set.value;
+  for (size_t i = 1; i < d->massive; i++) {
+    double inverse = top / fabs(gsl_vector_get(d->value, order[i]));
+    double direct = d->work->v->largest / fmax(fabs(value[i]), DBL_MIN);
+    if (direct <= inverse && value[i] - value[i - 1] > 1e-3 * fabs(value[i])) return i;
+  }
+  return d->massive;
+}
+
+static void merge(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
+  double top = 0.0;
+  for (size_t k = 0; k < d->massive; k++) top = fmax(top, fabs(gsl_vector_get(d->value, k)));
+  sort_inverse(d, top, order);
+  size_t cut = alone ? d->massive : find_cut(d, top, order);
+  for (size_t i = 0; i < cut; i++) take_inverse(d, small, order[i], i);
 }
 
 static bool solve_inverse(dense *d, bool alone) {
@@ -158,7 +177,7 @@ static bool solve_inverse(dense *d, bool alone) {
     gsl_matrix_view a = gsl_matrix_submatrix(d->a, 0, 0, d->massive, d->massive);
     gsl_vector_view value = gsl_vector_subvector(d->value, 0, d->massive);
     good = gsl_eigen_symmv(&a.matrix, &value.vector, small, w) == 0;
-    if (good) merge_all(d, small, order, alone);
+    if (good) merge(d, small, order, alone);
   }
   gsl_eigen_symmv_free(w);
   gsl_matrix_free(small);

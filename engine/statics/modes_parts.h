@@ -24,11 +24,9 @@ typedef struct strut_modes_work {
   strut_vibration *v;
   strut_extended_factor *factor;
   strut_eigen_set set;
-  int32_t zeros;        /* leading modes without stiffness... those of `zero` */
   double soft;          /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
   int32_t rigid_count;
   double *rigid;        /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
-  strut_dd *member_noise; /* (member_count) change of `across` by the last bits [N/m] */
   strut_arena *arena;
 } strut_modes_work;
 
@@ -40,8 +38,11 @@ strut_status strut_modes_shape(const strut_model *model, const char *name, strut
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error);
 
-/** Improves the shape and the eigenpairs, and estimates their errors. */
-strut_status strut_modes_polish(strut_modes_work *work, bool at_rest, strut_error *error);
+/** The shape to twice a double's precision, from one that is at rest as far as doubles tell. */
+strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);
+/** What the last bits of rest lengths, or of a shape that is not at rest, do to the eigenvalues. */
+strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error);
+/** Improves the eigenpairs and estimates their errors. */
 strut_status strut_modes_refine(strut_modes_work *work, strut_error *error);
 
 /** The rigid motions that supports and closed contacts leave. */

@@ -8,6 +8,9 @@
 
 enum { MOST_STEPS = 8, SAMPLES = 3 };
 
+/* Of the largest eigenvalue: makes K regular where something moves freely, and leaves the rest. */
+static const double FIRM = 1e-24;
+
 static double largest(const strut_dd *x, int32_t n) {
   double size = 0.0;
   for (int32_t i = 0; i < n; i++) size = fmax(size, fabs(x[i].hi));
@@ -31,7 +34,7 @@ static void settle(strut_modes_work *work, strut_dd *step) {
   strut_vibration_force(v, step);
   double force = largest(step, v->n);
   for (int i = 0; i < MOST_STEPS && force > 0; i++) {
-    strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, work->soft);
+    strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, FIRM * v->largest);
     strut_extended_solve(work->factor, step);
     double size = largest(step, v->n);
     if (!(size < 1e-6 * v->model->size)) return;
@@ -107,16 +110,21 @@ static void measure_noise(strut_modes_work *work, const double *noise) {
   }
 }
 
-strut_status strut_modes_polish(strut_modes_work *work, bool at_rest, strut_error *error) {
+strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
+  strut_dd *step = strut_arena_allocate(work->arena, (size_t)work->v->n, sizeof *step);
+  if (!step) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  settle(work, step);
+  return STRUT_OK;
+}
+
+strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error) {
   strut_vibration *v = work->v;
   strut_dd *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
   double *noise =
       strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
   if (!step || !noise) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (at_rest) {
-    settle(work, step);
+  if (at_rest)
     strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, work->soft);
-  }
   for (uint64_t sample = 0; sample < SAMPLES; sample++) {
     sample_noise(work, at_rest, sample, noise, step);
     measure_noise(work, noise);

@@ -19,6 +19,7 @@ static strut_status come_to_rest(const strut_potential *potential, double *q, st
 
 strut_status strut_modes_shape(const strut_model *model, const char *name, strut_arena *arena,
                                strut_stand *stand, strut_error *error) {
+  if (name && strcmp(name, "start") == 0) name = NULL;
   size_t length = (size_t)model->length, most = (size_t)model->contacts.count;
   strut_potential *potential = NULL;
   strut_status status = strut_potential_create(model, NULL, true, &potential, error);
