@@ -108,7 +108,7 @@ static void subtract_column(strut_extended_factor *f, int32_t c, int32_t at, int
 
 /* Keeps count of the signs, and of the pivot that cancelled most; none is left at zero. */
 static void look_at_pivot(strut_extended_factor *f, int32_t j, double before) {
-  double size = fabs(f->diagonal[j].hi), loss = before > 0 ? size / before : 1.0;
+  double size = fabs(f->diagonal[j].hi), loss = before > 0 ? size / before : 0.0;
   if (loss < f->loss) f->loss = loss, f->weakest = f->pattern->order[j];
   if (!(size > before * STRUT_DD_EPSILON))
     f->diagonal[j] = dd_of(before > 0 ? before * STRUT_DD_EPSILON : STRUT_DD_EPSILON);

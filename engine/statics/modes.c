@@ -198,7 +198,6 @@ static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *m
   if (modes->at_rest) status = strut_modes_settle(work, error);
   if (status != STRUT_OK) return status;
   modes->coordinates = v->n;
-  modes->dense = v->n <= STRUT_DENSE_MODES;
   status = modes->dense ? strut_modes_dense(work, error)
                         : strut_modes_sparse(work, wanted, error);
   if (status != STRUT_OK) return status;
@@ -215,9 +214,9 @@ static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *m
 }
 
 /* The lowest so many that are wanted: of a dense problem all unless asked otherwise. */
-static int32_t wanted_of(const strut_modes_options *options, const strut_vibration *v) {
+static int32_t wanted_of(const strut_modes_options *options, bool dense) {
   if (options->count > 0) return options->count;
-  return v->n <= STRUT_DENSE_MODES ? v->n : STRUT_SPARSE_MODES;
+  return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
 }
 
 strut_status strut_modes_find(const strut_model *model, const strut_modes_options *options,
@@ -237,7 +236,10 @@ strut_status strut_modes_find(const strut_model *model, const strut_modes_option
   if (status == STRUT_OK)
     status = strut_vibration_create(model, stand.q, stand.closed, stand.closed_count, held,
                                     &work.v, error);
-  if (status == STRUT_OK) status = solve(&work, wanted_of(options, work.v), modes, error);
+  if (status == STRUT_OK) {
+    modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
+    status = solve(&work, wanted_of(options, modes->dense), modes, error);
+  }
   strut_extended_free(work.factor);
   strut_vibration_free(work.v);
   return status;

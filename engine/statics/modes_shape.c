@@ -21,6 +21,8 @@ strut_status strut_modes_shape(const strut_model *model, const char *name, strut
                                strut_stand *stand, strut_error *error) {
   if (name && strcmp(name, "start") == 0) name = NULL;
   size_t length = (size_t)model->length, most = (size_t)model->contacts.count;
+  if (name && strcmp(name, "drawn") != 0)
+    return strut_fail(error, STRUT_USAGE, "there is no configuration '%s'", name);
   strut_potential *potential = NULL;
   strut_status status = strut_potential_create(model, NULL, true, &potential, error);
   if (status != STRUT_OK) return status;
