@@ -23,6 +23,7 @@ static const char *const said_anyway[] = {
     "damping: 0",           "height: 0",       "contacts: {}",
     "friction: {law: none", "integrator: rk4", "mass_model: consistent",
     "configuration: start", /* which is as drawn, in the crawler */
+    "apex1: [0, height],",  /* a shape that says of one node what is drawn */
 };
 
 typedef struct mutation {
