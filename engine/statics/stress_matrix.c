@@ -102,10 +102,12 @@ static int32_t count_nodes(const strut_model *model, int32_t *row) {
   return nodes;
 }
 
-static void judge(strut_stress_matrix *stress) {
+/* Densities may cancel at every node: eigenvalues are small beside them, not beside themselves. */
+static void judge(const strut_equilibrium_matrix *a, const double *force,
+                  strut_stress_matrix *stress) {
   double largest = 0.0;
-  for (int32_t i = 0; i < stress->count; i++)
-    largest = fmax(largest, fabs(stress->eigenvalues[i]));
+  for (int32_t j = 0; j < a->columns; j++)
+    if (a->length[j] > 0) largest = fmax(largest, fabs(force[j]) / a->length[j]);
   stress->positive = largest > 0;
   for (int32_t i = 0; i < stress->count; i++) {
     if (fabs(stress->eigenvalues[i]) <= ROUNDING * largest) stress->nullity++;
@@ -136,7 +138,7 @@ strut_status strut_stress_matrix_judge(const strut_model *model,
     stress->on_conic = lies_on_conic(a);
     if (strut_symmetric_eigen(matrix, (size_t)stress->count, stress->eigenvalues, vector)) {
       stress->tested = true;
-      judge(stress);
+      judge(a, force, stress);
       status = STRUT_OK;
     }
   }

@@ -9,6 +9,7 @@
 #include "parser/cli/command_keys.h"
 #include "parser/cli/command_path.h"
 #include "parser/cli/command_modes.h"
+#include "parser/cli/command_rigidity.h"
 #include "parser/cli/command_run.h"
 #include "parser/cli/command_write.h"
 #include "parser/diagnostics.h"
@@ -18,6 +19,7 @@ static const strut_command *const commands[] = {
     &strut_command_check,
     &strut_command_modes,
     &strut_command_path,
+    &strut_command_rigidity,
     &strut_command_write,
     &strut_command_keys,
     NULL,
