@@ -6,9 +6,10 @@
 #include <string.h>
 
 #include "parser/cli/command_check.h"
+#include "parser/cli/command_form.h"
 #include "parser/cli/command_keys.h"
-#include "parser/cli/command_path.h"
 #include "parser/cli/command_modes.h"
+#include "parser/cli/command_path.h"
 #include "parser/cli/command_rigidity.h"
 #include "parser/cli/command_run.h"
 #include "parser/cli/command_write.h"
@@ -18,6 +19,7 @@ static const strut_command *const commands[] = {
     &strut_command_run,
     &strut_command_check,
     &strut_command_modes,
+    &strut_command_form,
     &strut_command_path,
     &strut_command_rigidity,
     &strut_command_write,

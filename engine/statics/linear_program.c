@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/linear_program.h"
+
+#include <assert.h>
+#include <glpk.h>
+#include <math.h>
+
+static const double TOLERANCE = 1e-10; /* of bounds and of reduced costs */
+
+bool strut_linear_program_create(strut_linear_program *p, int32_t rows, int32_t columns,
+                                 size_t entries, strut_arena *arena) {
+  *p = (strut_linear_program){.rows = rows, .columns = columns, .entry_room = entries};
+  double **by_row[] = {&p->row_low, &p->row_high}, **by_column[] = {&p->low, &p->high, &p->cost};
+  bool good = true;
+  for (int i = 0; i < 2; i++) {
+    *by_row[i] = strut_arena_allocate(arena, (size_t)rows, sizeof(double));
+    good = good && *by_row[i];
+  }
+  for (int i = 0; i < 3; i++) {
+    *by_column[i] = strut_arena_allocate(arena, (size_t)columns, sizeof(double));
+    good = good && *by_column[i];
+  }
+  p->entry_row = strut_arena_allocate(arena, entries, sizeof *p->entry_row);
+  p->entry_column = strut_arena_allocate(arena, entries, sizeof *p->entry_column);
+  p->entry = strut_arena_allocate(arena, entries, sizeof *p->entry);
+  if (!good || !p->entry_row || !p->entry_column || !p->entry) return false;
+  for (int32_t j = 0; j < columns; j++) p->high[j] = HUGE_VAL;
+  return true;
+}
+
+void strut_linear_program_add(strut_linear_program *p, int32_t row, int32_t column, double value) {
+  if (value == 0) return;
+  assert(p->entry_count < p->entry_room);
+  p->entry_row[p->entry_count] = row;
+  p->entry_column[p->entry_count] = column;
+  p->entry[p->entry_count++] = value;
+}
+
+static int kind_of(double low, double high) {
+  if (low == high) return GLP_FX;
+  if (isfinite(low)) return isfinite(high) ? GLP_DB : GLP_LO;
+  return isfinite(high) ? GLP_UP : GLP_FR;
+}
+
+/* GLPK counts from 1. */
+static bool load_entries(const strut_linear_program *p, glp_prob *problem) {
+  size_t count = p->entry_count;
+  int *row = strut_allocate(count + 1, sizeof *row);
+  int *column = strut_allocate(count + 1, sizeof *column);
+  double *value = strut_allocate(count + 1, sizeof *value);
+  bool good = row && column && value;
+  for (size_t i = 0; i < count && good; i++) {
+    row[i + 1] = p->entry_row[i] + 1;
+    column[i + 1] = p->entry_column[i] + 1;
+    value[i + 1] = p->entry[i];
+  }
+  if (good) glp_load_matrix(problem, (int)count, row, column, value);
+  strut_release(row);
+  strut_release(column);
+  strut_release(value);
+  return good;
+}
+
+static strut_program_end end_of(int code, int status) {
+  if (code == 0 && status == GLP_OPT) return STRUT_PROGRAM_OPTIMAL;
+  if (code == 0 && status == GLP_NOFEAS) return STRUT_PROGRAM_INFEASIBLE;
+  if (code == 0 && status == GLP_UNBND) return STRUT_PROGRAM_UNBOUNDED;
+  return STRUT_PROGRAM_FAILED;
+}
+
+strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
+                                        strut_program_end *end) {
+  glp_term_out(GLP_OFF);
+  glp_prob *problem = glp_create_prob();
+  glp_set_obj_dir(problem, GLP_MIN);
+  if (p->rows > 0) glp_add_rows(problem, p->rows);
+  if (p->columns > 0) glp_add_cols(problem, p->columns);
+  for (int32_t i = 0; i < p->rows; i++)
+    glp_set_row_bnds(problem, i + 1, kind_of(p->row_low[i], p->row_high[i]), p->row_low[i],
+                     p->row_high[i]);
+  for (int32_t j = 0; j < p->columns; j++) {
+    glp_set_col_bnds(problem, j + 1, kind_of(p->low[j], p->high[j]), p->low[j], p->high[j]);
+    glp_set_obj_coef(problem, j + 1, p->cost[j]);
+  }
+  bool loaded = load_entries(p, problem);
+  if (loaded) {
+    glp_smcp how;
+    glp_init_smcp(&how);
+    how.msg_lev = GLP_MSG_OFF;
+    how.tol_bnd = how.tol_dj = TOLERANCE;
+    glp_scale_prob(problem, GLP_SF_AUTO);
+    glp_adv_basis(problem, 0);
+    int code = glp_simplex(problem, &how);
+    *end = end_of(code, glp_get_status(problem));
+    *sum = glp_get_obj_val(problem);
+    for (int32_t j = 0; j < p->columns; j++) x[j] = glp_get_col_prim(problem, j + 1);
+  }
+  glp_delete_prob(problem);
+  return loaded ? STRUT_OK : STRUT_NO_MEMORY;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_form.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/form_report.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+#include "parser/write_scene.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_FROM, "from", "WHAT", "densities, lengths or prestress; else as the model says"},
+    {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE", "what every cable pulls with at least"},
+    {STRUT_OPTION_OBJECTIVE, "objective", "WHAT",
+     "of many prestresses: least largest, sum or squares"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print what it holds"},
+    {STRUT_OPTION_QUIET, "quiet", NULL, "with -o, print nothing"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static strut_status read_options(const strut_arguments *arguments, strut_form_options *wanted) {
+  static const char *const sources[] = {"densities", "lengths", "prestress", NULL};
+  static const char *const objectives[] = {"largest", "sum", "squares", NULL};
+  const strut_command *command = &strut_command_form;
+  int source = -1, objective = 0;
+  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_FROM, sources, &source);
+  if (status == STRUT_OK)
+    status = strut_option_word(command, arguments, STRUT_OPTION_OBJECTIVE, objectives, &objective);
+  if (status == STRUT_OK)
+    status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_TENSION, STRUT_DIM_FORCE,
+                                 &wanted->least_tension);
+  if (status == STRUT_OK && wanted->least_tension < 0) {
+    fprintf(stderr, "strut form: --least-tension expects a force above 0: cables only pull\n");
+    status = STRUT_USAGE;
+  }
+  wanted->from = (strut_form_source)(source + 1);
+  wanted->objective = (strut_form_objective)objective;
+  return status;
+}
+
+/* FILE as the user gave it: its directory must be there, its content appears whole or not at all. */
+static strut_status write_file(const char *path, const char *text, strut_error *error) {
+  const char *slash = strrchr(path, '/');
+  if (!slash) return strut_file_write_text(".", path, text, error);
+  strut_arena arena = {0};
+  size_t length = slash == path ? 1 : (size_t)(slash - path);
+  const char *directory = strut_arena_text(&arena, path, length);
+  strut_status status = directory ? strut_file_write_text(directory, slash + 1, text, error)
+                                  : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_arena_free(&arena);
+  return status;
+}
+
+static strut_status show(const strut_arguments *arguments, const strut_scene *scene,
+                         const strut_form *form) {
+  strut_error error = {0};
+  char *text = strut_scene_write(scene);
+  char *table = arguments->output && !arguments->quiet ? strut_form_table(form, scene) : NULL;
+  strut_status status = STRUT_OK;
+  if (!text || (arguments->output && !arguments->quiet && !table)) {
+    status = strut_complain_of_memory();
+  } else if (arguments->output) {
+    status = write_file(arguments->output, text, &error);
+    if (status != STRUT_OK)
+      strut_complain(&error);
+    else if (table)
+      status = strut_print(table);
+  } else {
+    status = strut_print(text);
+  }
+  strut_release(text);
+  strut_release(table);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_form form;
+  strut_form_options wanted = {0};
+  strut_error error = {0};
+  strut_status status = read_options(arguments, &wanted);
+  if (status != STRUT_OK) return status;
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  status = strut_form_find(&scene, &wanted, &form, &error);
+  if (status == STRUT_OK)
+    status = show(arguments, &scene, &form);
+  else
+    strut_complain(&error);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_form = {
+    .name = "form",
+    .model = "MODEL",
+    .summary = "finds a shape in equilibrium, and writes the model that holds it",
+    .details =
+        "\nFrom densities: the shape that the members' force densities make, or the nearest\n"
+        "densities that make one. From lengths: the shape that the rest lengths make. From\n"
+        "prestress: the drawn shape, with rest lengths that hold it under gravity, loads and\n"
+        "on the ground, every cable in tension. Without --from a model with force densities\n"
+        "means densities, one with rest lengths lengths, any other prestress.\n"
+        "The new model, printed or written to FILE, stands still when it is run.\n",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,97 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# strut form: what it writes stands still when it is run; what it refuses, and how.
+. "$(dirname "$0")/lib.sh"
+models=$here/../../models
+
+# drift FILE: farthest that a coordinate in nodes.csv goes from its first value.
+drift() {
+  awk -F, 'NR == 2 { for (i = 2; i <= NF; i++) first[i] = $i }
+    NR > 1 { for (i = 2; i <= NF; i++) { d = $i - first[i]; if (d < 0) d = -d; if (d > most) most = d } }
+    END { printf "%.3g\n", most }' "$1"
+}
+
+# holds MODEL SIZE OPTION...: the form found, run for 10 s, stays within 1e-9 of its size.
+holds() {
+  model=$1
+  size=$2
+  shift 2
+  expect 0 form "$model" "$@" -o form.yaml
+  out_has "forces left"
+  grep -qF 'run: {duration: 10}' form.yaml || fail "$model: no run of 10 s was added"
+  expect 0 run form.yaml -o results --quiet
+  moved=$(drift results/nodes.csv)
+  awk -v moved="$moved" -v size="$size" 'BEGIN { exit !(moved <= 1e-9 * size) }' ||
+    fail "$model $*: drifts by $moved m"
+}
+
+# The measure itself sees a drift.
+printf 'time [s],a.x [m]\n0,1\n1,1.5\n2,1.25\n' >moves.csv
+[ "$(drift moves.csv)" = 0.5 ] || fail "drift does not see what moves"
+
+cat >frame.yaml <<'END'
+strut: 1
+name: Frame
+parameters: {push: -2}
+gravity: [0, -9.81]
+nodes:
+  n1: {position: [0, 0], mass: 0.1}
+  n2: {position: [1, 0], mass: 0.1}
+  n3: {position: [1.2, 1], mass: 0.1}
+  n4: {position: [0, 0.8], mass: 0.1}
+members:
+  c12: {kind: cable, nodes: [n1, n2], stiffness: 1000}
+  c23: {kind: cable, nodes: [n2, n3], stiffness: 1000}
+  c34: {kind: cable, nodes: [n3, n4], stiffness: 1000}
+  c41: {kind: cable, nodes: [n4, n1], stiffness: 1000}
+  b24: {kind: bar, nodes: [n2, n4], stiffness: 1e5, mass: 0.2}
+  b13: {kind: bar, nodes: [n1, n3], axial_stiffness: 1e5, mass: 0.2}
+ground: {stiffness: 1e5, damping: 10, friction: {mu: 0.3, stick_velocity: 0.1 mm/s}}
+loads:
+  down: {node: n3, force: [0, push]}
+END
+
+holds frame.yaml 1.2 --least-tension "3 N"
+holds frame.yaml 1.2 --objective sum
+holds frame.yaml 1.2 --objective squares
+holds "$models/gallery/arm.yaml" 4
+holds "$models/gallery/spine.yaml" 0.3 --from prestress --objective squares
+holds "$models/gallery/hexagon-two-struts.yaml" 2.3 --from prestress
+holds "$models/gallery/hexagon-two-struts.yaml" 2.3 --from lengths
+holds "$models/gallery/x-frame.yaml" 1 --from lengths
+holds "$models/gallery/cauchy-hexagon.yaml" 2 --from densities
+
+# The same bytes again; without -o the model alone is on stdout.
+expect 0 form frame.yaml -o once.yaml --quiet
+out_empty
+expect 0 form frame.yaml
+same once.yaml "$work/out"
+err_empty
+expect 0 check once.yaml
+# What it found it finds again: the shape is in equilibrium, to the last bits of its forces.
+expect 0 form once.yaml --from lengths -o again.yaml
+out_has "nodes moved"
+
+# Refusals.
+expect 1 form frame.yaml --from densitis
+err_has "expects densities, lengths or prestress, not 'densitis'; did you mean 'densities'?"
+expect 1 form frame.yaml --least-tension "3 m"
+err_has "--least-tension expects a force, such as"
+expect 1 form frame.yaml --least-tension -3
+err_has "above 0"
+expect 3 form frame.yaml --from densities
+err_has "no member has a force density"
+expect 3 form frame.yaml --least-tension 1e6
+err_has "stiffness does not allow"
+sed '/b24/d' frame.yaml >lacking.yaml
+expect 3 form lacking.yaml
+err_has "no forces with every cable at"
+err_has "are missing"
+out_empty
+sed '/^ground/d' frame.yaml >falling.yaml
+expect 3 form falling.yaml --from lengths
+err_has "nothing holds the structure"
+expect 4 form frame.yaml -o "$work/nowhere/form.yaml"
+err_has "nowhere"
+absent "$work/nowhere"
+done_testing
