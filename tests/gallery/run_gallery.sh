@@ -30,7 +30,6 @@ here=$root/tests/gallery
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 failures=0
-asked=0
 
 # compare FILTER EXPECTED TOLERANCE ANSWER: prints what is wrong, nothing if all is right.
 compare() {
@@ -52,7 +51,7 @@ ask() {
   model=$1
   # shellcheck disable=SC2086
   set -- $2
-  command=$1
+  name_of_command=$1
   shift
   options=
   for word; do
@@ -65,16 +64,21 @@ ask() {
   done
   status=0
   # shellcheck disable=SC2086
-  "$strut" "$command" "$model" $options --json >"$answer" 2>"$scratch/message" || status=$?
+  "$strut" "$name_of_command" "$model" $options --json >"$answer" 2>"$scratch/message" || status=$?
   [ "$status" = 0 ] || jq -n --arg message "$(tr '\n' ' ' <"$scratch/message")" --argjson status "$status" \
     '{$status, $message}' >"$answer"
 }
 
-trim() { printf '%s' "$1" | sed 's/^[ \t]*//; s/[ \t]*$//'; }
+# trim TEXT: sets `trimmed` to it without the spaces around it.
+trim() {
+  trimmed=${1#"${1%%[! ]*}"}
+  trimmed=${trimmed%"${trimmed##*[! ]}"}
+}
 
 # answers FILE MODEL: all lines of a file; one line of output for each that is wrong.
 answers() {
   rm -f "$scratch"/*.sed
+  asked_last=
   awk '{ if (!start) start = NR }
        /\\$/ { sub(/\\$/, ""); held = held $0; next }
        { print start ": " held $0; held = ""; start = 0 }' "$1" >"$scratch/lines"
@@ -83,20 +87,27 @@ answers() {
     line=${line#*: }
     case $line in
       '' | '#'*) continue ;;
-      %*) printf '%s\n' "$(trim "${line#*=}")" >"$scratch/$(trim "$(echo "${line%%=*}" | tr -d %)").sed"
+      %*) trim "${line%%=*}"
+          printf '%s\n' "${line#*=}" >"$scratch/${trimmed#%}.sed"
           continue ;;
       *'|'*'|'*'|'*) ;;
       *) echo "${1##*/}:$number: not COMMAND | FILTER | EXPECTED | TOLERANCE: $line"; continue ;;
     esac
-    command=$(trim "${line%%|*}")
+    trim "${line%%|*}"
+    command=$trimmed
     rest=${line#*|}
-    tolerance=$(trim "${rest##*|}")
+    trim "${rest##*|}"
+    tolerance=$trimmed
     rest=${rest%|*}
-    expected=$(trim "${rest##*|}")
-    filter=$(trim "${rest%|*}")
-    ask "$2" "$command" || { echo "${1##*/}:$number: $command: cannot be asked"; continue; }
-    wrong=$(compare "$filter" "$expected" "$tolerance" "$answer" | tr '\n' ' ')
-    [ -z "$wrong" ] || echo "${1##*/}:$number: $command: $filter: $wrong" \
+    trim "${rest##*|}"
+    expected=$trimmed
+    trim "${rest%|*}"
+    filter=$trimmed
+    [ "$command" = "$asked_last" ] || ask "$2" "$command" ||
+      { echo "${1##*/}:$number: $command: cannot be asked"; asked_last=; continue; }
+    asked_last=$command
+    wrong=$(compare "$filter" "$expected" "$tolerance" "$answer")
+    [ -z "$wrong" ] || echo "${1##*/}:$number: $command: $filter: $(echo "$wrong" | tr '\n' ' ')" \
       "$(jq -r '.message? // empty' "$answer")"
     echo x >>"$scratch/asked"
   done <"$scratch/lines"
