@@ -59,6 +59,14 @@ static void prepare(strut_reader *reader) {
   reader->output.room = STRUT_ROOM_OUTPUT;
 }
 
+/* Does the file say anything about a run? */
+static bool speaks_of_a_run(strut_reader *reader) {
+  const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
+  const char *step = strut_key_at(STRUT_KEY_SOLVER_STEP)->name;
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN)->key != NULL ||
+         (solver->state == STRUT_GIVEN && strut_tree_find(solver->value, step, NULL));
+}
+
 /* Everything that can be said once there is a tree. */
 static void read_tree(strut_reader *reader, const strut_override *overrides, size_t count) {
   strut_owner owner = {"the scene", NULL};
@@ -66,6 +74,8 @@ static void read_tree(strut_reader *reader, const strut_override *overrides, siz
   strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
+  if (reader->purpose == STRUT_FOR_ANY)
+    reader->purpose = speaks_of_a_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, overrides, count);
   if (reader->out_of_memory) return;

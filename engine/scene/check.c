@@ -278,6 +278,9 @@ strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
       strut_check_names,  strut_check_nodes,   strut_check_members,
       strut_check_use,    strut_check_signals, strut_check_ground,
       strut_check_drives, strut_check_shapes,  strut_check_experiment};
+  const strut_experiment *e = &scene->experiment;
+  bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;
+  if (purpose == STRUT_FOR_ANY) purpose = runs ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   size_t before = findings->count;
   strut_checker checker = {.scene = scene, .purpose = purpose, .findings = findings};
   checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);

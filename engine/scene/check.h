@@ -42,7 +42,11 @@ typedef struct strut_findings {
 } strut_findings;
 
 /** What the scene is to be used for: a run needs masses, a step and a duration; statics do not. */
-typedef enum strut_purpose { STRUT_FOR_STATICS, STRUT_FOR_RUN } strut_purpose;
+typedef enum strut_purpose {
+  STRUT_FOR_STATICS,
+  STRUT_FOR_RUN,
+  STRUT_FOR_ANY /* for a run where the scene says anything about one, else for statics */
+} strut_purpose;
 
 /** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,

@@ -16,37 +16,12 @@ typedef struct source {
   size_t length;
 } source;
 
-static strut_status read_for(const strut_arguments *arguments, const source *from,
-                             strut_purpose purpose, strut_scene *scene,
-                             strut_diagnostics *diagnostics) {
-  return strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
-                          arguments->override_count, purpose, diagnostics);
-}
-
-static bool speaks_of_a_run(const strut_scene *scene) {
-  const strut_experiment *experiment = &scene->experiment;
-  return experiment->step != 0 || experiment->duration != 0 || experiment->periods != 0;
-}
-
-/* True where the scene is fine as long as nobody runs it, and it does not ask to be run. */
-static bool read_for_statics(const strut_arguments *arguments, const source *from,
-                             strut_scene *scene) {
-  strut_diagnostics diagnostics = {0};
-  strut_status status = read_for(arguments, from, STRUT_FOR_STATICS, scene, &diagnostics);
-  strut_diagnostics_free(&diagnostics);
-  if (status == STRUT_OK && !speaks_of_a_run(scene)) return true;
-  if (status == STRUT_OK) strut_scene_free(scene);
-  return false;
-}
-
 static strut_status read_source(const strut_arguments *arguments, const source *from,
-                                strut_open_purpose purpose, strut_scene *scene) {
+                                strut_purpose purpose, strut_scene *scene) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = read_for(arguments, from, STRUT_FOR_RUN, scene, &diagnostics);
-  if (status == STRUT_BAD_SCENE && purpose == STRUT_OPEN_FOR_ANY &&
-      read_for_statics(arguments, from, scene)) {
-    status = STRUT_OK;
-  }
+  strut_status status =
+      strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
+                       arguments->override_count, purpose, &diagnostics);
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
     if (messages) fputs(messages, stderr);
@@ -66,7 +41,8 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
     strut_complain(&error);
     return status;
   }
-  status = read_source(arguments, &from, purpose, scene);
+  status = read_source(arguments, &from,
+                       purpose == STRUT_OPEN_FOR_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY, scene);
   strut_release(from.text);
   return status;
 }

@@ -14,7 +14,7 @@
 # may contain |, may use tests/gallery/gallery.jq, and gives one value) and compares. TOLERANCE is
 # absolute; EXPECTED then is a number, a list or a mapping of numbers, as jq writes or computes them
 # (without any |):
-#   0.995454545, (95 + 1000)/1100, root(2*3), [1, 2.5, 1e-3], {n1: [0, 1]}
+#   0.995454545, (95 + 1000)/1100, root(2*3), [1, 2.5, 1e-3], {n1: [0, 1], n2: (1/3)}
 # With the TOLERANCE `=` the filter's value, as a text, must be EXPECTED to the letter:
 #   rigidity | .class | 1 | =        equilibria | stable | 1 | =       equilibria | .remark | null | =
 # A command that fails gives {"status": its exit status, "message": what it said}:

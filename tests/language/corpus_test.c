@@ -36,7 +36,7 @@ static char *read_text(const char *path, size_t *length) {
 }
 
 static void take_line(announcement *a, char *line) {
-  static const char expect[] = "# expect: ", set[] = "# set: ", purpose[] = "# purpose: statics";
+  static const char expect[] = "# expect: ", set[] = "# set: ", statics[] = "# purpose: statics";
   if (strncmp(line, expect, strlen(expect)) == 0) {
     assert_true(a->count < MOST_LINES);
     a->expected[a->count++] = line + strlen(expect);
@@ -45,8 +45,10 @@ static void take_line(announcement *a, char *line) {
     assert_non_null(equals);
     *equals = '\0';
     a->set[a->sets++] = (strut_override){name, equals + 1};
-  } else if (strcmp(line, purpose) == 0) {
+  } else if (strcmp(line, statics) == 0) {
     a->purpose = STRUT_FOR_STATICS;
+  } else if (strcmp(line, "# purpose: any") == 0) {
+    a->purpose = STRUT_FOR_ANY;
   }
 }
 

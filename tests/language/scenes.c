@@ -66,9 +66,8 @@ void free_scene_files(scene_file *files, size_t count) {
 
 strut_status read_quietly(const char *text, size_t length, strut_scene *scene) {
   strut_diagnostics diagnostics = {0};
-  strut_purpose purpose = strstr(text, "\nrun:") ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   strut_status status =
-      strut_scene_read(scene, "scene", text, length, NULL, 0, purpose, &diagnostics);
+      strut_scene_read(scene, "scene", text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
   strut_diagnostics_free(&diagnostics);
   return status;
 }
