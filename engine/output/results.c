@@ -14,10 +14,11 @@
 
 enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
 
-static const char *const names[] = {"summary.json", "scene.yaml", "nodes.csv",     "members.csv",
-                                    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
+static const char *const run_names[] = {"summary.json", "scene.yaml",    "nodes.csv",
+                                        "members.csv",  "contacts.csv",  "energy.csv",
+                                        "trajectory.h5", NULL};
 
-const char *strut_results_name(int i) { return names[i]; }
+const char *strut_results_name(int i) { return run_names[i]; }
 
 static strut_status trouble(strut_error *error, const char *path, int code) {
   char reason[128];
@@ -36,7 +37,8 @@ static char *join(const char *directory, const char *name) {
 }
 
 /* Renaming onto a directory would fail when all the work is done: say so before. */
-static strut_status check_names(const char *directory, strut_error *error) {
+static strut_status check_names(const char *directory, const char *const *names,
+                                strut_error *error) {
   strut_status status = STRUT_OK;
   for (int i = 0; names[i] && status == STRUT_OK; i++) {
     struct stat found;
@@ -67,8 +69,13 @@ static strut_status make_stage(strut_results *results, strut_error *error) {
 
 strut_status strut_results_begin(strut_results *results, const char *directory,
                                  strut_error *error) {
+  return strut_results_begin_named(results, directory, run_names, error);
+}
+
+strut_status strut_results_begin_named(strut_results *results, const char *directory,
+                                       const char *const *names, strut_error *error) {
   struct stat found;
-  *results = (strut_results){.made = stat(directory, &found) != 0};
+  *results = (strut_results){.made = stat(directory, &found) != 0, .names = names};
   strut_status status = strut_directory_create(directory, error);
   if (status != STRUT_OK) return status;
   results->directory = strut_allocate(strlen(directory) + 1, 1);
@@ -77,7 +84,7 @@ strut_status strut_results_begin(strut_results *results, const char *directory,
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
   }
   memcpy(results->directory, directory, strlen(directory));
-  status = check_names(directory, error);
+  status = check_names(directory, names, error);
   if (status == STRUT_OK) status = make_stage(results, error);
   if (status != STRUT_OK) strut_results_abandon(results);
   return status;
@@ -100,7 +107,7 @@ static int move(const strut_results *results, const char *name) {
 
 strut_status strut_results_commit(strut_results *results, strut_error *error) {
   int code = 0;
-  for (int i = 0; names[i] && !code; i++) code = move(results, names[i]);
+  for (int i = 0; results->names[i] && !code; i++) code = move(results, results->names[i]);
   strut_status status = STRUT_OK;
   if (code) status = trouble(error, results->directory, code);
   int descriptor = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -17,6 +17,7 @@ typedef struct strut_results {
   char *directory; /* where they will be */
   char *stage;     /* where they are written: give this one to the writers */
   bool made;       /* the directory did not exist before */
+  const char *const *names; /* of all files that may be among them, NULL after the last */
 } strut_results;
 
 /** The i-th name of a file of results, or NULL after the last. */
@@ -24,6 +25,9 @@ STRUT_API const char *strut_results_name(int i);
 /** Creates the directory and finds out whether it can be written to. */
 STRUT_API strut_status strut_results_begin(strut_results *results, const char *directory,
                                            strut_error *error);
+/** The same for files of other names than those of a run: `names` ends with NULL and is kept. */
+STRUT_API strut_status strut_results_begin_named(strut_results *results, const char *directory,
+                                                 const char *const *names, strut_error *error);
 /** Moves the files to where they belong; on failure as strut_results_abandon. */
 STRUT_API strut_status strut_results_commit(strut_results *results, strut_error *error);
 /** Removes all that was written, and the directory if it is new. A zeroed struct is allowed. */

@@ -10,9 +10,6 @@
 /* Bases with more vectors, or more numbers, than these are for nobody to read. */
 enum { MOST_VECTORS = 200, MOST_NUMBERS = 4000000 };
 
-/* One-sided Jacobi is the most accurate, but slow beyond this many columns. */
-enum { MOST_JACOBI = 120 };
-
 /* T = U S V' of the tall one of A and A'. */
 typedef struct tall {
   size_t rows, columns;
@@ -44,12 +41,11 @@ static void fill_tall(const strut_equilibrium_matrix *a, tall *t) {
     }
 }
 
+/* Not by GSL's one-sided Jacobi: it stops early where several values are zero. */
 static int decompose(tall *t) {
   gsl_matrix_view u = gsl_matrix_view_array(t->u, t->rows, t->columns);
   gsl_matrix_view v = gsl_matrix_view_array(t->v, t->columns, t->columns);
   gsl_vector_view s = gsl_vector_view_array(t->s, t->columns);
-  if (t->columns <= MOST_JACOBI)
-    return gsl_linalg_SV_decomp_jacobi(&u.matrix, &v.matrix, &s.vector);
   gsl_vector_view work = gsl_vector_view_array(t->work, t->columns);
   return gsl_linalg_SV_decomp(&u.matrix, &v.matrix, &s.vector, &work.vector);
 }

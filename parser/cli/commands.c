@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "parser/cli/command_check.h"
+#include "parser/cli/command_export.h"
 #include "parser/cli/command_form.h"
 #include "parser/cli/command_keys.h"
 #include "parser/cli/command_modes.h"
@@ -22,6 +23,7 @@ static const strut_command *const commands[] = {
     &strut_command_form,
     &strut_command_path,
     &strut_command_rigidity,
+    &strut_command_export,
     &strut_command_write,
     &strut_command_keys,
     NULL,

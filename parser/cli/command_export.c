@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_export.h"
+
+#include <stdio.h>
+
+#include "engine/output/matrix_market.h"
+#include "parser/cli/named_shape.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/streams.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or a configuration"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static strut_status write_matrices(const strut_arguments *arguments, const char *directory,
+                                   const strut_model *model, strut_error *error) {
+  strut_arena arena = {0};
+  strut_named_shape shape;
+  strut_status status = strut_named_shape_find(arguments, model, &arena, &shape, error);
+  if (status == STRUT_OK)
+    status = strut_matrices_write(directory, model, shape.q, shape.name, error);
+  strut_arena_free(&arena);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
+  strut_scene scene;
+  strut_model *model = NULL;
+  strut_error error = {0};
+  if (!directory || !*directory) {
+    fprintf(stderr, "strut export: where to? give --matrices DIR\n");
+    return STRUT_USAGE;
+  }
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = write_matrices(arguments, directory, model, &error);
+  if (status != STRUT_OK) strut_complain(&error);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_export = {
+    .name = "export",
+    .model = "MODEL",
+    .summary = "writes a model's matrices for MATLAB, Octave or Python",
+    .details =
+        "\nMatrix Market files: connectivity, equilibrium, mass, stiffness_elastic,\n"
+        "stiffness_geometric, damping and, where nodes touch the ground, stiffness_contact;\n"
+        "node_names.csv, rows.csv (free coordinates) and columns.csv (members) name their rows\n"
+        "and columns. The tangent stiffness is the sum of the three. All files or none.\n",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,68 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# strut rigidity: the table, the JSON, files, shapes, and what is refused.
+. "$(dirname "$0")/lib.sh"
+
+cat >x.yaml <<'END'
+strut: 1
+name: X
+groups: {cable: {kind: cable, stiffness: 100 N/m, force_density: 5 N/m},
+  bar: {kind: bar, stiffness: 1000 N/m, force_density: -5 N/m}}
+nodes: {a: [0, 0], b: [1, 0], c: [1, 1], d: [0, 1]}
+members:
+  ab: {group: cable, nodes: [a, b]}
+  bc: {group: cable, nodes: [b, c]}
+  cd: {group: cable, nodes: [c, d]}
+  da: {group: cable, nodes: [d, a]}
+  ac: {group: bar, nodes: [a, c]}
+  bd: {group: bar, nodes: [b, d]}
+END
+expect 0 rigidity x.yaml
+err_empty
+out_has "s = 1"
+out_has "f = 3: 3 rigid-body"
+out_has "6 members - 8 free coordinates = -2 = s - f"
+out_has "yes, by the state of self-stress"
+out_has "structure with tensegrity features of class 2"
+expect 0 rigidity x.yaml --json
+for text in '"rank":	5' '"method":	"svd"' '"rigid_body":	3' '"super_stable":	true' '"equilibrium":	true' \
+  '"class":	1' '"ac":	-1.4142135623730'; do out_has "$text"; done
+cp out printed
+expect 0 rigidity x.yaml --json -o results
+same printed results/rigidity.json
+files results rigidity.json
+expect 0 rigidity x.yaml --at drawn
+
+cp x.yaml piped.yaml
+"$strut" rigidity - --json <piped.yaml >out 2>err || fail "from the standard input"
+same printed out
+
+# Refused: an unknown shape, an unknown option, a scene that is none, a directory that cannot be.
+expect 1 rigidity x.yaml --at nowhere
+err_has "nowhere"
+out_empty
+expect 1 rigidity x.yaml --matrices m
+err_has "unknown option '--matrices'"
+sed 's/kind: bar/kind: rod/' x.yaml >wrong.yaml
+expect 2 rigidity wrong.yaml
+err_has "rod"
+echo text >taken
+expect 4 rigidity x.yaml -o taken
+err_has "taken"
+
+# A four-bar linkage moves, and says how far it was followed.
+grep -v 'ac:\|bd:\|bar' x.yaml | sed 's/force_density: 5 N.m},/rest_length_ratio: 1}}/' >loop.yaml
+expect 0 rigidity loop.yaml
+out_has "f = 4: 3 rigid-body, 1 finite"
+out_has "lengths stay within"
+
+# Nodes alone, all held: an answer, not a failure.
+printf 'strut: 1\nnodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}}\n' >nodes.yaml
+expect 0 rigidity nodes.yaml
+out_has "f = 4: 3 rigid-body, 1 finite"
+printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}}\nmembers: {m: {kind: bar, nodes: [a, b], stiffness: 1}}\n' >held.yaml
+expect 0 rigidity held.yaml
+out_has "s = 1"
+out_has "f = 0"
+
+[ $failures -eq 0 ]
