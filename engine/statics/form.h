@@ -30,7 +30,9 @@ typedef struct strut_form_options {
   strut_form_objective objective;
   double
       least_tension; /* of every cable [N]; 0: a hundredth of the weight and the loads or, without
-                           any, of the least stiffness times length of a cable */
+                           any, of the least stiffness times length of a cable; none of that where
+                           least_density is given */
+  double least_density; /* of every cable [N/m]; 0: none */
 } strut_form_options;
 
 typedef struct strut_form {

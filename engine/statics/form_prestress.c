@@ -32,11 +32,18 @@ typedef struct prestress {
   double *x;
 } prestress;
 
+static double length_of(const strut_former *f, int32_t j) {
+  const strut_member *m = &f->scene->members[j];
+  const double *a = f->scene->nodes[m->node[0]].start, *b = f->scene->nodes[m->node[1]].start;
+  return hypot(b[0] - a[0], b[1] - a[1]);
+}
+
 static bool can_carry(const strut_member *m) { return m->stiffness > 0 || m->axial_stiffness > 0; }
 
 static double least_tension(const strut_former *f) {
   double least = HUGE_VAL;
-  if (f->options->least_tension > 0) return f->options->least_tension;
+  if (f->options->least_tension > 0 || f->options->least_density > 0)
+    return f->options->least_tension;
   if (f->potential->force_scale > 0) return SHARE * f->potential->force_scale;
   for (int32_t j = 0; j < f->model->members.count; j++) {
     strut_rest rest;
@@ -100,7 +107,8 @@ static void fill_bounds(prestress *p) {
   for (int32_t j = 0; j < at->members; j++) {
     const strut_member *m = &p->f->scene->members[j];
     bool cable = m->kind == STRUT_CABLE, carries = can_carry(m);
-    p->program.low[at->pull + j] = cable && carries ? p->least / p->scale : 0;
+    double least = fmax(p->least, p->f->options->least_density * length_of(p->f, j));
+    p->program.low[at->pull + j] = cable && carries ? least / p->scale : 0;
     if (!carries) p->program.high[at->pull + j] = 0;
     if (cable || !carries) p->program.high[at->push + j] = 0;
   }
@@ -143,6 +151,9 @@ static strut_status cannot_hold(const prestress *p, strut_error *error) {
   strut_form_name_nodes(f, marked, names, sizeof names);
   strut_release(marked);
   char cables[80] = "";
+  if (f->options->least_density > 0)
+    snprintf(cables, sizeof cables, " with every cable at %.4g N/m or more",
+             f->options->least_density);
   if (p->least > 0)
     snprintf(cables, sizeof cables, " with every cable at %.4g N or more", p->least);
   return strut_fail(error, STRUT_NOT_SETTLED,
@@ -193,9 +204,7 @@ static bool spread(prestress *p) {
   }
   for (int32_t j = 0; j < at->members && good; j++) {
     const strut_member *m = &f->scene->members[j];
-    const double *a = f->scene->nodes[m->node[0]].start;
-    const double *b = f->scene->nodes[m->node[1]].start;
-    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    double length = length_of(f, j);
     bool cable = m->kind == STRUT_CABLE;
     weight[j] = (cable ? 1.0 : faint) * f->size / (length > 0 ? length : f->size);
     low[j] = cable ? p->program.low[at->pull + j] : -HUGE_VAL;
@@ -266,7 +275,7 @@ static strut_status pass(prestress *p, strut_error *error) {
 
 strut_status strut_form_prestress(strut_former *f, strut_error *error) {
   prestress p = {.f = f, .at = lay_out(f), .least = least_tension(f)};
-  p.scale = fmax(f->potential->force_scale, p.least);
+  p.scale = fmax(f->potential->force_scale, fmax(p.least, f->options->least_density * f->size));
   if (!(p.scale > 0)) p.scale = 1.0;
   f->form->least_tension = p.least;
   p.x = strut_arena_allocate(&f->arena, (size_t)p.at.count, sizeof *p.x);

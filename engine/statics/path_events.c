@@ -30,7 +30,7 @@ double strut_path_measure_turn(strut_path_system *s, const double *y, const stru
                                int32_t which) {
   (void)which;
   double *tangent = strut_allocate((size_t)s->n + 1, sizeof *tangent);
-  double turn = NAN;
+  double turn = (double)NAN;
   if (tangent && strut_path_tangent(s, y, piece->tangent, tangent)) turn = tangent[s->n];
   strut_release(tangent);
   return turn;

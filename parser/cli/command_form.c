@@ -15,10 +15,12 @@
 static const strut_option options[] = {
     {STRUT_OPTION_FROM, "from", "WHAT", "densities, lengths or prestress; else as the model says"},
     {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE", "what every cable pulls with at least"},
+    {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY", "the same as a force density"},
     {STRUT_OPTION_OBJECTIVE, "objective", "WHAT",
      "of many prestresses: least largest, sum or squares"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print what it holds"},
+    {STRUT_OPTION_JSON, "json", NULL, "print what the form holds as one JSON object instead"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "with -o, print nothing"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -34,8 +36,11 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
   if (status == STRUT_OK)
     status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_TENSION, STRUT_DIM_FORCE,
                                  &wanted->least_tension);
-  if (status == STRUT_OK && wanted->least_tension < 0) {
-    fprintf(stderr, "strut form: --least-tension expects a force above 0: cables only pull\n");
+  if (status == STRUT_OK)
+    status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_DENSITY,
+                                 STRUT_DIM_STIFFNESS, &wanted->least_density);
+  if (status == STRUT_OK && (wanted->least_tension < 0 || wanted->least_density < 0)) {
+    fprintf(stderr, "strut form: what cables pull with at least is above 0: they only pull\n");
     status = STRUT_USAGE;
   }
   wanted->from = (strut_form_source)(source + 1);
@@ -56,25 +61,28 @@ static strut_status write_file(const char *path, const char *text, strut_error *
   return status;
 }
 
+/* What is printed: with -o what the form holds, unless nobody wants to know; else the model. */
+static char *text_for(const strut_arguments *arguments, const strut_scene *scene,
+                      const strut_form *form) {
+  if (arguments->json) return strut_form_json(form, scene);
+  return arguments->output ? strut_form_table(form, scene) : strut_scene_write(scene);
+}
+
 static strut_status show(const strut_arguments *arguments, const strut_scene *scene,
                          const strut_form *form) {
   strut_error error = {0};
-  char *text = strut_scene_write(scene);
-  char *table = arguments->output && !arguments->quiet ? strut_form_table(form, scene) : NULL;
+  bool silent = arguments->quiet && arguments->output && !arguments->json;
+  char *model = arguments->output ? strut_scene_write(scene) : NULL;
+  char *text = silent ? NULL : text_for(arguments, scene, form);
   strut_status status = STRUT_OK;
-  if (!text || (arguments->output && !arguments->quiet && !table)) {
-    status = strut_complain_of_memory();
-  } else if (arguments->output) {
-    status = write_file(arguments->output, text, &error);
-    if (status != STRUT_OK)
-      strut_complain(&error);
-    else if (table)
-      status = strut_print(table);
-  } else {
-    status = strut_print(text);
+  if ((arguments->output && !model) || (!silent && !text)) status = strut_complain_of_memory();
+  if (status == STRUT_OK && model) {
+    status = write_file(arguments->output, model, &error);
+    if (status != STRUT_OK) strut_complain(&error);
   }
+  if (status == STRUT_OK && text) status = strut_print(text);
+  strut_release(model);
   strut_release(text);
-  strut_release(table);
   return status;
 }
 

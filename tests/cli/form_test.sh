@@ -72,13 +72,20 @@ expect 0 check once.yaml
 expect 0 form once.yaml --from lengths -o again.yaml
 out_has "nodes moved"
 
+# The same as JSON: tiso's spine, least squares of densities of at least 0.5 N/m.
+expect 0 form "$models/gallery/spine.yaml" --from prestress --objective squares \
+  --least-density "0.5 N/m" --json
+jq -e '.from == "prestress" and .moved == 0 and (.densities.lower - 4.149565 | fabs) < 5e-7 and
+  .densities.front_upper >= 0.4999999 and (.forces | length) == 16 and (.nodes | length) == 8 and
+  .rest_lengths.lower < .lengths.lower' "$work/out" >jq.out || fail "the form in JSON"
+
 # Refusals.
 expect 1 form frame.yaml --from densitis
 err_has "expects densities, lengths or prestress, not 'densitis'; did you mean 'densities'?"
 expect 1 form frame.yaml --least-tension "3 m"
 err_has "--least-tension expects a force, such as"
 expect 1 form frame.yaml --least-tension -3
-err_has "above 0"
+err_has "is above 0"
 expect 3 form frame.yaml --from densities
 err_has "no member has a force density"
 expect 3 form frame.yaml --least-tension 1e6
