@@ -9,7 +9,7 @@
 #include "engine/statics/search_batch.h"
 #include "engine/statics/starts.h"
 
-enum { LEAST_RANDOM = 128, PER_MINIMUM = 24, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 4 };
+enum { LEAST_RANDOM = 128, PER_MINIMUM = 24, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
 
 typedef struct search {
   const strut_potential *potential;
@@ -109,12 +109,13 @@ static int64_t met_once(const search *s, int64_t *distinct) {
 static bool enough(const search *s, int64_t most) {
   int64_t distinct, once = met_once(s, &distinct), least = PER_MINIMUM * distinct;
   if (s->random >= most) return true;
-  return once == 0 && s->random >= (least > LEAST_RANDOM ? least : LEAST_RANDOM);
+  if (least < LEAST_RANDOM) least = LEAST_RANDOM;
+  return s->random >= least && 150 * once <= s->random;
 }
 
 static strut_status random_starts(search *s) {
   int32_t n = s->potential->n;
-  int64_t wanted = s->effort->starts, most = affordable(n, 8e7, 32, 4000);
+  int64_t wanted = s->effort->starts, most = affordable(n, 1.5e7, 32, 4000);
   strut_status status = STRUT_OK;
   if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
   while (!status && (wanted > 0 ? s->random < wanted : !enough(s, most))) {
@@ -197,15 +198,35 @@ static strut_status go_down(search *s, size_t begin) {
   return status ? status : run(s);
 }
 
+/* Even numbers start from a minimum shaken, each in its turn, odd ones anywhere. */
+static strut_task random_climb(const search *s, int64_t number) {
+  strut_task task = {.kind = STRUT_TASK_CLIMB_RANDOM, .number = number};
+  int64_t minima = 0, wanted;
+  for (size_t i = 0; i < s->all.count; i++) minima += is_minimum(&s->all.points[i]);
+  if (number % 2 || minima == 0) return task;
+  wanted = number / 2 % minima;
+  for (size_t i = 0; i < s->all.count && !task.q; i++)
+    if (is_minimum(&s->all.points[i]) && wanted-- == 0) task.q = s->all.points[i].q;
+  return task;
+}
+
+static int64_t passes(const search *s) {
+  int64_t count = 0;
+  for (size_t i = 0; i < s->all.count; i++)
+    count += !is_minimum(&s->all.points[i]) && s->all.points[i].negative == 1;
+  return count;
+}
+
+/* Until a whole batch of them has found no new way from one minimum to another. */
 static strut_status random_climbs(search *s) {
   strut_status status = STRUT_OK;
   int64_t number = 0;
   for (int turn = 0; turn < RANDOM_CLIMBS && !status; turn++) {
-    size_t before = s->all.count;
-    for (int i = 0; i < STRUT_BATCH && !status; i++)
-      status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_RANDOM, .number = number++});
+    int64_t before = passes(s);
+    for (int i = 0; i < STRUT_BATCH && !status; i++, number++)
+      status = climb_from(s, random_climb(s, number));
     if (!status) status = run(s);
-    if (s->all.count == before) break;
+    if (passes(s) == before) break;
   }
   return status;
 }
@@ -215,7 +236,7 @@ static strut_status find_saddles(search *s) {
   strut_status status = STRUT_OK;
   size_t gone = 0;
   if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
-  s->climbs_left = affordable(n, 2e7, 16, 3000);
+  s->climbs_left = affordable(n, 4e6, 16, 2000);
   for (int turn = 0; turn < ROUNDS && !status; turn++) {
     status = climb_modes(s);
     if (!status) status = climb_pairs(s);

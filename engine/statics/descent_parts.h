@@ -19,6 +19,11 @@ typedef struct strut_curvature {
   bool (*look)(void *room, const double *q);
   /** The lowest point of the model within |s| <= radius. still [N]: a force that rounding explains. */
   strut_model_step (*descend)(void *room, const double *g, double radius, double still, double *s);
+  /**
+   * Adds to the step that descend gave last what brings the stiff modes back into balance, whose
+   * gradient at its end is g: the way bends with every bar that turns. False: there are none.
+   */
+  bool (*straighten)(void *room, const double *g, double *s);
   /** The Newton step, directions without stiffness left out; its length. */
   double (*newton)(void *room, const double *g, double *s);
   /** The unit direction of most negative curvature; false where none is negative beyond rounding. */

@@ -110,10 +110,20 @@ static bool make_room(strut_gathering *g) {
   return true;
 }
 
-/* A floppy shape is one of a continuum: all of one energy count as one. */
-static int32_t find_floppy(const strut_gathering *g, const strut_critical_point *point) {
+static bool is_minimum(const strut_critical_point *point) {
+  return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
+}
+
+/* One of a continuum: some motion that is no rigid one meets no stiffness. */
+static bool is_degenerate(const strut_critical_point *point) {
+  return point->zero > point->rigid;
+}
+
+/* A continuum counts as one point: all of one energy, its ends included. */
+static int32_t find_degenerate(const strut_gathering *g, const strut_critical_point *point) {
   for (size_t i = 0; i < g->count; i++)
-    if (g->points[i].label == STRUT_FLOPPY &&
+    if ((is_degenerate(point) || is_degenerate(&g->points[i])) &&
+        is_minimum(point) == is_minimum(&g->points[i]) &&
         same_energy(g, point->potential, g->points[i].potential))
       return (int32_t)i;
   return -1;
@@ -125,6 +135,15 @@ static int32_t count_placements(const strut_gathering *g, int32_t index) {
   return count;
 }
 
+/* An end of a continuum was found first: a point amid it says more. */
+static void make_degenerate(strut_critical_point *known, const strut_critical_point *point) {
+  if (is_degenerate(known)) return;
+  strut_critical_point before = *known;
+  *known = *point;
+  known->found = before.found, known->placements = 1;
+  known->down[0] = before.down[0], known->down[1] = before.down[1];
+}
+
 strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *index, bool *fresh,
                                  strut_error *error) {
   strut_critical_point point;
@@ -133,8 +152,9 @@ strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *i
   if (*fresh) {
     strut_status status = strut_critical_judge(g->potential, q, g->arena, &point, error);
     if (status) return status;
-    if (point.label == STRUT_FLOPPY) *index = find_floppy(g, &point);
+    *index = find_degenerate(g, &point);
     *fresh = *index < 0;
+    if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
   }
   if (*fresh) {
     if (!make_room(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
@@ -145,7 +165,7 @@ strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *i
   }
   strut_critical_point *known = &g->points[*index];
   known->found++;
-  if (known->label == STRUT_FLOPPY && !*fresh) return STRUT_OK;
+  if (is_degenerate(known) && !*fresh) return STRUT_OK;
   if (!remember_placement(g, *index, q))
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   known->placements = count_placements(g, *index);

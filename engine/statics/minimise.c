@@ -8,7 +8,7 @@
 
 #include "engine/statics/descent_parts.h"
 
-enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 60 };
+enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 60, MOST_BENDS = 4 };
 
 struct strut_minimiser {
   const strut_potential *potential;
@@ -17,6 +17,7 @@ struct strut_minimiser {
   double size;                /* of the structure [m] */
   double farthest;            /* no step may be longer [m] */
   double *g, *g_trial, *step; /* (n) */
+  double *straight;           /* (n) the step before it was bent */
   double *trial, *before;     /* (length) */
   strut_arena arena;
 };
@@ -36,9 +37,11 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->g = strut_arena_allocate(&m->arena, n, sizeof *m->g);
   m->g_trial = strut_arena_allocate(&m->arena, n, sizeof *m->g_trial);
   m->step = strut_arena_allocate(&m->arena, n, sizeof *m->step);
+  m->straight = strut_arena_allocate(&m->arena, n, sizeof *m->straight);
   m->trial = strut_arena_allocate(&m->arena, length, sizeof *m->trial);
   m->before = strut_arena_allocate(&m->arena, length, sizeof *m->before);
-  if (m->room && m->g && m->g_trial && m->step && m->trial && m->before) return STRUT_OK;
+  if (m->room && m->g && m->g_trial && m->step && m->straight && m->trial && m->before)
+    return STRUT_OK;
   strut_minimiser_free(m);
   *minimiser = NULL;
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
@@ -132,6 +135,30 @@ static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
 }
 
 /*
+ * A member that has shrunk to a point pushes its ends apart in every direction, though no gradient
+ * says so: its free end moves aside. False where there is none.
+ */
+static bool leave_collapse(strut_minimiser *m, double *q) {
+  const strut_potential *p = m->potential;
+  const strut_member_table *t = &p->model->members;
+  double far = 1e-3 * m->size;
+  bool any = false;
+  for (int32_t j = 0; j < t->count; j++) {
+    double *a = q + t->from[j], *b = q + t->to[j];
+    double dx = b[0] - a[0], dy = b[1] - a[1];
+    if (!(t->rest[j] * t->stiffness[j] > 0) || t->slack[j] == 0.0) continue;
+    if (dx * dx + dy * dy > 1e-16 * t->rest[j] * t->rest[j]) continue;
+    const int32_t *row = p->row_of + t->to[j];
+    double *moved = row[0] >= 0 || row[1] >= 0 ? b : a;
+    if (moved == a) row = p->row_of + t->from[j];
+    if (row[0] >= 0) moved[0] += far, any = true;
+    if (row[1] >= 0) moved[1] += 0.7 * far, any = true;
+  }
+  if (any) strut_potential_gradient(p, q, m->g);
+  return any;
+}
+
+/*
  * The energy lost from q to the trial. Where it drowns in the rounding of the energies themselves,
  * it is the work of the mean of both gradients.
  */
@@ -143,16 +170,40 @@ static double energy_lost(const strut_minimiser *m, double here, double there, d
   return work;
 }
 
+/*
+ * The trial and its energy; where the quadratic did not hold, again with the stiff modes brought
+ * back into balance, as long as that leads lower. Returns the share of the reduction expected.
+ */
+static double try_step(strut_minimiser *m, const double *q, double here, double expected,
+                       double *there) {
+  size_t bytes = (size_t)m->potential->n * sizeof *m->step;
+  move(m, q, 1.0);
+  *there = strut_potential_value(m->potential, m->trial);
+  strut_potential_gradient(m->potential, m->trial, m->g_trial);
+  double ratio = energy_lost(m, here, *there, expected) / expected;
+  for (int i = 0; i < MOST_BENDS && !(ratio > 0.75); i++) {
+    memcpy(m->straight, m->step, bytes);
+    if (!m->curvature->straighten(m->room, m->g_trial, m->step)) break;
+    move(m, q, 1.0);
+    double lower = strut_potential_value(m->potential, m->trial);
+    bool better = lower < *there;
+    if (better) *there = lower;
+    if (!better) memcpy(m->step, m->straight, bytes);
+    if (!better) move(m, q, 1.0);
+    strut_potential_gradient(m->potential, m->trial, m->g_trial);
+    if (!better) break;
+    ratio = energy_lost(m, here, *there, expected) / expected;
+  }
+  return ratio;
+}
+
 /* One trust-region step; false where the radius has shrunk to nothing. */
 static bool descend_once(strut_minimiser *m, double *q, double still, double *radius,
                          double *energy) {
   strut_model_step step = m->curvature->descend(m->room, m->g, *radius, still, m->step);
   if (!(step.length > 0)) return false;
   for (int tries = 0; tries < 60; tries++) {
-    move(m, q, 1.0);
-    double there = strut_potential_value(m->potential, m->trial);
-    strut_potential_gradient(m->potential, m->trial, m->g_trial);
-    double ratio = energy_lost(m, *energy, there, step.reduction) / step.reduction;
+    double there, ratio = try_step(m, q, *energy, step.reduction, &there);
     if (ratio > 1e-4) {
       if (ratio > 0.75 && step.length > 0.99 * *radius) *radius = fmin(2.5 * *radius, m->farthest);
       if (ratio < 0.25) *radius = 0.5 * step.length;
@@ -187,7 +238,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
     }
     if (!m->curvature->look(m->room, q)) return end;
     if (end.residual <= allowed) {
-      if (leave_ridge(m, q, radius)) {
+      if ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius)) {
         energy = strut_potential_value(m->potential, q);
         continue;
       }

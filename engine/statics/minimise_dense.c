@@ -13,6 +13,7 @@ typedef struct room {
   double *part, *x; /* (n) the gradient's and the step's share of each mode */
   uint8_t *idle;    /* (n) modes to leave alone */
   double scale;     /* largest |eigenvalue| */
+  double multiplier; /* of the step that descend gave last */
 } room;
 
 static void room_free(void *memory) {
@@ -79,8 +80,24 @@ static strut_model_step descend(void *memory, const double *g, double radius, do
   share(r, g, still);
   strut_quadratic model = {r->now.n, r->now.value, r->part, r->idle, r->scale, 0.0};
   if (r->now.n > 0) model.noise = 4.0 * r->now.noise[0];
-  strut_trust_step(&model, radius, r->x);
+  r->multiplier = strut_trust_step(&model, radius, r->x);
   return assemble(r, s);
+}
+
+static bool straighten(void *memory, const double *g, double *s) {
+  room *r = memory;
+  size_t n = (size_t)r->now.n;
+  double stiff = r->multiplier > 0 ? 10.0 * r->multiplier : 1e-3 * r->scale;
+  bool any = false;
+  for (size_t i = 0; i < n; i++) {
+    const double *mode = r->now.vector + i * n;
+    double sum = 0.0;
+    if (!(r->now.value[i] > stiff)) continue;
+    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
+    for (size_t k = 0; k < n; k++) s[k] -= sum / r->now.value[i] * mode[k];
+    any = true;
+  }
+  return any;
 }
 
 static double newton(void *memory, const double *g, double *s) {
@@ -97,4 +114,4 @@ static bool ridge(void *memory, double *s) {
   return true;
 }
 
-const strut_curvature strut_curvature_dense = {look, descend, newton, ridge, room_free};
+const strut_curvature strut_curvature_dense = {look, descend, straighten, newton, ridge, room_free};

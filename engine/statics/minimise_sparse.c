@@ -143,6 +143,12 @@ static strut_model_step descend(void *memory, const double *g, double radius, do
   return judge(r, g, s);
 }
 
+/* A factor does not know its stiff modes. */
+static bool straighten(void *memory, const double *g, double *s) {
+  (void)memory, (void)g, (void)s;
+  return false;
+}
+
 static double newton(void *memory, const double *g, double *s) {
   room *r = memory;
   factorise(r, 0.0);
@@ -169,4 +175,5 @@ static bool ridge(void *memory, double *s) {
   return quotient < -1e-13 * r->scale;
 }
 
-const strut_curvature strut_curvature_sparse = {look, descend, newton, ridge, room_free};
+const strut_curvature strut_curvature_sparse = {look, descend, straighten, newton,
+                                                    ridge, room_free};

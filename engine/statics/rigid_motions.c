@@ -95,7 +95,7 @@ int32_t strut_rigid_motions(const strut_potential *p, const double *q, double *m
   strut_symmetric_3(held, value, vector);
   int32_t count = 0;
   for (int i = 0; i < 3 && p->n > 0; i++) {
-    if (value[i] > 1e-18 * (1.0 + value[2])) continue;
+    if (value[i] > 1e-14 * (1.0 + value[2])) continue;
     double *to = motion + (size_t)count * (size_t)p->n;
     for (int32_t k = 0; k < p->n; k++) {
       motion_at(&f, q, p->coordinate[k], row);

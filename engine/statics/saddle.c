@@ -18,7 +18,7 @@ struct strut_climber {
   double *g, *part, *value, *x; /* (n) */
   double *step, *follow;        /* (n) */
   uint8_t *idle;                /* (n) */
-  double *trial;                /* (length) */
+  double *trial, *begin;        /* (length) */
   strut_arena arena;
 };
 
@@ -35,7 +35,8 @@ strut_climber *strut_climber_create(const strut_potential *p) {
     good = good && (*line[i] = strut_arena_allocate(&c->arena, n, sizeof(double)));
   c->idle = strut_arena_allocate(&c->arena, n, sizeof *c->idle);
   c->trial = strut_arena_allocate(&c->arena, (size_t)p->model->length, sizeof *c->trial);
-  if (good && c->idle && c->trial) return c;
+  c->begin = strut_arena_allocate(&c->arena, (size_t)p->model->length, sizeof *c->begin);
+  if (good && c->idle && c->trial && c->begin) return c;
   strut_climber_free(c);
   return NULL;
 }
@@ -177,9 +178,18 @@ static bool has_collapsed(const strut_climber *c, const double *q) {
   return false;
 }
 
+/* Upwards there is often no end: bars that only stretch, bodies that only rise. */
+static bool has_left(const strut_climber *c, const double *q) {
+  const strut_potential *p = c->potential;
+  for (int32_t i = 0; i < p->n; i++)
+    if (!(fabs(q[p->coordinate[i]] - c->begin[p->coordinate[i]]) < 3.0 * c->size)) return true;
+  return false;
+}
+
 bool strut_climb(strut_climber *c, int32_t index, const double *direction, double *q) {
   const strut_potential *p = c->potential;
   double radius = 0.03 * c->size, root = sqrt((double)p->n);
+  memcpy(c->begin, q, (size_t)p->model->length * sizeof *q);
   if (direction) memcpy(c->follow, direction, (size_t)p->n * sizeof *direction);
   for (int i = 0; i < MOST_STEPS; i++) {
     double residual = look_at(c, q), allowed = 8.0 * strut_potential_rounding(p, q);
@@ -189,7 +199,8 @@ bool strut_climb(strut_climber *c, int32_t index, const double *direction, doubl
     }
     if (!strut_spectrum_compute(c->spectra, q, 0.0, false, &c->now)) return false;
     look(c, root * allowed);
-    if (!turn_over(c, index, direction != NULL) || !climb_once(c, q, &radius)) return false;
+    if (has_left(c, q) || !turn_over(c, index, direction != NULL) || !climb_once(c, q, &radius))
+      return false;
   }
   return false;
 }

@@ -11,6 +11,9 @@
 #include "engine/statics/saddle.h"
 #include "engine/statics/starts.h"
 
+/* Climbs draw from numbers of their own. */
+static const uint64_t CLIMBS = 0x5ad1e5u;
+
 typedef struct worker {
   strut_minimiser *minimiser;
   strut_climber *climber;
@@ -102,9 +105,12 @@ static bool climb(const strut_batch *b, worker *w, const strut_task *task, doubl
   int32_t index = 1;
   if (task->kind == STRUT_TASK_CLIMB_PAIR) {
     highest_between(p, task->q, task->other, q);
+  } else if (task->q) {
+    memcpy(q, task->q, bytes);
+    strut_shake(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
   } else {
-    strut_random_shape(p, b->seed ^ 0x5ad1e5u, (uint64_t)task->number, q);
-    index = task->number % 4 == 3 ? 2 + (int32_t)(task->number / 4 % p->n) : 1;
+    strut_random_shape(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
+    index = 1 + (int32_t)(task->number / 2 % (p->n < 4 ? p->n : 4));
   }
   return index <= p->n && strut_climb(w->climber, index, NULL, q);
 }

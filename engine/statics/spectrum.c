@@ -13,6 +13,7 @@ struct strut_spectrum_room {
   gsl_eigen_symmv_workspace *workspace, *soft_workspace; /* the latter for soft_n rows */
   int32_t soft_n;
   double least; /* of the spectrum at hand [N] */
+  bool uneven;  /* stiffnesses differ by so much that the dense solver may lose the soft ones */
   double *dense, *basis;          /* (n, n) each: Hessian, eigenvectors in columns */
   double *soft, *soft_basis;      /* (n, n) room for the form on soft modes and its eigenvectors */
   double *raw, *value, *noise;    /* (n) */
@@ -25,11 +26,26 @@ static double *numbers(strut_arena *arena, size_t count) {
   return strut_arena_allocate(arena, count, sizeof(double));
 }
 
+static bool is_uneven(const strut_model *model) {
+  double low = HUGE_VAL, high = 0.0;
+  for (int32_t j = 0; j < model->members.count; j++) {
+    double c = model->members.stiffness[j];
+    if (!(c > 0)) continue;
+    low = fmin(low, c), high = fmax(high, c);
+  }
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    double c = model->contacts.entry[i].stiffness;
+    low = fmin(low, c), high = fmax(high, c);
+  }
+  return high > 1e7 * low;
+}
+
 strut_spectrum_room *strut_spectrum_create(const strut_potential *potential) {
   strut_spectrum_room *room = strut_allocate(1, sizeof *room);
   size_t n = (size_t)potential->n;
   if (!room) return NULL;
   room->potential = potential;
+  room->uneven = is_uneven(potential->model);
   double **square[] = {&room->dense,      &room->basis,  &room->soft,
                        &room->soft_basis, &room->vector, &room->turned};
   double **line[] = {&room->raw,   &room->value,  &room->noise,
@@ -167,10 +183,11 @@ static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
   }
   solve(room->soft, count, room->soft_workspace, room->raw, room->soft_basis);
   sort_order(room->raw, count, room->order);
+  double largest = fmax(fabs(room->raw[room->order[0]]), fabs(room->raw[room->order[m - 1]]));
   memset(room->turned, 0, m * n * sizeof *room->turned);
   for (size_t i = 0; i < m; i++) {
     size_t column = (size_t)room->order[i];
-    double noise = 0.0;
+    double noise = count * DBL_EPSILON * largest; /* of the dense solver, among the soft modes */
     for (size_t k = 0; k < m; k++) {
       double weight = room->soft_basis[k * m + column];
       noise += weight * weight * room->form_noise[k];
@@ -206,6 +223,6 @@ bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, double l
     if (fabs(room->value[i]) < 1e-10 * largest) lost++;
     if (room->value[i] < 1e-3 * largest) soft = i + 1;
   }
-  if (soft == 0 || !(careful || lost > 0)) return true;
+  if (soft == 0 || !(careful || (lost > 0 && room->uneven))) return true;
   return refine(room, q, soft);
 }

@@ -132,3 +132,10 @@ void strut_random_shape(const strut_potential *p, uint64_t seed, uint64_t index,
     shake(p, &s, 0.02 * size, q);
   }
 }
+
+void strut_shake(const strut_potential *p, uint64_t seed, uint64_t index, double *q) {
+  source s = {seed, index, 0};
+  double size = p->model->size > 0 ? p->model->size : 1.0;
+  double part = 0.375 + 0.125 * signed_unit(&s); /* a quarter to a half */
+  shake(p, &s, size * part / (double)(1 << below(&s, 5)), q);
+}

@@ -17,6 +17,9 @@ void strut_fold(const strut_potential *potential, int64_t fold, double *q);
 void strut_random_shape(const strut_potential *potential, uint64_t seed, uint64_t index,
                         double *q);
 
+/** q shaken by a random part of the structure's size, from a hundredth to a half. */
+void strut_shake(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
+
 /** Bits of a generator that is a counter: the same for the same (seed, index, counter). */
 uint64_t strut_counted_bits(uint64_t seed, uint64_t index, uint64_t *counter);
 

@@ -34,12 +34,13 @@ static double solve_secular(const strut_quadratic *r, double low, double high, d
   return isfinite(mu) && mu >= low && mu <= high ? mu : high;
 }
 
-static void assemble(const strut_quadratic *r, double mu, double *x) {
+static double assemble(const strut_quadratic *r, double mu, double *x) {
   for (int32_t i = 0; i < r->n; i++)
     x[i] = r->idle[i] || r->part[i] == 0.0 ? 0.0 : -r->part[i] / (r->value[i] + mu);
+  return mu;
 }
 
-void strut_trust_step(const strut_quadratic *r, double radius, double *x) {
+double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
   double size = 0.0, slope;
   int32_t low = -1;
   for (int32_t i = 0; i < r->n; i++) {
@@ -48,19 +49,15 @@ void strut_trust_step(const strut_quadratic *r, double radius, double *x) {
     size += r->part[i] * r->part[i];
   }
   size = sqrt(size);
-  if (low < 0) { /* nothing pushes anywhere */
-    assemble(r, 0.0, x);
-    return;
-  }
+  if (low < 0) return assemble(r, 0.0, x); /* nothing pushes anywhere */
   double lowest = r->value[low];
   double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * r->scale + 1e-300 : 0.0);
   double length = length_at(r, floor, &slope);
-  if (length > radius) {
-    assemble(r, solve_secular(r, floor, floor + size / radius, radius), x);
-    return;
-  }
+  if (length > radius)
+    return assemble(r, solve_secular(r, floor, floor + size / radius, radius), x);
   assemble(r, floor, x);
-  if (lowest > -r->noise) return;
+  if (lowest > -r->noise) return floor;
   double rest = sqrt(fmax(radius * radius - length * length, 0.0)); /* the hard case */
   x[low] += r->part[low] > 0 ? -rest : rest;
+  return floor;
 }

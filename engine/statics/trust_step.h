@@ -17,7 +17,10 @@ typedef struct strut_quadratic {
   double noise;        /* error of the lowest value */
 } strut_quadratic;
 
-/** x (n): the step's share of each mode; |x| <= radius. */
-void strut_trust_step(const strut_quadratic *quadratic, double radius, double *x);
+/**
+ * x (n): the step's share of each mode; |x| <= radius. Returns the multiplier mu >= 0: the step is
+ * that of Newton for the values + mu, and modes much stiffer than mu do not feel the radius.
+ */
+double strut_trust_step(const strut_quadratic *quadratic, double radius, double *x);
 
 #endif
