@@ -75,23 +75,24 @@ static strut_status add(search *s, strut_task task) {
   return s->tasks == STRUT_BATCH ? run(s) : STRUT_OK;
 }
 
+/* How many descents or climbs a structure of this size may have: their cost grows with its cube. */
+static int64_t affordable(int32_t n, double budget, int64_t least, int64_t most) {
+  double count = budget / ((double)n * n * n + 1.0);
+  return count < (double)least ? least : count > (double)most ? most : (int64_t)count;
+}
+
 /* The model's own shape, its folds, and what the caller knows. */
 static strut_status known_starts(search *s) {
   const double *own = s->potential->model->start;
   strut_status status = add(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
   for (size_t i = 0; i < s->effort->extra_count && !status; i++)
     status = add(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = s->effort->extra[i]});
-  int64_t folds = s->potential->n <= STRUT_DENSE_STATICS ? strut_fold_count(s->potential) : 0;
-  if (folds > 256) folds = 256;
+  int64_t most = affordable(s->potential->n, 4e6, 4, 256), folds = strut_fold_count(s->potential);
+  if (s->potential->n > STRUT_DENSE_STATICS) folds = 0;
+  if (folds > most) folds = most;
   for (int64_t i = 0; i < folds && !status; i++)
     status = add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
   return status ? status : run(s);
-}
-
-/* How many descents or climbs a structure of this size may have: their cost grows with its cube. */
-static int64_t affordable(int32_t n, double budget, int64_t least, int64_t most) {
-  double count = budget / ((double)n * n * n + 1.0);
-  return count < (double)least ? least : count > (double)most ? most : (int64_t)count;
 }
 
 /* Minima that random starts have met just once, and all that they have met. */
@@ -115,7 +116,7 @@ static bool enough(const search *s, int64_t most) {
 
 static strut_status random_starts(search *s) {
   int32_t n = s->potential->n;
-  int64_t wanted = s->effort->starts, most = affordable(n, 1.5e7, 32, 4000);
+  int64_t wanted = s->effort->starts, most = affordable(n, 1.5e7, 4, 4000);
   strut_status status = STRUT_OK;
   if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
   while (!status && (wanted > 0 ? s->random < wanted : !enough(s, most))) {
@@ -236,7 +237,7 @@ static strut_status find_saddles(search *s) {
   strut_status status = STRUT_OK;
   size_t gone = 0;
   if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
-  s->climbs_left = affordable(n, 4e6, 16, 2000);
+  s->climbs_left = affordable(n, 4e6, 4, 2000);
   for (int turn = 0; turn < ROUNDS && !status; turn++) {
     status = climb_modes(s);
     if (!status) status = climb_pairs(s);
