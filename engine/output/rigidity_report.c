@@ -34,6 +34,7 @@ static void add_head(strut_json *json, const strut_rigidity *r, const strut_mode
   strut_json_number(json, root, "largest", r->spaces.largest);
   strut_json_number(json, root, "kept", r->spaces.kept);
   strut_json_number(json, root, "dropped", r->spaces.dropped);
+  strut_json_integer(json, root, "weak", r->spaces.weak);
   strut_json_integer(json, root, "without_length", r->without_length);
 }
 

@@ -29,6 +29,11 @@ static void add_rank(strut_buffer *table, const strut_rigidity *r) {
     strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
   else
     strut_buffer_add(table, "%s\n", s->dense ? "none dropped but zeros" : "by sparse QR");
+  if (s->weak > 0)
+    strut_buffer_add(table,
+                     "                     %d of them below a millionth of the largest: with nodes moved by\n"
+                     "                     as little, s and f may grow by that\n",
+                     s->weak);
 }
 
 static void add_counts(strut_buffer *table, const strut_rigidity *r) {
@@ -57,7 +62,7 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
   if (r->has_cables && r->states.force && r->states.count > 0)
     strut_buffer_add(table, "  cables             %s\n",
                      r->cables_can_pull ? "some self-stress pulls all that any state loads"
-                                        : "no self-stress found that pulls all that a state loads");
+                                        : "no self-stress pulls all that a state loads");
   strut_buffer_add(table, "  kind               %s", t->label);
   if (t->judged)
     strut_buffer_add(table, " (%s%s%s%s%s)", t->self_stress ? "S" : "", t->cables ? "C" : "",

@@ -57,6 +57,7 @@ static void decide_rank(const tall *t, strut_null_spaces *spaces) {
   spaces->rank = rank;
   spaces->kept = rank > 0 ? t->s[rank - 1] : 0.0;
   spaces->dropped = rank < count ? t->s[rank] : 0.0;
+  for (int32_t i = 0; i < rank; i++) spaces->weak += t->s[i] < STRUT_WEAK * t->s[0];
 }
 
 /* The right singular vectors of the values dropped, row by row. */

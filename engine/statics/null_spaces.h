@@ -13,6 +13,7 @@
 
 enum { STRUT_DENSE_RIGIDITY = 300 };
 #define STRUT_RANK_TOLERANCE 1e-9
+#define STRUT_WEAK 1e-6
 
 typedef struct strut_null_spaces {
   bool dense;     /* by singular values, else by QR */
@@ -20,6 +21,7 @@ typedef struct strut_null_spaces {
   double largest; /* singular value, or diagonal entry of R */
   double kept;    /* the smallest kept; 0 where the rank is 0 */
   double dropped; /* the largest dropped; 0 if none was; NAN with QR */
+  int32_t weak;   /* of those kept, how many are below STRUT_WEAK times the largest; 0 with QR */
   int32_t states;  /* s = columns - rank */
   int32_t motions; /* f = rows - rank */
   double *state;   /* (states, columns) a basis of A t = 0; NULL: too large, or none */

@@ -82,7 +82,6 @@ static bool count_bars(const strut_model *model, strut_rigidity *r) {
 }
 
 static strut_status pull_cables(const strut_model *model, strut_rigidity *r) {
-  const strut_stress_wish wish = {.cables = true};
   if (!r->states.force) return STRUT_OK;
   double *force = strut_arena_allocate(&r->arena, (size_t)r->matrix.columns, sizeof *force);
   if (!force) return STRUT_NO_MEMORY;
@@ -91,7 +90,7 @@ static strut_status pull_cables(const strut_model *model, strut_rigidity *r) {
     r->cables_can_pull = r->states.cables_pull[0];
   } else {
     strut_status status =
-        strut_self_stress_combine(model, &r->states, &wish, force, &r->cables_can_pull);
+        strut_self_stress_pull_cables(model, &r->states, force, &r->cables_can_pull);
     if (status != STRUT_OK) return status;
   }
   if (r->cables_can_pull) r->feasible = force;

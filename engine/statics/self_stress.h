@@ -40,4 +40,13 @@ STRUT_API strut_status strut_self_stress_combine(const strut_model *model,
                                                  const strut_stress_wish *wish, double *force,
                                                  bool *found);
 
+/**
+ * Looks for a combination (members) that pulls all cables that any state loads, by a linear programme:
+ * the one with the least sum of cable forces where each has at least 1, then scaled to a largest
+ * force of 1. Not *found means that there is none.
+ */
+STRUT_API strut_status strut_self_stress_pull_cables(const strut_model *model,
+                                                     const strut_self_stress *states,
+                                                     double *force, bool *found);
+
 #endif
