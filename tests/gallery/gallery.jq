@@ -14,17 +14,17 @@ def agrees($got; $want; $tolerance):
   else $got == $want end;
 
 # Of strut equilibria.
-def labelled($sort): [.equilibria[] | select(.label == $sort)];
+def labelled($what): [.equilibria[] | select(.label == $what)];
 def named($name): .equilibria[] | select(.name == $name);
 # How many of a label, and their energies in order.
 def stable: labelled("stable") | length;
 def saddles: labelled("saddle") | length;
-def energies($sort): labelled($sort) | map(.energy) | sort;
+def energies($what): labelled($what) | map(.energy) | sort;
 # The equilibrium whose energy is nearest.
 def at_energy($energy): .equilibria | min_by((.energy - $energy) | fabs);
 # The equilibrium of a label whose node is nearest to a place.
-def near($sort; $node; $x; $y):
-  labelled($sort) | min_by((.nodes[$node][0] - $x) * (.nodes[$node][0] - $x) +
+def near($what; $node; $x; $y):
+  labelled($what) | min_by((.nodes[$node][0] - $x) * (.nodes[$node][0] - $x) +
                             (.nodes[$node][1] - $y) * (.nodes[$node][1] - $y));
 
 # Of a mapping from nodes to places: how far apart two are.
