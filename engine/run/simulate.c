@@ -75,6 +75,11 @@ static strut_status prepare(run *r) {
   if (!r->method)
     return strut_fail(r->error, STRUT_USAGE, "there is no integrator '%s'",
                       scene->experiment.integrator);
+  if (scene->start_equilibrium >= 0)
+    return strut_fail(r->error, STRUT_USAGE,
+                      "the run wants to start at the equilibrium of configuration '%s'; resolve it "
+                      "into positions first (strut_stand_resolve)",
+                      scene->configurations[scene->start_equilibrium].name);
   if (!r->model->mass)
     return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
   strut_status status = strut_step_limit_estimate(r->model, &limit, r->error);

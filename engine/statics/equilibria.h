@@ -23,7 +23,7 @@ typedef enum strut_fate {
 typedef struct strut_equilibrium {
   const char *name;               /* a configuration's, or unnamed-1, ... unique in the list */
   const strut_node_set *supports; /* contact nodes held, or NULL */
-  strut_critical_point point;     /* shape, label, eigenvalues, starts */
+  strut_critical_point point;     /* shape, label, eigenvalues, starts; `down` in the list */
   double energy;                  /* (13) [J] */
   double (*reaction)[2];          /* (node_count) of supports, the scene's own too [N] */
   uint8_t *below;                 /* (node_count) 1 where under the ground */
@@ -40,11 +40,15 @@ typedef struct strut_equilibrium {
   char verdict[160];              /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
 } strut_equilibrium;
 
-/** A pass between two stable equilibria on the real ground: the lowest way known. */
+/** The lowest way known between two stable equilibria on the real ground. */
 typedef struct strut_barrier {
   int32_t from, to;  /* in the list */
   double height;     /* [J] above `from` */
   int32_t saddle;    /* the highest saddle on the way, in the list */
+  int32_t via_count;
+  int32_t *via;      /* (via_count) stable or floppy equilibria in between, in the list, or -1 */
+  double direct;     /* [J] of the lowest saddle that leads straight there; NAN: none is known */
+  int32_t direct_saddle; /* in the list, or -1 */
 } strut_barrier;
 
 typedef struct strut_equilibria {
@@ -54,7 +58,8 @@ typedef struct strut_equilibria {
   strut_barrier *barriers;
   uint64_t seed;
   int64_t starts;
-  double missed;            /* the largest over the supports */
+  double missed;            /* the largest over the searches, as in strut_critical_set */
+  double missed_one;        /* the same, its upper bound */
   char remark[400];         /* why there is none, or what moves freely; else empty */
   strut_arena arena;
 } strut_equilibria;
@@ -63,6 +68,7 @@ typedef struct strut_equilibria_options {
   int64_t starts;                   /* 0: as the scene says */
   const uint64_t *seed;             /* NULL: as the scene says */
   const strut_node_set *supports;   /* NULL: as the scene says */
+  bool standing_only;               /* no saddles and no barriers: what stands, and where */
   const volatile sig_atomic_t *interrupt;
 } strut_equilibria_options;
 

@@ -171,7 +171,7 @@ static strut_status run(const strut_arguments *arguments) {
   strut_plan plan;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);

@@ -13,7 +13,7 @@ static const strut_option options[] = {
 
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
   if (status != STRUT_OK) return status;
   char *text = strut_scene_write(&scene);
   status = text ? strut_print(text) : strut_complain_of_memory();

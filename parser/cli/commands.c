@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "parser/cli/command_check.h"
+#include "parser/cli/command_equilibria.h"
 #include "parser/cli/command_export.h"
 #include "parser/cli/command_form.h"
 #include "parser/cli/command_keys.h"
@@ -19,6 +20,7 @@
 static const strut_command *const commands[] = {
     &strut_command_run,
     &strut_command_check,
+    &strut_command_equilibria,
     &strut_command_modes,
     &strut_command_form,
     &strut_command_path,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/statics/stand.h"
 #include "parser/cli/streams.h"
 #include "parser/read_scene.h"
 
@@ -44,5 +45,11 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
   status = read_source(arguments, &from,
                        purpose == STRUT_OPEN_FOR_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY, scene);
   strut_release(from.text);
+  if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
+  status = strut_stand_resolve(scene, &error);
+  if (status != STRUT_OK) {
+    strut_complain(&error);
+    strut_scene_free(scene);
+  }
   return status;
 }

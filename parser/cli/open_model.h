@@ -11,8 +11,9 @@
 
 /** How a command wants its scene. */
 typedef enum strut_open_purpose {
-  STRUT_OPEN_FOR_RUN,
-  STRUT_OPEN_FOR_ANY /* for a run if the file says anything about one, else for statics */
+  STRUT_OPEN_FOR_RUN,  /* an equilibrium to start from is found and put into the start positions */
+  STRUT_OPEN_AS_RUN,   /* the same for a run if the file says anything about one, else for statics */
+  STRUT_OPEN_FOR_ANY   /* like that, but an equilibrium to start from remains a wish */
 } strut_open_purpose;
 
 /** Reads the model that the arguments name; messages go to stderr. strut_scene_free frees it. */

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a search for equilibria found, as tables of a screenful. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/output/buffer.h"
+#include "engine/output/equilibria_report.h"
+#include "engine/output/quantity_text.h"
+
+enum { MOST_ROWS = 80, MOST_SHAPES = 6, MOST_NODES = 12, NAMES = 64 };
+
+typedef struct quantity {
+  char text[STRUT_QUANTITY_TEXT];
+} quantity;
+
+static quantity in(double value, int digits, const char *unit) {
+  quantity q;
+  strut_quantity_text(value, digits, unit, q.text);
+  return q;
+}
+
+static void list_names(const strut_scene *scene, const int32_t *node, size_t count,
+                       char text[NAMES]) {
+  size_t used = 0;
+  snprintf(text, NAMES, "-");
+  for (size_t i = 0; i < count && used < NAMES; i++) {
+    int n = snprintf(text + used, NAMES - used, "%s%s", i ? "," : "", scene->nodes[node[i]].name);
+    if (n < 0) return;
+    used += (size_t)n;
+  }
+}
+
+static void add_row(strut_buffer *table, const strut_scene *scene, const strut_equilibrium *e) {
+  char names[NAMES];
+  list_names(scene, e->supports ? e->supports->node : NULL, e->supports ? e->supports->count : 0,
+             names);
+  double lowest = e->point.eigenvalue_count ? e->point.eigenvalues[0] : (double)NAN;
+  strut_buffer_add(table, "  %-12s %-10s %-8s %14s %13s %7" PRId64 "  %s\n", e->name, names,
+                   strut_stability_name(e->point.label), in(e->energy, 8, "J").text,
+                   in(lowest, 5, "N/m").text, e->point.found, e->verdict);
+}
+
+/* Saddles and maxima are many: those that matter appear by name among the barriers. */
+static void add_list(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
+  size_t shown = 0, left = 0, unstable = 0;
+  if (all->count == 0) return;
+  strut_buffer_add(table, "\n  %-12s %-10s %-8s %14s %13s %7s  %s\n", "equilibrium", "held",
+                   "label", "energy", "lowest", "found", "what becomes of it");
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    if (e->fate == STRUT_FATE_UNSTABLE) {
+      unstable++;
+    } else if (shown < MOST_ROWS) {
+      add_row(table, scene, e);
+      shown++;
+    } else {
+      left++;
+    }
+  }
+  if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
+  if (unstable)
+    strut_buffer_add(table, "  and %zu unstable ones, saddles and maxima; --json lists all\n",
+                     unstable);
+}
+
+static bool is_named(const strut_equilibrium *e) { return strncmp(e->name, "unnamed-", 8) != 0; }
+
+/* Where it rests, and what presses there. */
+static void add_shape(strut_buffer *table, const strut_scene *scene, const strut_equilibrium *e) {
+  strut_buffer_add(table, "\n  %-12s %14s %14s", e->name, "x", "y");
+  strut_buffer_add(table, e->contact_count ? " %14s\n" : "\n", "presses with");
+  for (size_t i = 0; i < scene->node_count && i < MOST_NODES; i++) {
+    strut_buffer_add(table, "  %-12s %14s %14s", scene->nodes[i].name,
+                     in(e->rest[2 * i], 7, "m").text, in(e->rest[2 * i + 1], 7, "m").text);
+    for (int32_t k = 0; k < e->contact_count; k++)
+      if (e->contacts[k] == (int32_t)i)
+        strut_buffer_add(table, " %14s", in(e->normal[k], 6, "N").text);
+    strut_buffer_add(table, "\n");
+  }
+  if (scene->node_count > MOST_NODES)
+    strut_buffer_add(table, "  ... and %zu more\n", scene->node_count - MOST_NODES);
+}
+
+/* Those that configurations name first. */
+static void add_shapes(strut_buffer *table, const strut_equilibria *all,
+                       const strut_scene *scene) {
+  int shown = 0;
+  for (int named = 1; named >= 0; named--)
+    for (size_t i = 0; i < all->count && shown < MOST_SHAPES; i++) {
+      const strut_equilibrium *e = &all->list[i];
+      if (e->fate != STRUT_FATE_STANDS || is_named(e) != named) continue;
+      add_shape(table, scene, e);
+      shown++;
+    }
+}
+
+static void add_barriers(strut_buffer *table, const strut_equilibria *all) {
+  bool names = false;
+  size_t shown = 0, left = 0;
+  if (all->barrier_count == 0) return;
+  for (size_t i = 0; i < all->count; i++) names = names || is_named(&all->list[i]);
+  strut_buffer_add(table, "\n  %-12s %-12s %14s %14s  %s\n", "from", "to", "barrier",
+                   "straight there", "over");
+  for (size_t i = 0; i < all->barrier_count; i++) {
+    const strut_barrier *b = &all->barriers[i];
+    bool both = is_named(&all->list[b->from]) && is_named(&all->list[b->to]);
+    if ((names && !both) || shown == MOST_ROWS) {
+      left++;
+      continue;
+    }
+    shown++;
+    strut_buffer_add(table, "  %-12s %-12s %14s %14s  %s", all->list[b->from].name,
+                     all->list[b->to].name, in(b->height, 6, "J").text,
+                     isnan(b->direct) ? "-" : in(b->direct, 6, "J").text,
+                     b->saddle >= 0 ? all->list[b->saddle].name : "-");
+    for (int32_t k = 0; k < b->via_count; k++)
+      strut_buffer_add(table, "%s%s", k ? ", " : ", by way of ",
+                       b->via[k] >= 0 ? all->list[b->via[k]].name : "-");
+    strut_buffer_add(table, "\n");
+  }
+  if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
+}
+
+char *strut_equilibria_table(const strut_equilibria *all, const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  strut_buffer table = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(&table, "%s%s%zu equilibria from %" PRId64 " starts, seed %" PRIu64 "\n",
+                   scene->name, *scene->name ? ": " : "", all->count, all->starts, all->seed);
+  if (all->count)
+    strut_buffer_add(&table,
+                     "  chance that one more start finds a new stable one: %.2g, at most %.2g\n",
+                     all->missed, all->missed_one);
+  if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
+  add_list(&table, all, scene);
+  add_shapes(&table, all, scene);
+  add_barriers(&table, all);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}

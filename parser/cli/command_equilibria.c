@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_equilibria.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/equilibria_report.h"
+#include "engine/output/file.h"
+#include "parser/cli/interrupt.h"
+#include "parser/cli/open_model.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+#include "parser/diagnostics.h"
+
+/* The seed is kept as a JSON integer, which readers hold exactly up to here. */
+static const int64_t MOST_STARTS = 1000000000, MOST_SEED = 9007199254740992;
+
+static const strut_option options[] = {
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold these contact nodes only, such as n1,n4"},
+    {STRUT_OPTION_STARTS, "starts", "N", "random starts for each search"},
+    {STRUT_OPTION_SEED, "seed", "S", "of the random starts; the same seed gives the same bits"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write equilibria.json into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static const char *node_name_at(const void *context, size_t i) {
+  const strut_scene *scene = context;
+  return i < scene->node_count ? scene->nodes[i].name : NULL;
+}
+
+static strut_status refuse_node(const strut_scene *scene, const char *name, const char *why) {
+  const char *near = strut_did_you_mean(name, node_name_at, scene);
+  fprintf(stderr, "strut equilibria: --supports: %s '%s'", why, name);
+  if (near && strcmp(near, name) != 0) fprintf(stderr, "; did you mean '%s'?", near);
+  fputc('\n', stderr);
+  return STRUT_USAGE;
+}
+
+/* "n1,n4" as nodes, in the scene's arena; *set stays NULL where nothing was given. */
+static strut_status read_supports(const strut_arguments *arguments, strut_scene *scene,
+                                  strut_node_set **set) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_SUPPORTS);
+  if (!text) return STRUT_OK;
+  size_t most = strlen(text) + 1;
+  strut_node_set *to = strut_arena_allocate(&scene->arena, 1, sizeof *to);
+  char *word = strut_arena_allocate(&scene->arena, most, 1);
+  if (to) to->node = strut_arena_allocate(&scene->arena, most, sizeof *to->node);
+  if (!to || !word || !to->node) return strut_complain_of_memory();
+  for (const char *at = text;; at++) {
+    size_t length = strcspn(at, ","), found = 0;
+    memcpy(word, at, length);
+    word[length] = '\0';
+    while (found < scene->node_count && strcmp(scene->nodes[found].name, word) != 0) found++;
+    if (found == scene->node_count) return refuse_node(scene, word, "there is no node");
+    for (size_t i = 0; i < to->count; i++)
+      if (to->node[i] == (int32_t)found) return refuse_node(scene, word, "named twice:");
+    to->node[to->count++] = (int32_t)found;
+    at += length;
+    if (!*at) break;
+  }
+  *set = to;
+  return STRUT_OK;
+}
+
+static strut_status read_options(const strut_arguments *arguments, strut_scene *scene,
+                                 strut_equilibria_options *to, uint64_t *seed) {
+  int64_t starts = 0, chosen = (int64_t)scene->search.seed;
+  strut_node_set *set = NULL;
+  strut_status status = strut_option_integer(&strut_command_equilibria, arguments,
+                                             STRUT_OPTION_STARTS, 0, MOST_STARTS, &starts);
+  if (!status)
+    status = strut_option_integer(&strut_command_equilibria, arguments, STRUT_OPTION_SEED, 0,
+                                  MOST_SEED, &chosen);
+  if (!status) status = read_supports(arguments, scene, &set);
+  *seed = (uint64_t)chosen;
+  *to = (strut_equilibria_options){
+      .starts = starts, .seed = seed, .supports = set, .interrupt = strut_interrupt_watch()};
+  return status;
+}
+
+static strut_status report(const strut_arguments *arguments, const strut_equilibria *all,
+                           const strut_model *model) {
+  strut_error error = {0};
+  char *json = strut_equilibria_json(all, model), *table = strut_equilibria_table(all, model);
+  strut_status status = json && table ? STRUT_OK : strut_complain_of_memory();
+  if (!status && arguments->output) {
+    status = strut_directory_create(arguments->output, &error);
+    if (!status)
+      status = strut_file_write_text(arguments->output, "equilibria.json", json, &error);
+    if (status) strut_complain(&error);
+  }
+  if (!status) status = strut_print(arguments->json ? json : table);
+  strut_release(json);
+  strut_release(table);
+  return status;
+}
+
+static strut_status search(const strut_arguments *arguments, strut_scene *scene) {
+  strut_equilibria_options options_read;
+  strut_model *model = NULL;
+  strut_equilibria all = {0};
+  strut_error error = {0};
+  uint64_t seed;
+  strut_status status = read_options(arguments, scene, &options_read, &seed);
+  if (status) return status;
+  status = strut_model_compile(scene, &model, &error);
+  if (!status) status = strut_equilibria_find(model, &options_read, &all, &error);
+  if (status) {
+    strut_complain(&error);
+  } else {
+    status = report(arguments, &all, model);
+    if (!status && all.count == 0) {
+      strut_fail(&error, status = STRUT_NOT_SETTLED, "%s", all.remark);
+      strut_complain(&error);
+    }
+  }
+  strut_equilibria_free(&all);
+  strut_model_free(model);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  if (status != STRUT_OK) return status;
+  status = search(arguments, &scene);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const strut_command strut_command_equilibria = {
+    .name = "equilibria",
+    .model = "MODEL",
+    .summary = "finds the shapes in which a model is at rest",
+    .details =
+        "\nContact nodes are held in turn in place of the ground, and every equilibrium is\n"
+        "looked for from many starts: drawn, mirrored and random ones. What stands up to\n"
+        "that is let go on the real ground, without drive and friction, and the report says\n"
+        "where it comes to rest, and how high the passes between the stable shapes are.\n"
+        "Exit code 3 where nothing is ever at rest.\n",
+    .options = options,
+    .run = run,
+};

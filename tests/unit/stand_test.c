@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The search for equilibria on small structures with closed forms: which supports are held, what
+ * becomes of the shapes, what is said where nothing can rest; and shapes to stand in by name.
+ */
+#include "engine/statics/stand.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/equilibria.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static const double G = 9.81;
+
+typedef struct found {
+  strut_scene scene;
+  strut_model *model;
+  strut_equilibria all;
+} found;
+
+static void search(found *f) {
+  strut_error error = {0};
+  strut_equilibria_options options = {.starts = 60};
+  f->model = motion_compile(&f->scene);
+  if (strut_equilibria_find(f->model, &options, &f->all, &error)) fail_msg("%s", error.message);
+}
+
+static void done(found *f) {
+  strut_equilibria_free(&f->all);
+  strut_model_free(f->model);
+  strut_scene_free(&f->scene);
+}
+
+static int32_t count(const found *f, strut_fate fate) {
+  int32_t n = 0;
+  for (size_t i = 0; i < f->all.count; i++) n += f->all.list[i].fate == fate;
+  return n;
+}
+
+static const strut_equilibrium *first(const found *f, strut_fate fate) {
+  for (size_t i = 0; i < f->all.count; i++)
+    if (f->all.list[i].fate == fate) return &f->all.list[i];
+  fail_msg("nothing has that fate");
+  return NULL;
+}
+
+static void assert_says(const char *text, const char *part) {
+  if (!strstr(text, part)) fail_msg("'%s' lacks '%s'", text, part);
+}
+
+/* A triangle of bars, 1 kg/m, every node a contact; n3 above at x. */
+static void triangle(strut_scene *scene, double x) {
+  double at[3][2] = {{0, 0}, {1, 0}, {x, 1}};
+  strut_scene_init(scene);
+  for (int i = 0; i < 3; i++) build_node(scene, at[i][0], at[i][1]);
+  for (int i = 0; i < 3; i++) {
+    int k = (i + 1) % 3;
+    double length = hypot(at[k][0] - at[i][0], at[k][1] - at[i][1]);
+    build_member(scene, STRUT_BAR, i, k, 1e6, 10, length);
+  }
+  for (int i = 0; i < 3; i++) build_contact(scene, i, 1e5, 100);
+  scene->gravity[1] = -G;
+}
+
+static void test_a_triangle_stands_on_every_side(void **unused) {
+  (void)unused;
+  found f;
+  triangle(&f.scene, 0.4);
+  search(&f);
+  double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
+  assert_int_equal(count(&f, STRUT_FATE_STANDS), 3);
+  for (size_t i = 0; i < f.all.count; i++) {
+    const strut_equilibrium *e = &f.all.list[i];
+    if (e->fate != STRUT_FATE_STANDS) continue;
+    assert_string_equal(e->verdict, "stands");
+    assert_int_equal(e->ends_as, i);
+    double sum = 0, below = 0;
+    for (int n = 0; n < 3; n++) sum += e->reaction[n][1];
+    for (int k = 0; k < 2; k++) {
+      below += e->normal[k];
+      assert_near(e->rest[2 * e->contacts[k] + 1], -e->normal[k] / 1e5, 1e-12);
+    }
+    assert_near(sum, weight, 1e-9);
+    assert_near(below, weight, 1e-8);
+  }
+  assert_string_equal(f.all.list[0].name, "unnamed-1");
+  done(&f);
+}
+
+static void test_it_tips_over_its_foot(void **unused) {
+  (void)unused;
+  found f;
+  triangle(&f.scene, 2.5);
+  search(&f);
+  const strut_equilibrium *e = first(&f, STRUT_FATE_TIPS);
+  assert_int_equal(e->supports->node[0], 0);
+  assert_int_equal(e->supports->node[1], 1);
+  assert_true(e->reaction[0][1] < 0);
+  assert_int_equal(e->tips_over, 1);
+  assert_says(e->verdict, "tips over n2 onto n2 and n3: ");
+  assert_int_equal(e->contacts[0], 1);
+  assert_int_equal(e->contacts[1], 2);
+  assert_int_equal(f.all.list[e->ends_as].fate, STRUT_FATE_STANDS);
+  done(&f);
+}
+
+/* Two bars over a span, held at both ends: nothing else is needed to hold it. */
+static void truss(strut_scene *scene) {
+  strut_scene_init(scene);
+  build_support(scene, 0, 0);
+  build_mass(scene, 1, 0.3, 1);
+  build_support(scene, 2, 0);
+  build_member(scene, STRUT_BAR, 0, 1, 1000, 0, 0);
+  build_member(scene, STRUT_BAR, 1, 2, 1000, 0, 0);
+}
+
+static void test_a_truss_snaps(void **unused) {
+  (void)unused;
+  found f;
+  truss(&f.scene);
+  search(&f);
+  assert_int_equal(count(&f, STRUT_FATE_STANDS), 2);
+  double flat = 1000 * pow(hypot(1, 0.3) - 1, 2);
+  assert_true(f.all.barrier_count == 2);
+  for (int i = 0; i < 2; i++) {
+    assert_null(f.all.list[i].supports);
+    assert_near(fabs(f.all.list[i].point.q[3]), 0.3, 1e-12);
+    assert_near(f.all.barriers[i].height, flat, 1e-12);
+    assert_true(f.all.barriers[i].from != f.all.barriers[i].to);
+  }
+  assert_near(f.all.list[f.all.barriers[0].saddle].point.q[3], 0, 1e-9);
+  done(&f);
+}
+
+/* A bar on a pin leaves one motion: its contact node alone is held. */
+static void test_one_motion_needs_one_support(void **unused) {
+  (void)unused;
+  found f;
+  strut_scene_init(&f.scene);
+  build_support(&f.scene, 0, 0.6);
+  build_node(&f.scene, 0.7, 0.1);
+  build_sized(&f.scene, STRUT_BAR, 0, 1, 1e6, 10, 2, 1);
+  build_contact(&f.scene, 1, 1e5, 100);
+  f.scene.gravity[1] = -G;
+  search(&f);
+  const strut_equilibrium *e = first(&f, STRUT_FATE_STANDS);
+  assert_int_equal(e->supports->count, 1);
+  assert_near(e->point.q[2], 0.8, 1e-4); /* 0.6, 0.8, 1 */
+  assert_near(e->point.q[3], 0, 0);
+  assert_near(e->reaction[1][1], G, 1e-3);
+  assert_near(e->normal[0], G, 1e-3);
+  done(&f);
+}
+
+static void test_what_falls(void **unused) {
+  (void)unused;
+  found f;
+  strut_arena arena = {0};
+  strut_stand stand;
+  strut_error error = {0};
+  strut_scene_init(&f.scene);
+  build_node(&f.scene, 0, 0);
+  build_node(&f.scene, 1, 0);
+  build_member(&f.scene, STRUT_BAR, 0, 1, 1000, 0, 1);
+  f.scene.gravity[1] = -G;
+  search(&f);
+  assert_int_equal(f.all.count, 0);
+  assert_string_equal(f.all.remark, "nothing holds the structure: it falls freely, all nodes");
+  assert_int_equal(strut_stand_find(f.model, NULL, &arena, &stand, &error), STRUT_NOT_SETTLED);
+  assert_says(error.message, "it falls freely, all nodes");
+  strut_arena_free(&arena);
+  done(&f);
+}
+
+static void test_a_part_that_falls(void **unused) {
+  (void)unused;
+  found f;
+  truss(&f.scene);
+  build_mass(&f.scene, 5, 5, 1);
+  f.scene.gravity[1] = -G;
+  search(&f);
+  assert_int_equal(f.all.count, 0);
+  assert_says(f.all.remark, "a part of the structure");
+  assert_says(f.all.remark, "n4");
+  done(&f);
+}
+
+static void test_a_mechanism(void **unused) {
+  (void)unused;
+  found f;
+  strut_scene_init(&f.scene);
+  build_support(&f.scene, 0, 0);
+  build_support(&f.scene, 1, 0);
+  build_mass(&f.scene, 1.1, 1, 1);
+  build_mass(&f.scene, 0.1, 1, 1);
+  for (int i = 1; i < 4; i++) build_member(&f.scene, STRUT_BAR, i, (i + 1) % 4, 1000, 0, 0);
+  search(&f);
+  assert_true(f.all.count > 0);
+  const strut_equilibrium *e = first(&f, STRUT_FATE_FLOPPY);
+  assert_int_equal(e->point.label, STRUT_FLOPPY);
+  assert_string_equal(e->verdict, "nodes n3 and n4 move together without stiffness");
+  assert_says(f.all.remark, "nodes n3 and n4 move together without stiffness");
+  done(&f);
+}
+
+/* A slope is level ground with gravity turned: the same solutions, but nothing rests. */
+static void test_a_slope(void **unused) {
+  (void)unused;
+  const double slope = 0.1, c = cos(slope), s = sin(slope);
+  found level, steep;
+  triangle(&level.scene, 0.4);
+  level.scene.gravity[0] = -G * s, level.scene.gravity[1] = -G * c;
+  triangle(&steep.scene, 0.4);
+  steep.scene.ground.slope = slope;
+  for (int i = 0; i < 3; i++) {
+    double *p = steep.scene.nodes[i].position, x = p[0], y = p[1];
+    p[0] = c * x - s * y, p[1] = s * x + c * y;
+    memcpy(steep.scene.nodes[i].start, p, 2 * sizeof *p);
+  }
+  search(&level);
+  search(&steep);
+  assert_int_equal(level.all.count, steep.all.count);
+  assert_true(steep.all.count >= 3);
+  assert_int_equal(count(&steep, STRUT_FATE_STANDS), 0);
+  assert_says(steep.all.remark, "a coefficient of at least 0.1003 holds it"); /* tan 0.1 */
+  assert_string_equal(first(&steep, STRUT_FATE_NO_REST)->verdict,
+                      "slides along the ground without friction");
+  for (size_t i = 0; i < steep.all.count; i++) {
+    const double *a = level.all.list[i].point.q, *b = steep.all.list[i].point.q;
+    assert_near(steep.all.list[i].energy, level.all.list[i].energy, 1e-9);
+    for (int n = 0; n < 3; n++) {
+      assert_near(b[2 * n], c * a[2 * n] - s * a[2 * n + 1], 1e-9);
+      assert_near(b[2 * n + 1], s * a[2 * n] + c * a[2 * n + 1], 1e-9);
+    }
+  }
+  done(&level);
+  done(&steep);
+}
+
+static void test_supports_must_touch(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_equilibria all;
+  strut_error error = {0};
+  triangle(&scene, 0.4);
+  scene.contact_count = 2;
+  int32_t nodes[2] = {0, 2};
+  strut_node_set set = {2, nodes};
+  strut_equilibria_options options = {.supports = &set};
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_equilibria_find(model, &options, &all, &error), STRUT_USAGE);
+  assert_says(error.message, "node 'n3' cannot touch the ground");
+  strut_equilibria_free(&all);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* The crawler's drawn state I as a configuration; II by its contacts alone. */
+static void with_configurations(strut_scene *scene) {
+  static int32_t one[2] = {0, 3}, two[2] = {1, 3};
+  static strut_node_set on_one = {2, one}, on_two = {2, two};
+  static strut_configuration both[2];
+  static double drawn[5][2];
+  strut_scene_init(scene);
+  structure_crawler(scene, 10, 1e-4, 0.1, false);
+  for (int i = 0; i < 5; i++) memcpy(drawn[i], scene->nodes[i].position, sizeof drawn[i]);
+  both[0] = (strut_configuration){"I", true, drawn, 1, &on_one};
+  both[1] = (strut_configuration){"II", false, drawn, 1, &on_two};
+  scene->configurations = both;
+  scene->configuration_count = 2;
+}
+
+static void test_stands(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_arena arena = {0};
+  strut_stand drawn, start, one, two;
+  strut_error error = {0};
+  with_configurations(&scene);
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_stand_find(model, "drawn", &arena, &drawn, &error), STRUT_OK);
+  assert_int_equal(strut_stand_find(model, NULL, &arena, &start, &error), STRUT_OK);
+  assert_int_equal(strut_stand_find(model, "I", &arena, &one, &error), STRUT_OK);
+  assert_int_equal(strut_stand_find(model, "II", &arena, &two, &error), STRUT_OK);
+  assert_false(drawn.at_rest); /* nothing carries it where it is drawn */
+  assert_near(drawn.q[2], 0.0965109, 0);
+  assert_near(drawn.scale, 0.14 * G, 1e-12);
+  assert_true(start.at_rest && one.at_rest && two.at_rest);
+  assert_string_equal(start.name, "start");
+  assert_string_equal(two.name, "II");
+  for (int k = 0; k < 10; k++) assert_same_bits(start.q[k], one.q[k]);
+  assert_int_equal(one.closed_count, 2);
+  assert_int_equal(one.closed[0], 0);
+  assert_int_equal(one.closed[1], 3);
+  assert_int_equal(two.closed[0], 1);
+  assert_near(one.normal[0], two.normal[0], 1e-8);
+  assert_near(two.q[3], one.q[1], 1e-12);
+  assert_true(one.residual < 1e-10 * one.scale);
+  assert_int_equal(strut_stand_find(model, "III", &arena, &two, &error), STRUT_USAGE);
+  assert_says(error.message, "choose among: start, drawn, I, II");
+  strut_arena_free(&arena);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_a_run_wants_it_resolved(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error = {0};
+  strut_summary summary;
+  strut_run_options options = {0};
+  with_configurations(&scene);
+  motion_experiment(&scene, 1e-4, 0.01);
+  scene.start_equilibrium = 1;
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_USAGE);
+  assert_says(error.message, "'II'");
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  assert_int_equal(strut_stand_resolve(&scene, &error), STRUT_OK);
+  assert_int_equal(scene.start_equilibrium, -1);
+  assert_true(fabs(scene.nodes[1].start[1]) < 1e-4 && scene.nodes[0].start[1] > 0.02);
+  assert_int_equal(strut_stand_resolve(&scene, &error), STRUT_OK);
+  for (size_t i = 0; i < scene.actuator_count; i++) scene.signals[0].amplitude = 0;
+  summary = motion_simulate(&scene);
+  for (size_t k = 0; k < 10; k++) /* it stays */
+    assert_near(summary.positions[k], scene.nodes[k / 2].start[k % 2], 1e-11);
+  strut_summary_free(&summary);
+  strut_scene_free(&scene);
+}
+
+static void test_no_such_equilibrium(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_arena arena = {0};
+  strut_stand stand;
+  strut_error error = {0};
+  with_configurations(&scene);
+  int32_t nodes[2] = {2, 3}; /* it does not stand on these two */
+  scene.configurations[1].sets[0].node = nodes;
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_stand_find(model, "II", &arena, &stand, &error), STRUT_NOT_SETTLED);
+  assert_says(error.message, "no equilibrium fits configuration 'II'");
+  strut_arena_free(&arena);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_refused_memory(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_equilibria_options options = {.starts = 4};
+  triangle(&scene, 2.5);
+  strut_model *model = motion_compile(&scene);
+  int64_t n = 0, step = 1;
+  for (strut_status status = STRUT_NO_MEMORY; status != STRUT_OK; n += step, step += 1 + n / 20) {
+    strut_equilibria all;
+    strut_error error = {0};
+    strut_fail_allocation_after(n);
+    status = strut_equilibria_find(model, &options, &all, &error);
+    strut_fail_allocation_after(-1);
+    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+    strut_equilibria_free(&all);
+  }
+  assert_true(n > 100);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_triangle_stands_on_every_side),
+      cmocka_unit_test(test_it_tips_over_its_foot),
+      cmocka_unit_test(test_a_truss_snaps),
+      cmocka_unit_test(test_one_motion_needs_one_support),
+      cmocka_unit_test(test_what_falls),
+      cmocka_unit_test(test_a_part_that_falls),
+      cmocka_unit_test(test_a_mechanism),
+      cmocka_unit_test(test_a_slope),
+      cmocka_unit_test(test_supports_must_touch),
+      cmocka_unit_test(test_stands),
+      cmocka_unit_test(test_a_run_wants_it_resolved),
+      cmocka_unit_test(test_no_such_equilibrium),
+      cmocka_unit_test(test_refused_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
