@@ -19,8 +19,8 @@ typedef struct search {
   strut_batch *batch;
   strut_task task[STRUT_BATCH];
   size_t tasks;
-  int64_t random, room;   /* random starts made; how many points `hits` has room for */
-  int64_t *hits;          /* of them, on each point; of strut_allocate */
+  int64_t random, room; /* random starts made; how many points `hits` has room for */
+  int64_t *hits;        /* of them, on each point; of strut_allocate */
   int64_t climbs_left;
   size_t climbed, paired; /* points up to which modes and pairs were climbed */
   strut_error *error;
@@ -136,7 +136,8 @@ static strut_status folded_minima(search *s) {
   if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int64_t fold = 0; fold < folds && left > 0 && !status; fold++)
     for (size_t i = 0; i < s->all.count && left > 0 && !status; i++, left--)
-      status = add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
+      status =
+          add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
   return status ? status : run(s);
 }
 
@@ -154,10 +155,10 @@ static strut_status climb_modes(search *s) {
     const double *q = point->q;
     if (!is_minimum(point)) continue;
     for (int64_t k = 0; k < 2 * modes && !status; k++)
-      status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_MODE,
-                                          .q = q,
-                                          .number = k / 2,
-                                          .side = k % 2 ? -1.0 : 1.0});
+      status = climb_from(
+          s,
+          (strut_task){
+              .kind = STRUT_TASK_CLIMB_MODE, .q = q, .number = k / 2, .side = k % 2 ? -1.0 : 1.0});
   }
   return status ? status : run(s);
 }
@@ -242,7 +243,8 @@ static strut_status find_saddles(search *s) {
     status = climb_modes(s);
     if (!status) status = climb_pairs(s);
     if (!status && turn == 0) status = random_climbs(s);
-    while (!status && gone < s->all.count) { /* what lies below may be new, and a saddle's end too */
+    while (!status &&
+           gone < s->all.count) { /* what lies below may be new, and a saddle's end too */
       size_t begin = gone;
       gone = s->all.count;
       status = go_down(s, begin);

@@ -46,8 +46,7 @@ static void project(lowest *l) {
     strut_sparse_multiply(l->hessian, l->space + k * n, l->image + k * n);
   for (size_t i = 0; i < SPACE; i++)
     for (size_t k = 0; k <= i; k++)
-      l->form[i * SPACE + k] = l->form[k * SPACE + i] =
-          dot(l->space + i * n, l->image + k * n, n);
+      l->form[i * SPACE + k] = l->form[k * SPACE + i] = dot(l->space + i * n, l->image + k * n, n);
   gsl_matrix_view form = gsl_matrix_view_array(l->form, SPACE, SPACE);
   gsl_matrix_view basis = gsl_matrix_view_array(l->basis, SPACE, SPACE);
   gsl_vector_view value = gsl_vector_view_array(raw, SPACE);
@@ -107,8 +106,7 @@ static bool factorise_above(const lowest *l, double shift) {
   return false;
 }
 
-bool strut_judge_sparse(const strut_judgement *j, strut_arena *arena,
-                        strut_critical_point *point) {
+bool strut_judge_sparse(const strut_judgement *j, strut_arena *arena, strut_critical_point *point) {
   size_t n = (size_t)j->hessian->n;
   strut_arena scratch = {0};
   lowest l = {.hessian = j->hessian};

@@ -66,8 +66,7 @@ static bool same_energy(const strut_gathering *g, double a, double b) {
 
 static bool same_point(const strut_gathering *g, const double *q, const double *known) {
   if (place_distance(g, q, known) <= g->near) return true;
-  return g->congruent &&
-         strut_shape_distance(g->potential->model, q, known, true, NULL) <= g->near;
+  return g->congruent && strut_shape_distance(g->potential->model, q, known, true, NULL) <= g->near;
 }
 
 static int32_t find(const strut_gathering *g, const double *q, double energy) {
@@ -115,9 +114,7 @@ static bool is_minimum(const strut_critical_point *point) {
 }
 
 /* One of a continuum: some motion that is no rigid one meets no stiffness. */
-static bool is_degenerate(const strut_critical_point *point) {
-  return point->zero > point->rigid;
-}
+static bool is_degenerate(const strut_critical_point *point) { return point->zero > point->rigid; }
 
 /* A continuum counts as one point: all of one energy, its ends included. */
 static int32_t find_degenerate(const strut_gathering *g, const strut_critical_point *point) {
@@ -166,8 +163,7 @@ strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *i
   strut_critical_point *known = &g->points[*index];
   known->found++;
   if (is_degenerate(known) && !*fresh) return STRUT_OK;
-  if (!remember_placement(g, *index, q))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!remember_placement(g, *index, q)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   known->placements = count_placements(g, *index);
   return STRUT_OK;
 }

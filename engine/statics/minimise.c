@@ -8,7 +8,7 @@
 
 #include "engine/statics/descent_parts.h"
 
-enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 60, MOST_BENDS = 4 };
+enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
 
 struct strut_minimiser {
   const strut_potential *potential;
@@ -32,8 +32,8 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
   m->farthest = HUGE_VAL;
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
-  m->room = dense ? strut_curvature_dense_create(potential)
-                  : strut_curvature_sparse_create(potential);
+  m->room =
+      dense ? strut_curvature_dense_create(potential) : strut_curvature_sparse_create(potential);
   m->g = strut_arena_allocate(&m->arena, n, sizeof *m->g);
   m->g_trial = strut_arena_allocate(&m->arena, n, sizeof *m->g_trial);
   m->step = strut_arena_allocate(&m->arena, n, sizeof *m->step);
@@ -99,9 +99,8 @@ static void polish(strut_minimiser *m, double *q, double tolerance, double reach
   int32_t n = m->potential->n;
   double earlier = HUGE_VAL;
   for (int i = 0; i < MOST_POLISH; i++) {
-    double length = m->curvature->look(m->room, q)
-                        ? m->curvature->newton(m->room, m->g, m->step)
-                        : HUGE_VAL;
+    double length =
+        m->curvature->look(m->room, q) ? m->curvature->newton(m->room, m->g, m->step) : HUGE_VAL;
     if (!(length < 0.9 * earlier) || length > reach) break;
     move(m, q, 1.0);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);

@@ -10,9 +10,9 @@
 typedef struct room {
   strut_spectrum_room *spectra;
   strut_spectrum now;
-  double *part, *x; /* (n) the gradient's and the step's share of each mode */
-  uint8_t *idle;    /* (n) modes to leave alone */
-  double scale;     /* largest |eigenvalue| */
+  double *part, *x;  /* (n) the gradient's and the step's share of each mode */
+  uint8_t *idle;     /* (n) modes to leave alone */
+  double scale;      /* largest |eigenvalue| */
   double multiplier; /* of the step that descend gave last */
 } room;
 

@@ -11,8 +11,8 @@ typedef struct room {
   strut_sparse *hessian;
   strut_ldl *ldl;
   strut_inertia inertia;
-  double shift; /* of the factor at hand; NAN: there is none */
-  double scale; /* largest diagonal entry */
+  double shift;         /* of the factor at hand; NAN: there is none */
+  double scale;         /* largest diagonal entry */
   double *work, *other; /* (n) */
   strut_arena arena;
 } room;
@@ -99,47 +99,57 @@ static bool lift(room *r, double *low, double *shift) {
   return false;
 }
 
-/*
- * Shifts upwards until the step is within the radius, by Newton's method on 1/|s|, each trial a new
- * factor. A step of 0.7 to 1 radius is good enough.
- */
-static strut_model_step descend(void *memory, const double *g, double radius, double still,
-                                double *s) {
-  room *r = memory;
-  int32_t n = r->hessian->n;
-  double low, shift;
-  (void)still;
-  if (!lift(r, &low, &shift)) return (strut_model_step){0};
-  double length = solve(r, g, s), high = HUGE_VAL;
-  for (int i = 0; i < 30 && !(length <= radius && (shift == 0.0 || length > 0.7 * radius)); i++) {
-    if (length <= radius) {
-      high = shift;
-      if (low <= 0.0 && shift <= 1e-13 * r->scale) break; /* as far as the shift need ever go */
-    } else {
-      low = fmax(low, shift);
+/* From a shift that is larger than need be towards `low`, which is too small: a longer step. */
+static double lengthen(room *r, const double *g, double radius, double low, double shift,
+                       double length, double *s) {
+  for (int i = 0; i < 3 && low > 0 && length < 0.7 * radius; i++) {
+    double between = sqrt(low * shift);
+    bool good = factorise(r, between);
+    double longer = good ? solve(r, g, s) : HUGE_VAL;
+    if (longer <= radius) {
+      shift = between, length = longer;
+      continue;
     }
+    low = between;
+    factorise(r, shift);
+    length = solve(r, g, s);
+  }
+  return length;
+}
+
+/* From a shift whose step is too long upwards: Newton's method on 1/|s|, each trial a new factor. */
+static void shorten(room *r, const double *g, double radius, double low, double length, double *s) {
+  int32_t n = r->hessian->n;
+  double high = HUGE_VAL, shift = low;
+  for (int i = 0; i < 30 && !(length <= radius && length > 0.7 * radius); i++) {
     memcpy(r->other, s, (size_t)n * sizeof *s);
     strut_ldl_solve(r->ldl, r->other);
     double slope = dot(s, r->other, n); /* -|s| d|s|/dshift */
-    double next = shift + length * length * (length / (0.9 * radius) - 1.0) / slope;
+    double next = shift + length * length * (length / (0.85 * radius) - 1.0) / slope;
     if (!(next > low && next < high))
-      next = high == HUGE_VAL ? fmax(10.0 * shift, 1e-14 * r->scale) : 0.5 * (low + high);
+      next = high == HUGE_VAL ? fmax(10.0 * low, 1e-14 * r->scale) : 0.5 * (low + high);
     if (high - low <= 1e-3 * high && length <= radius) break;
-    if (!factorise(r, next)) {
-      low = next;
-      shift = next;
-      length = HUGE_VAL;
-      if (high < HUGE_VAL) {
-        shift = high;
-        factorise(r, shift);
-        length = solve(r, g, s);
-        if (high - low <= 1e-2 * high) break;
-      }
-      continue;
-    }
+    if (!factorise(r, next)) break;
     shift = next;
     length = solve(r, g, s);
+    *(length > radius ? &low : &high) = shift;
   }
+  if (length <= radius) return;
+  for (int32_t i = 0; i < n; i++) s[i] *= radius / length;
+}
+
+/* A step of 0.7 to 1 radius is good enough, or a shorter one where Newton's is. */
+static strut_model_step descend(void *memory, const double *g, double radius, double still,
+                                double *s) {
+  room *r = memory;
+  double low, shift;
+  (void)still;
+  if (!lift(r, &low, &shift)) return (strut_model_step){0};
+  double length = solve(r, g, s);
+  if (length > radius)
+    shorten(r, g, radius, shift, length, s);
+  else if (shift > 0)
+    lengthen(r, g, radius, low, shift, length, s);
   return judge(r, g, s);
 }
 
@@ -175,5 +185,5 @@ static bool ridge(void *memory, double *s) {
   return quotient < -1e-13 * r->scale;
 }
 
-const strut_curvature strut_curvature_sparse = {look, descend, straighten, newton,
-                                                    ridge, room_free};
+const strut_curvature strut_curvature_sparse = {look,   descend, straighten,
+                                                newton, ridge,   room_free};

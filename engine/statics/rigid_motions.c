@@ -116,8 +116,8 @@ int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, 
     for (int k = 0; k < 3; k++)
       form[i][k] = i < count && k < count
                        ? dot(work + (size_t)i * n, work + (size_t)k * n, hessian->n)
-                       : i == k ? HUGE_VAL
-                                : 0.0;
+                   : i == k ? HUGE_VAL
+                            : 0.0;
   for (int i = 0; i < 3; i++)
     if (form[i][i] == HUGE_VAL) form[i][i] = 1e300; /* no motion: sorted to the end */
   strut_symmetric_3(form, value, vector);

@@ -98,8 +98,7 @@ static bool climb(const strut_batch *b, worker *w, const strut_task *task, doubl
   size_t bytes = (size_t)p->model->length * sizeof *q;
   if (task->kind == STRUT_TASK_CLIMB_MODE) {
     memcpy(q, task->q, bytes);
-    return strut_climb_away(w->climber, (int32_t)task->number, task->side * far, q,
-                            w->direction) &&
+    return strut_climb_away(w->climber, (int32_t)task->number, task->side * far, q, w->direction) &&
            strut_climb(w->climber, 1, w->direction, q);
   }
   int32_t index = 1;

@@ -31,8 +31,8 @@ static double distance(const strut_model *model, const double *a, const double *
   return largest;
 }
 
-double strut_shape_distance(const strut_model *model, const double *a, const double *b,
-                            bool mirror, bool *mirrored) {
+double strut_shape_distance(const strut_model *model, const double *a, const double *b, bool mirror,
+                            bool *mirrored) {
   double plain = distance(model, a, b, 1.0);
   double other = mirror ? distance(model, a, b, -1.0) : HUGE_VAL;
   if (mirrored) *mirrored = other < plain;

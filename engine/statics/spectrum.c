@@ -14,12 +14,12 @@ struct strut_spectrum_room {
   int32_t soft_n;
   double least; /* of the spectrum at hand [N] */
   bool uneven;  /* stiffnesses differ by so much that the dense solver may lose the soft ones */
-  double *dense, *basis;          /* (n, n) each: Hessian, eigenvectors in columns */
-  double *soft, *soft_basis;      /* (n, n) room for the form on soft modes and its eigenvectors */
-  double *raw, *value, *noise;    /* (n) */
-  double *vector, *turned;        /* (n, n) */
+  double *dense, *basis;       /* (n, n) each: Hessian, eigenvectors in columns */
+  double *soft, *soft_basis;   /* (n, n) room for the form on soft modes and its eigenvectors */
+  double *raw, *value, *noise; /* (n) */
+  double *vector, *turned;     /* (n, n) */
   double *along, *across, *form_noise; /* (n) of one member in each soft mode; noise of the form */
-  int32_t *order;                 /* (n) */
+  int32_t *order;                      /* (n) */
 };
 
 static double *numbers(strut_arena *arena, size_t count) {

@@ -199,8 +199,7 @@ static void a_free_body(void **state) {
   strut_scene_init(&f.scene);
   const double corner[4][2] = {{0, 0}, {1, 0.05}, {1.1, 1}, {0, 1}};
   for (int i = 0; i < 4; i++) build_node(&f.scene, corner[i][0], corner[i][1]);
-  for (int i = 0; i < 4; i++)
-    build_sized(&f.scene, STRUT_CABLE, i, (i + 1) % 4, 100, 0, 0, 0.95);
+  for (int i = 0; i < 4; i++) build_sized(&f.scene, STRUT_CABLE, i, (i + 1) % 4, 100, 0, 0, 0.95);
   for (int i = 0; i < 2; i++) build_sized(&f.scene, STRUT_BAR, i, i + 2, 1000, 0, 0, sqrt(2));
   compile(&f, NULL, true);
   strut_descent d = strut_minimise(f.minimiser, f.q, 0);
