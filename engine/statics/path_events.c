@@ -22,7 +22,7 @@ double strut_path_measure_switch(strut_path_system *s, const double *y,
 double strut_path_measure_eigenvalue(strut_path_system *s, const double *y,
                                      const strut_path_piece *piece, int32_t which) {
   (void)piece;
-  strut_path_spectrum(s, y);
+  strut_path_spectrum(s, y, false);
   return gsl_vector_get(s->values, (size_t)which);
 }
 

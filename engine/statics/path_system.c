@@ -3,6 +3,7 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
+#include <gsl/gsl_sort_vector.h>
 #include <math.h>
 #include <string.h>
 
@@ -20,12 +21,13 @@ static bool make_matrices(strut_path_system *s) {
   s->vectors = gsl_matrix_alloc(n, n);
   s->values = gsl_vector_alloc(n);
   s->eigen = gsl_eigen_symmv_alloc(n);
+  s->values_only = gsl_eigen_symm_alloc(n);
   s->bordered = gsl_matrix_alloc(n + 1, n + 1);
   s->right = gsl_vector_alloc(n + 1);
   s->solution = gsl_vector_alloc(n + 1);
   s->order = gsl_permutation_alloc(n + 1);
-  return s->hessian && s->vectors && s->values && s->eigen && s->bordered && s->right &&
-         s->solution && s->order;
+  return s->hessian && s->vectors && s->values && s->eigen && s->values_only && s->bordered &&
+         s->right && s->solution && s->order;
 }
 
 static bool make_arrays(strut_path_system *s, const strut_model *model) {
@@ -69,6 +71,7 @@ void strut_path_system_free(strut_path_system *s) {
   gsl_vector_free(s->solution);
   gsl_permutation_free(s->order);
   gsl_eigen_symmv_free(s->eigen);
+  gsl_eigen_symm_free(s->values_only);
   strut_potential_free(s->potential);
   strut_arena_free(&s->arena);
   *s = (strut_path_system){0};
@@ -230,8 +233,13 @@ bool strut_path_tangent(strut_path_system *s, const double *y, const double *row
   return true;
 }
 
-void strut_path_spectrum(strut_path_system *s, const double *y) {
+void strut_path_spectrum(strut_path_system *s, const double *y, bool vectors) {
   evaluate(s, y);
+  if (!vectors) {
+    gsl_eigen_symm(s->hessian, s->values, s->values_only);
+    gsl_sort_vector(s->values);
+    return;
+  }
   gsl_eigen_symmv(s->hessian, s->values, s->vectors, s->eigen);
   gsl_eigen_symmv_sort(s->values, s->vectors, GSL_EIGEN_SORT_VAL_ASC);
 }

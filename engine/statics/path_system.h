@@ -29,6 +29,7 @@ typedef struct strut_path_system {
   gsl_vector *right, *solution, *values;
   gsl_matrix *vectors;
   gsl_permutation *order;
+  gsl_eigen_symm_workspace *values_only;
   gsl_eigen_symmv_workspace *eigen;
   strut_arena arena;
 } strut_path_system;
@@ -56,8 +57,8 @@ int strut_path_correct(strut_path_system *system, const double *row, double valu
 bool strut_path_tangent(strut_path_system *system, const double *y, const double *row,
                         double *tangent);
 
-/** Eigenvalues of the stiffness, ascending, into system->values, with system->vectors. */
-void strut_path_spectrum(strut_path_system *system, const double *y);
+/** Eigenvalues of the stiffness, ascending, into system->values; `vectors`: system->vectors too. */
+void strut_path_spectrum(strut_path_system *system, const double *y, bool vectors);
 /** Those below zero, after strut_path_spectrum. */
 int32_t strut_path_negative(const strut_path_system *system);
 

@@ -112,7 +112,7 @@ static void find_critical(strut_path_walk *w, const strut_path_piece *piece, int
   strut_path_system *s = &w->system;
   char detail[200];
   if (strut_path_locate(s, piece, strut_path_measure_eigenvalue, which, w->trial) < 0) return;
-  strut_path_spectrum(s, w->trial);
+  strut_path_spectrum(s, w->trial, true);
   gsl_vector_const_view null = gsl_matrix_const_column(s->vectors, (size_t)which);
   int32_t node = most_moved(s, &null.vector);
   const char *name = s->model.scene->nodes[node].name;
@@ -175,7 +175,7 @@ static void amend_last(strut_path_walk *w, const char *words) {
 }
 
 static void count_negative(strut_path_walk *w) {
-  strut_path_spectrum(&w->system, w->y);
+  strut_path_spectrum(&w->system, w->y, false);
   w->negative = strut_path_negative(&w->system);
 }
 
@@ -249,7 +249,7 @@ static bool land(strut_path_walk *w) {
 static void find_criticals(strut_path_walk *w, const strut_path_piece *piece) {
   strut_path_system *s = &w->system;
   double turn = w->next_tangent[s->n];
-  strut_path_spectrum(s, piece->to);
+  strut_path_spectrum(s, piece->to, false);
   int32_t after = strut_path_negative(s);
   int32_t low = after < w->negative ? after : w->negative;
   int32_t high = after < w->negative ? w->negative : after;
