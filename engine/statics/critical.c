@@ -176,6 +176,9 @@ static strut_status climb_pairs(search *s) {
         b = strut_gathering_placement(&s->all, (int32_t)s->paired, k);
         if (!b) break;
         status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
+        if (!status)
+          status = climb_from(
+              s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b, .side = 1.0});
       }
     }
   }

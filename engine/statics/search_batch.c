@@ -80,13 +80,26 @@ void strut_batch_free(strut_batch *batch) {
   strut_release(batch);
 }
 
+/* How far b may be slid along x, where nothing holds that, to lie over a. */
+static double slide_over(const strut_potential *p, const double *a, const double *b) {
+  double sum = 0.0;
+  int32_t nodes = p->model->node_count;
+  for (int32_t i = 0; i < nodes; i++) {
+    if (p->row_of[2 * i] < 0 || p->force[2 * i] != 0.0) return 0.0;
+    sum += a[2 * i] - b[2 * i];
+  }
+  if (p->ground && p->model->contacts.count && p->model->contacts.normal[0] != 0.0) return 0.0;
+  return nodes ? sum / nodes : 0.0;
+}
+
 /* The highest of seven places on the straight way from a to b. */
 static void highest_between(const strut_potential *p, const double *a, const double *b, double *q) {
   size_t length = (size_t)p->model->length;
-  double highest = -HUGE_VAL, best = 0.5;
+  double highest = -HUGE_VAL, best = 0.5, slide = slide_over(p, a, b);
   for (int k = 1; k <= 8; k++) { /* the eighth time for good */
     double t = k < 8 ? k / 8.0 : best;
-    for (size_t i = 0; i < length; i++) q[i] = a[i] + t * (b[i] - a[i]);
+    for (size_t i = 0; i < length; i++)
+      q[i] = a[i] + t * (b[i] + (i % 2 ? 0.0 : slide) - a[i]);
     double value = strut_potential_value(p, q);
     if (k < 8 && value > highest) highest = value, best = t;
   }
