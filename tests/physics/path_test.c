@@ -346,6 +346,29 @@ static void test_mixed_state_is_lost(void **state) {
   assert_false(mixed_state(threshold * (1 + 1e-4)));
 }
 
+/* A load with a signal is followed by its name, with its force alone; the others stay. */
+static void test_named_load(void **state) {
+  (void)state;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t a = build_support(&scene, 0, 0), b = build_node(&scene, 1, 0);
+  scene.nodes[b].fixed[1] = true;
+  build_member(&scene, STRUT_SPRING, a, b, 100, 0, 0);
+  build_load(&scene, b, 5, 0, build_sine(&scene, 0.1, 1));
+  build_load(&scene, b, -3, 0, -1);
+  strut_model *model = motion_compile(&scene);
+  for (int i = 0; i < 2; i++) {
+    strut_path path = {0};
+    strut_path_options options = {.load = i ? NULL : "l1"};
+    assert_int_equal(strut_path_follow(model, &options, &path, NULL), STRUT_OK);
+    assert_near(path.points[0].q[2 * b], i ? 1 : 0.97, 1e-14);
+    assert_near(path.points[path.point_count - 1].q[2 * b], i ? 0.97 : 1.02, 1e-14);
+    strut_path_free(&path);
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
 static void test_refusals(void **state) {
   (void)state;
   strut_scene scene;
