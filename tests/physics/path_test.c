@@ -427,6 +427,7 @@ int main(void) {
       cmocka_unit_test(test_touchdown),
       cmocka_unit_test(test_lift_off),
       cmocka_unit_test(test_mixed_state_is_lost),
+      cmocka_unit_test(test_named_load),
       cmocka_unit_test(test_refusals),
       cmocka_unit_test(test_memory),
   };
