@@ -9,7 +9,7 @@
 #include "engine/statics/search_batch.h"
 #include "engine/statics/starts.h"
 
-enum { LEAST_RANDOM = 128, PER_MINIMUM = 24, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
+enum { LEAST_RANDOM = 256, PER_MINIMUM = 32, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
 
 typedef struct search {
   const strut_potential *potential;

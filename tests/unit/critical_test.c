@@ -56,6 +56,55 @@ static void a_slack_arc_is_one_point(void **state) {
   critical_tear_down(&f);
 }
 
+/* Turned, shifted, mirrored: the same shape; a node moved by 0.1 is that far off at most. */
+static void the_distance_of_shapes(void **state) {
+  static const double corner[4][2] = {{0, 0}, {2, 0}, {2, 1}, {0.3, 1.4}};
+  fixture f = {0};
+  bool mirrored;
+  (void)state;
+  strut_scene_init(&f.scene);
+  for (int i = 0; i < 4; i++) build_node(&f.scene, corner[i][0], corner[i][1]);
+  build_member(&f.scene, STRUT_BAR, 0, 1, 1, 0, 0);
+  assert_int_equal(strut_model_compile(&f.scene, &f.model, NULL), STRUT_OK);
+  for (int side = 1; side >= -1; side -= 2) {
+    double q[16] = {0}, c = cos(0.7), s = sin(0.7);
+    for (int i = 0; i < 4; i++) {
+      q[2 * i] = 3 + side * (c * corner[i][0] - s * corner[i][1]);
+      q[2 * i + 1] = -1 + s * corner[i][0] + c * corner[i][1];
+    }
+    assert_near(strut_shape_distance(f.model, f.model->start, q, true, &mirrored), 0, 1e-14);
+    assert_int_equal(mirrored, side < 0);
+    double plain = strut_shape_distance(f.model, f.model->start, q, false, &mirrored);
+    assert_false(mirrored);
+    assert_true(side > 0 ? plain < 1e-14 : plain > 0.1);
+    q[5] += 0.1;
+    assert_within(strut_shape_distance(f.model, f.model->start, q, true, NULL), 0.03, 0.1);
+  }
+  critical_tear_down(&f);
+}
+
+/* A cable that pulls with next to nothing counts as slack where that is asked for, a contact too. */
+static void what_rounding_alone_closes(void **state) {
+  fixture f = {0};
+  strut_arena arena = {0};
+  (void)state;
+  strut_scene_init(&f.scene);
+  build_support(&f.scene, 0, 1);
+  build_node(&f.scene, 0, -1e-9);
+  build_sized(&f.scene, STRUT_CABLE, 0, 1, 100, 0, 0, 1);
+  build_contact(&f.scene, 1, 1000, 0);
+  assert_int_equal(strut_model_compile(&f.scene, &f.model, NULL), STRUT_OK);
+  assert_int_equal(strut_potential_create(f.model, NULL, true, &f.potential, NULL), STRUT_OK);
+  strut_sparse *k = strut_potential_matrix(f.potential, &arena);
+  const double least[] = {0, 5e-7, 5e-6}, stiffness[] = {1100, 1000, 0};
+  for (int i = 0; i < 3; i++) { /* the cable pulls with 1e-7 N, the ground pushes with 1e-6 N */
+    strut_potential_hessian_above(f.potential, f.model->start, least[i], k);
+    assert_near(k->value[k->start[1]], stiffness[i], 1e-9);
+  }
+  strut_arena_free(&arena);
+  critical_tear_down(&f);
+}
+
 /* Nothing holds it: every start falls for ever. */
 static void what_falls_has_no_point(void **state) {
   fixture f = {0};
@@ -160,6 +209,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_crawler_on_nodes_1_and_4),
       cmocka_unit_test(a_slack_arc_is_one_point),
+      cmocka_unit_test(the_distance_of_shapes),
+      cmocka_unit_test(what_rounding_alone_closes),
       cmocka_unit_test(what_falls_has_no_point),
       cmocka_unit_test(the_threads_change_no_bit),
       cmocka_unit_test(refused_memory),
