@@ -20,31 +20,34 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status write_files(const char *directory, const char *json, const char *csv,
-                                strut_error *error) {
+/* Writes a text as a file and releases it. */
+static strut_status write_file(const char *directory, const char *name, char *text,
+                               strut_error *error) {
+  strut_status status = text ? strut_file_write_text(directory, name, text, error)
+                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_release(text);
+  return status;
+}
+
+static strut_status write_files(const char *directory, const strut_model *model,
+                                const strut_modes *modes, strut_error *error) {
   strut_status status = strut_directory_create(directory, error);
-  if (status == STRUT_OK) status = strut_file_write_text(directory, "modes.json", json, error);
-  if (status == STRUT_OK) status = strut_file_write_text(directory, "modes.csv", csv, error);
+  if (status == STRUT_OK)
+    status = write_file(directory, "modes.json", strut_modes_json(model, modes), error);
+  if (status == STRUT_OK) status = write_file(directory, "modes.csv", strut_modes_csv(modes), error);
   return status;
 }
 
 static strut_status report(const strut_arguments *arguments, const strut_model *model,
                            const strut_modes *modes) {
   strut_error error = {0};
-  strut_status status = STRUT_OK;
-  char *json = strut_modes_json(model, modes), *csv = strut_modes_csv(modes);
-  char *text = arguments->json ? NULL : strut_modes_table(model, modes);
-  if (!json || !csv || (!text && !arguments->json)) {
-    status = strut_complain_of_memory();
-  } else {
-    if (arguments->output) status = write_files(arguments->output, json, csv, &error);
-    if (status != STRUT_OK)
-      strut_complain(&error);
-    else
-      status = strut_print(text ? text : json);
+  if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK) {
+    strut_complain(&error);
+    return error.status;
   }
-  strut_release(json);
-  strut_release(csv);
+  char *text = arguments->json ? strut_modes_json(model, modes) : strut_modes_table(model, modes);
+  if (!text) return strut_complain_of_memory();
+  strut_status status = strut_print(text);
   strut_release(text);
   return status;
 }
