@@ -34,9 +34,9 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
                                 : "no free node has mass, so that there are no modes: give nodes or "
                                   "members a mass");
   if (v->massive == v->n) return STRUT_OK;
-  strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, 1e-20 * v->largest);
-  int32_t weakest = work->factor->weakest;
-  if (work->factor->loss > 1e-26 || v->mass[weakest] > 0) return STRUT_OK;
+  strut_modes_factorise(&work->solver, 1e-20 * v->largest);
+  int32_t weakest = work->solver.weakest;
+  if (work->solver.loss > 1e-26 || v->mass[weakest] > 0) return STRUT_OK;
   return strut_fail(error, STRUT_SINGULAR,
                     "node '%s' has no mass and can move without stiffness, so that it has no "
                     "frequency: give it a mass or hold it",
@@ -192,7 +192,7 @@ static strut_status report(strut_modes_work *work, int32_t wanted, strut_modes *
 static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *modes,
                           strut_error *error) {
   const strut_vibration *v = work->v;
-  strut_status status = strut_extended_create(v->shape->pattern, &work->factor, error);
+  strut_status status = strut_modes_solver_create(v, &work->solver, error);
   if (status == STRUT_OK) status = check_problem(work, error);
   if (status != STRUT_OK) return status;
   if (modes->at_rest) status = strut_modes_settle(work, error);
@@ -240,7 +240,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_modes_option
     modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
     status = solve(&work, wanted_of(options, modes->dense), modes, error);
   }
-  strut_extended_free(work.factor);
+  strut_modes_solver_free(&work.solver);
   strut_vibration_free(work.v);
   return status;
 }

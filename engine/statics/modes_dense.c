@@ -62,8 +62,8 @@ static bool solve_directly(dense *d) {
 }
 
 static int32_t count_below(strut_modes_work *work, double z) {
-  strut_extended_factorise(work->factor, work->v->shape->pattern, work->v->k, work->v->m, -z);
-  return work->factor->negative;
+  strut_modes_factorise(&work->solver, -z);
+  return work->solver.negative;
 }
 
 /* A shift well below the smallest eigenvalue, by size, that is above 1e-20 of the largest. */
@@ -100,7 +100,7 @@ static void invert(dense *d) {
   for (size_t c = 0; c < d->massive; c++) {
     for (size_t r = 0; r < d->n; r++) y[r] = dd_of(0.0);
     for (size_t r = c; r < d->massive; r++) y[d->row[r]] = dd_of(gsl_matrix_get(d->b, r, c));
-    strut_extended_solve(d->work->factor, y);
+    strut_modes_solve(&d->work->solver, y);
     for (size_t r = 0; r < d->n; r++) gsl_matrix_set(d->vector, r, c, dd_double(y[r]));
   }
   for (size_t r = 0; r < d->massive; r++)
@@ -171,8 +171,7 @@ static bool solve_inverse(dense *d, bool alone) {
   size_t *order = strut_arena_allocate(d->work->arena, d->massive, sizeof *order);
   bool good = w && small && order && split_mass(d);
   if (good) {
-    const strut_vibration *v = d->work->v;
-    strut_extended_factorise(d->work->factor, v->shape->pattern, v->k, v->m, d->work->soft);
+    strut_modes_factorise(&d->work->solver, d->work->soft);
     invert(d);
     gsl_matrix_view a = gsl_matrix_submatrix(d->a, 0, 0, d->massive, d->massive);
     gsl_vector_view value = gsl_vector_subvector(d->value, 0, d->massive);

@@ -5,8 +5,8 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
-#include "engine/statics/extended_factor.h"
 #include "engine/statics/modes.h"
+#include "engine/statics/modes_solver.h"
 #include "engine/statics/stand.h"
 #include "engine/statics/vibration.h"
 
@@ -22,7 +22,7 @@ typedef struct strut_eigen_set {
 
 typedef struct strut_modes_work {
   strut_vibration *v;
-  strut_extended_factor *factor;
+  strut_modes_solver solver;
   strut_eigen_set set;
   double soft;          /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
   int32_t rigid_count;

@@ -8,8 +8,8 @@
 
 enum { MOST_STEPS = 8, SAMPLES = 3 };
 
-/* Of the largest eigenvalue: makes K regular where something moves freely, and leaves the rest. */
-static const double FIRM = 1e-24;
+/* Shares of the largest eigenvalue: one that a plain factor bears, and next to none. */
+static const double FIRM = 1.01e-10, HARDLY = 1e-24;
 
 static double largest(const strut_dd *x, int32_t n) {
   double size = 0.0;
@@ -27,29 +27,32 @@ static void move(strut_vibration *v, const strut_dd *step, double sign) {
 
 /*
  * Newton's method from the shape as doubles give it, whose last bits leave forces of c times a bit.
- * It is that close already; a step that is not tiny is taken back.
+ * It is that close already; a step that is not tiny is taken back. `firm` makes K regular where
+ * something moves freely, and slows down what is softer. Returns true when nothing is left to do.
  */
-static void settle(strut_modes_work *work, strut_dd *step) {
+static bool settle(strut_modes_work *work, double firm, strut_dd *step) {
   strut_vibration *v = work->v;
   strut_vibration_force(v, step);
   double force = largest(step, v->n);
   for (int i = 0; i < MOST_STEPS && force > 0; i++) {
-    strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, FIRM * v->largest);
-    strut_extended_solve(work->factor, step);
+    strut_modes_factorise(&work->solver, firm * v->largest);
+    strut_modes_solve(&work->solver, step);
     double size = largest(step, v->n);
-    if (!(size < 1e-6 * v->model->size)) return;
+    if (!(size < 1e-6 * v->model->size)) return true;
     move(v, step, 1.0);
     strut_dd *after = v->work;
     strut_vibration_force(v, after);
     double left = largest(after, v->n);
     if (!(left < force)) {
       move(v, step, -1.0);
-      return;
+      return size < 1e-20 * v->model->size;
     }
     memcpy(step, after, (size_t)v->n * sizeof *step);
-    if (left < 1e-25 * v->shape->force_scale || size < 1e-24 * v->model->size) return;
+    if (left < 1e-25 * v->shape->force_scale || size < 1e-22 * v->model->size) return true;
+    if (left > 1e-2 * force && i > 0) return false;
     force = left;
   }
+  return !(force > 0);
 }
 
 /* -1 to 1, from an index. */
@@ -84,7 +87,7 @@ static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, 
     }
   }
   if (at_rest) {
-    strut_extended_solve(work->factor, x);
+    strut_modes_solve(&work->solver, x);
     double *moved = (double *)v->work;
     for (int32_t i = 0; i < v->n; i++) moved[i] = dd_double(x[i]);
     for (int32_t j = 0; j < t->count; j++)
@@ -113,8 +116,17 @@ static void measure_noise(strut_modes_work *work, const double *noise) {
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
   strut_dd *step = strut_arena_allocate(work->arena, (size_t)work->v->n, sizeof *step);
   if (!step) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  settle(work, step);
+  if (!settle(work, FIRM, step)) settle(work, HARDLY, step);
   return STRUT_OK;
+}
+
+/* A shift that leaves all but the motions without stiffness as they are. */
+static double find_soft(const strut_modes_work *work) {
+  const strut_eigen_set *set = &work->set;
+  double low = work->v->largest;
+  for (int32_t i = 0; i < set->count; i++)
+    if (fabs(set->value[i]) > 1e-20 * work->v->largest) low = fmin(low, fabs(set->value[i]));
+  return 1e-3 * low;
 }
 
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error) {
@@ -123,8 +135,7 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
   double *noise =
       strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
   if (!step || !noise) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (at_rest)
-    strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, work->soft);
+  if (at_rest) strut_modes_factorise(&work->solver, find_soft(work));
   for (uint64_t sample = 0; sample < SAMPLES; sample++) {
     sample_noise(work, at_rest, sample, noise, step);
     measure_noise(work, noise);

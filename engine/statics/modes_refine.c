@@ -119,11 +119,11 @@ static void improve(strut_modes_work *work, int32_t index, double gap, pair *p) 
   const strut_vibration *v = work->v;
   for (int i = 0; i < MOST_ITERATIONS && !good_enough(work, index, p); i++) {
     double shift = p->value - OFFSET * fabs(p->value), before = p->error;
-    strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, -shift);
+    strut_extended_factorise(work->solver.extended, v->shape->pattern, v->k, v->m, -shift);
     for (int k = 0; k < 2; k++) {
       strut_vibration_mass(v, p->x, p->mx);
       memcpy(p->x, p->mx, (size_t)v->n * sizeof *p->x);
-      strut_extended_solve(work->factor, p->x);
+      strut_extended_solve(work->solver.extended, p->x);
       if (!normalise(work, index, p->value, p)) {
         p->error = HUGE_VAL;
         return;

@@ -10,9 +10,8 @@ enum { MOST_FACTORS = 80 };
 
 /* Eigenvalues below z, by the signs of the factor of K - z M. */
 static int32_t count_below(strut_modes_work *work, double z) {
-  const strut_vibration *v = work->v;
-  strut_extended_factorise(work->factor, v->shape->pattern, v->k, v->m, -z);
-  return work->factor->negative;
+  strut_modes_factorise(&work->solver, -z);
+  return work->solver.negative;
 }
 
 /* Some z > 0 with at least `count` and a few more eigenvalues below; *below gets how many. */
@@ -36,7 +35,7 @@ static void solve(void *context, double *x) {
   strut_modes_work *work = context;
   strut_dd *y = work->v->work;
   for (int32_t i = 0; i < work->v->n; i++) y[i] = dd_of(x[i]);
-  strut_extended_solve(work->factor, y);
+  strut_modes_solve(&work->solver, y);
   for (int32_t i = 0; i < work->v->n; i++) x[i] = dd_double(y[i]);
 }
 
@@ -60,7 +59,6 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   if (!set->value || !set->vector) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
   strut_lanczos_problem problem = {v->n, shift, work, solve, mass};
-  work->soft = 1e-9 * bound;
   strut_status status = strut_lanczos(&problem, below, set->value, set->vector, error);
   /* All that the signs have counted must be there. */
   if (status == STRUT_OK && !(set->value[below - 1] < 1.001 * bound))
