@@ -10,6 +10,9 @@
 
 enum { SHIFT_INVERT = 3, MOST_RESTARTS = 2000, LEAST_VECTORS = 40 };
 
+/* Relative error of the vectors; that of the eigenvalues is its square. */
+static const double GOOD = 1e-11;
+
 static pthread_mutex_t arpack_lock = PTHREAD_MUTEX_INITIALIZER;
 
 typedef struct search {
@@ -46,7 +49,7 @@ static a_int iterate(const strut_lanczos_problem *problem, search *s) {
   a_int task = 0, info = 1; /* the residual is ours */
   a_int small = s->vectors * (s->vectors + 8);
   for (;;) {
-    dsaupd_c(&task, "G", s->n, "LM", s->wanted, 0.0, s->residual, s->vectors, s->basis, s->n,
+    dsaupd_c(&task, "G", s->n, "LM", s->wanted, GOOD, s->residual, s->vectors, s->basis, s->n,
              s->parameter, s->pointer, s->work, s->small, small, &info);
     double *x = s->work + s->pointer[0] - 1, *y = s->work + s->pointer[1] - 1;
     if (task == 2) {
@@ -66,7 +69,7 @@ static a_int iterate(const strut_lanczos_problem *problem, search *s) {
 static a_int finish(const strut_lanczos_problem *problem, search *s) {
   a_int info = 0, small = s->vectors * (s->vectors + 8);
   dseupd_c(1, "A", s->select, s->value, s->basis, s->n, problem->shift, "G", s->n, "LM", s->wanted,
-           0.0, s->residual, s->vectors, s->basis, s->n, s->parameter, s->pointer, s->work,
+           GOOD, s->residual, s->vectors, s->basis, s->n, s->parameter, s->pointer, s->work,
            s->small, small, &info);
   return info;
 }
