@@ -117,7 +117,9 @@ static void add_verdicts(strut_json *json, const strut_rigidity *r) {
   strut_json_integer(json, count, "self_stress_minus_mechanisms",
                      r->states.count - r->mechanisms.count);
   strut_json_integer(json, root, "class", r->bars_at_node > 1 ? r->bars_at_node : 1);
-  bool known = r->stress.tested || r->states.count == 0;
+  /* of several states another combination might do it */
+  bool single = r->states.count <= 1;
+  bool known = r->states.count == 0 || (r->stress.tested && (single || r->stress.super_stable));
   if (known)
     strut_json_bool(json, root, "super_stable", r->stress.super_stable);
   else
@@ -156,7 +158,8 @@ static void add_members(strut_json *json, const strut_rigidity *r, const strut_s
     strut_json_text(json, row, "kind", strut_member_kind_words(scene->members[j].kind));
     strut_json_number(json, row, "length", r->matrix.length[j]);
     strut_json_number(json, row, "force", r->force[j]);
-    strut_json_number(json, row, "force_density", r->matrix.length[j] > 0 ? r->density[j] : (double)NAN);
+    strut_json_number(json, row, "force_density",
+                      r->matrix.length[j] > 0 ? r->density[j] : (double)NAN);
   }
 }
 

@@ -31,8 +31,8 @@ static void add_rank(strut_buffer *table, const strut_rigidity *r) {
     strut_buffer_add(table, "%s\n", s->dense ? "none dropped but zeros" : "by sparse QR");
   if (s->weak > 0)
     strut_buffer_add(table,
-                     "                     %d of them below a millionth of the largest: with nodes moved by\n"
-                     "                     as little, s and f may grow by that\n",
+                     "                     %d of them below a millionth of the largest: nodes\n"
+                     "                     moved by as little may change s and f by that\n",
                      s->weak);
 }
 
@@ -48,7 +48,8 @@ static void add_counts(strut_buffer *table, const strut_rigidity *r) {
                      strut_motion_kind_name((strut_motion_kind)i));
     before = ", ";
   }
-  strut_buffer_add(table, "\n  Maxwell-Calladine  %d members - %d free coordinates = %d = s - f\n",
+  strut_buffer_add(table,
+                   "\n  Maxwell-Calladine  %d members - %d free coordinates = %d = s - f\n",
                    r->matrix.columns, r->matrix.rows, r->matrix.columns - r->matrix.rows);
 }
 
@@ -57,7 +58,8 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
   const strut_tensegrity *t = &r->tensegrity;
   if (r->bars_at_node > 0)
     strut_buffer_add(table, "  class              %d: %s\n", r->bars_at_node,
-                     r->bars_at_node == 1 ? "no two bars meet" : "bars that meet at a node, at most");
+                     r->bars_at_node == 1 ? "no two bars meet"
+                                          : "bars that meet at a node, at most");
   strut_buffer_add(table, "  super stable       %s\n", strut_super_stability_words(r, words));
   if (r->has_cables && r->states.force && r->states.count > 0)
     strut_buffer_add(table, "  cables             %s\n",

@@ -68,6 +68,7 @@ const char *strut_super_stability_words(const strut_rigidity *r,
   else if (r->stress.super_stable)
     snprintf(words, STRUT_RIGIDITY_WORDS, "yes, by %s", source);
   else
-    snprintf(words, STRUT_RIGIDITY_WORDS, "no, by %s: %s", source, why_not(r));
+    snprintf(words, STRUT_RIGIDITY_WORDS, "%s, by %s: %s",
+             r->states.count == 1 ? "no" : "not shown", source, why_not(r));
   return words;
 }

@@ -128,7 +128,7 @@ static double change_of_shape(const walker *w) {
 
 strut_status strut_finite_motion_walk(const strut_model *model, const double *q,
                                       const double *motion, strut_walk *walk) {
-  *walk = (strut_walk){.moved = NAN, .strain = NAN};
+  *walk = (strut_walk){.moved = (double)NAN, .strain = (double)NAN};
   if (model->members.count > STRUT_WALK_MEMBERS) return STRUT_OK;
   strut_arena scratch = {0};
   walker w = {.model = model};

@@ -17,7 +17,7 @@ typedef struct strut_walk {
 } strut_walk;
 
 /**
- * Walks from q (length) along the motion (rows of A at q) in steps of a hundredth of the structure's
+ * Walks from q (length) along the motion (rows of A at q) in steps of a hundredth of the model's
  * size, returning to the lengths by Newton's method after each. STRUT_OK or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_finite_motion_walk(const strut_model *model, const double *q,

@@ -2,7 +2,7 @@
 /**
  * The matrices of small motions about a shape, each part by itself, for other programs.
  *
- * Over the free coordinates, in their order. The tangent stiffness is elastic + geometric + contact.
+ * Over the free coordinates in order. The tangent stiffness is elastic + geometric + contact.
  */
 #ifndef STRUT_ENGINE_STATICS_LINEAR_MATRICES_H
 #define STRUT_ENGINE_STATICS_LINEAR_MATRICES_H

@@ -104,7 +104,7 @@ static bool compare_states(sorter *s) {
   return true;
 }
 
-/* A state of self-stress that is positive on all inner motions, with cables in tension if it can. */
+/* A state of self-stress that is positive on all inner motions, with cables pulled if it can. */
 static strut_status find_stiffener(sorter *s, strut_mechanisms *m) {
   double *force = strut_arena_allocate(s->arena, s->members + 1, sizeof *force);
   if (!force) return STRUT_NO_MEMORY;
@@ -123,7 +123,7 @@ static strut_status find_stiffener(sorter *s, strut_mechanisms *m) {
   return STRUT_OK;
 }
 
-/* Motions that no state of self-stress has anything to say about come first: sum of squared forms. */
+/* Motions that no state of self-stress says anything about come first: sum of squared forms. */
 static bool separate(sorter *s, size_t *silent) {
   size_t n = s->n, count = s->forms ? (size_t)s->states->count : 0;
   memset(s->form, 0, n * n * sizeof *s->form);
@@ -174,11 +174,16 @@ static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
   return STRUT_OK;
 }
 
+static strut_mechanism blank(strut_motion_kind kind, const double *motion) {
+  const double none = (double)NAN;
+  return (strut_mechanism){.kind = kind, .motion = motion, .stiffness = none,
+                           .stress_form = none, .moved = none, .strain = none};
+}
+
 static strut_status judge(sorter *s, const double *force, strut_mechanisms *m,
                           strut_mechanism *list) {
   for (size_t i = 0; i < s->n; i++)
-    list[i] = (strut_mechanism){.motion = s->inner + i * s->rows, .stiffness = NAN,
-                                .stress_form = NAN, .moved = NAN, .strain = NAN};
+    list[i] = blank(STRUT_MOTION_UNDECIDED, s->inner + i * s->rows);
   if (force && s->n <= MOST_MOTIONS) {
     double size = form_of(s, force, s->form);
     if (!rotate(s, s->form)) return STRUT_NO_MEMORY;
@@ -250,9 +255,7 @@ static strut_status sort(sorter *s, const strut_null_spaces *spaces, const doubl
   s->n = count - rigid;
   s->inner = s->motion + rigid * s->rows;
   for (size_t i = 0; i < rigid; i++)
-    m->list[i] = (strut_mechanism){.kind = STRUT_MOTION_RIGID_BODY,
-                                   .motion = s->motion + i * s->rows, .stiffness = NAN,
-                                   .stress_form = NAN, .moved = NAN, .strain = NAN};
+    m->list[i] = blank(STRUT_MOTION_RIGID_BODY, s->motion + i * s->rows);
   collect(s, spaces->motion, count, rigid);
   strut_status status = s->n > 0 ? judge(s, force, m, m->list + rigid) : STRUT_OK;
   if (status == STRUT_OK) measure_and_count(s, force, m);

@@ -20,7 +20,7 @@ STRUT_API const char *strut_motion_kind_name(strut_motion_kind kind);
 typedef struct strut_mechanism {
   strut_motion_kind kind;
   const double *motion; /* (rows) free coordinates; unit vector */
-  double stiffness;     /* that the forces in the shape give it [N/m]; NAN where these do not balance */
+  double stiffness;     /* by the forces in the shape [N/m]; NAN where these do not balance */
   double stress_form;   /* the same by strut_mechanisms.stiffener [1/m]; NAN without one */
   double moved;         /* followed: largest change of a distance between nodes [m]; NAN: not */
   double strain;        /* and the largest relative change of a member's length on the way */
@@ -37,7 +37,7 @@ typedef struct strut_mechanisms {
 
 /**
  * Sorts the motions of A at q (length). force (members) [N] are those in the shape, or NULL where
- * they do not balance. A mechanism is infinitesimal where a state of self-stress has a positive form
+ * they do not balance. A mechanism is infinitesimal where a self-stress has a positive form
  * on all that are not rigid-body (prestress stability, Connelly and Whiteley 1996); finite where it
  * can be walked along by a tenth of the structure's size with all lengths kept. All in the arena.
  * STRUT_OK or STRUT_NO_MEMORY.

@@ -145,7 +145,7 @@ static bool few(int32_t count, int32_t length) {
 
 strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_arena *arena,
                                       strut_null_spaces *spaces, strut_error *error) {
-  *spaces = (strut_null_spaces){.dropped = NAN};
+  *spaces = (strut_null_spaces){.dropped = (double)NAN};
   if (a->rows == 0 || a->columns == 0) return trivial(a, arena, spaces, error);
   strut_sparse_qr *qr = NULL;
   strut_status status = strut_sparse_qr_create(a->rows, a->columns, a->start, a->row, a->value,

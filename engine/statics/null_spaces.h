@@ -2,8 +2,9 @@
 /**
  * The rank of an equilibrium matrix, with the gap that decides it, and its two null spaces.
  *
- * Up to STRUT_DENSE_RIGIDITY rows and columns by singular values; above by sparse QR, whose diagonal
- * of R then stands in for them. Kept is what is larger than STRUT_RANK_TOLERANCE times the largest.
+ * Up to STRUT_DENSE_RIGIDITY rows and columns by singular values; above by sparse QR, the diagonal
+ * of whose R then stands in for them. Kept is what is larger than
+ * STRUT_RANK_TOLERANCE times the largest.
  * Since the columns of A are unit vectors, the size of a structure or of its parts changes nothing.
  */
 #ifndef STRUT_ENGINE_STATICS_NULL_SPACES_H

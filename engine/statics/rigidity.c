@@ -43,7 +43,8 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
 
 static double largest_free(const strut_equilibrium_matrix *a, const double *net) {
   double largest = 0.0;
-  for (int32_t row = 0; row < a->rows; row++) largest = fmax(largest, fabs(net[a->coordinate[row]]));
+  for (int32_t row = 0; row < a->rows; row++)
+    largest = fmax(largest, fabs(net[a->coordinate[row]]));
   return largest;
 }
 

@@ -26,10 +26,10 @@ typedef struct strut_tensegrity {
   bool judged;            /* false: no state of self-stress to judge by */
   bool self_stress;       /* S: there is a state of self-stress */
   bool cables;            /* C: what is pulled are cables */
-  bool mechanism;         /* M: there is a mechanism, and self-stress with pulled cables stiffens it */
+  bool mechanism;         /* M: a mechanism, which self-stress with pulled cables stiffens */
   bool all_states;        /* every state of self-stress does so, as far as the listed ones tell */
   bool struts_apart;      /* D: no two members that are pressed meet */
-  bool struts_inside;     /* I: what is pulled is one net, meets all struts, and none is on the outline */
+  bool struts_inside;     /* I: what is pulled is one net that meets all struts, none outermost */
   const char *label;      /* words */
 } strut_tensegrity;
 

@@ -8,8 +8,9 @@
 static const double TINY = 1e-11;      /* beside the largest force: rounding */
 static const double PIVOT_SHARE = 0.1; /* of the largest entry: what a pivot must have */
 static const double MOST_WORK = 4e8;   /* multiplications spent on locality */
+static const double LEADS = 0.01;        /* of the largest: what a force made 1 must have */
 
-/* Reduced echelon form with the member order rotated by `shift`: 1 at its pivot, 0 at the others'. */
+/* Reduced echelon form, members from `shift` on: 1 at its own pivot, 0 at the others. */
 static void reduce(double *rows, size_t count, size_t columns, size_t shift) {
   size_t done = 0;
   for (size_t c = 0; c < columns && done < count; c++) {
@@ -111,7 +112,7 @@ static size_t leader(const strut_model *model, const double *force, size_t colum
   for (size_t j = 0; j < columns; j++) largest = fmax(largest, fabs(force[j]));
   for (int i = 0; i < 3; i++)
     for (size_t j = 0; j < columns; j++)
-      if (model->scene->members[j].kind == order[i] && fabs(force[j]) > 1e-6 * largest) return j;
+      if (model->scene->members[j].kind == order[i] && fabs(force[j]) > LEADS * largest) return j;
   return 0;
 }
 

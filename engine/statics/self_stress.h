@@ -7,8 +7,10 @@
 
 #include "engine/statics/null_spaces.h"
 
-/** A state is scaled so that its first cable that carries anything carries 1; without cables its
-    first spring, without springs its first member. All cables in tension where one sign does that. */
+/**
+ * A state is scaled so that its first cable carries 1, of those with a hundredth of the largest
+ * force; without cables its first spring, else its first member. Cables pull where one sign does it.
+ */
 typedef struct strut_self_stress {
   int32_t count;    /* s */
   double *force;    /* (count, members) [1]; NULL: none or too many to list */
@@ -32,7 +34,7 @@ typedef struct strut_stress_wish {
 } strut_stress_wish;
 
 /**
- * Looks for a combination (members) that fulfils the wish, by the perceptron's rule, which finds one
+ * Looks for a combination (members) that fulfils the wish, by the perceptron's rule: it finds one
  * wherever there is one with some margin; *found says whether it did. Largest force 1.
  */
 STRUT_API strut_status strut_self_stress_combine(const strut_model *model,
@@ -41,8 +43,8 @@ STRUT_API strut_status strut_self_stress_combine(const strut_model *model,
                                                  bool *found);
 
 /**
- * Looks for a combination (members) that pulls all cables that any state loads, by a linear programme:
- * the one with the least sum of cable forces where each has at least 1, then scaled to a largest
+ * Looks for a combination (members) that pulls all cables that any state loads, by a linear
+ * programme: the one with the least sum of cable forces where each has at least 1, then scaled to a largest
  * force of 1. Not *found means that there is none.
  */
 STRUT_API strut_status strut_self_stress_pull_cables(const strut_model *model,

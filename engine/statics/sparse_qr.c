@@ -84,7 +84,8 @@ strut_status strut_sparse_qr_create(int32_t rows, int32_t columns, const int32_t
   qr->rows = rows, qr->columns = columns;
   cholmod_sparse *a = copy_matrix(qr, start, row, value);
   bool done = a && factorise(qr, a, tolerance);
-  bool memory = qr->common.status == CHOLMOD_OUT_OF_MEMORY || qr->common.status == CHOLMOD_TOO_LARGE;
+  bool memory =
+      qr->common.status == CHOLMOD_OUT_OF_MEMORY || qr->common.status == CHOLMOD_TOO_LARGE;
   cholmod_l_free_sparse(&a, &qr->common);
   if (done) return STRUT_OK;
   strut_sparse_qr_free(qr);

@@ -15,7 +15,7 @@
 typedef struct strut_sparse_qr strut_sparse_qr;
 
 /**
- * Factorises A: (rows, columns), by columns as in strut_equilibrium_matrix. Columns that keep a norm
+ * Factorises A: (rows, columns), by columns as strut_equilibrium_matrix. Columns that keep a norm
  * of `tolerance` or less beside those before them count as dependent. STRUT_NO_MEMORY, or
  * STRUT_SINGULAR where SPQR fails for another reason.
  */

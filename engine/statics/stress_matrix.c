@@ -20,8 +20,10 @@ double strut_stress_form(const strut_model *model, const strut_equilibrium_matri
   for (int32_t j = 0; j < a->columns; j++) {
     if (density[j] == 0.0) continue;
     uint32_t from = model->members.from[j], to = model->members.to[j];
-    double dx = moved(a, x, to) - moved(a, x, from), dy = moved(a, x, to + 1) - moved(a, x, from + 1);
-    double ex = moved(a, y, to) - moved(a, y, from), ey = moved(a, y, to + 1) - moved(a, y, from + 1);
+    double dx = moved(a, x, to) - moved(a, x, from);
+    double dy = moved(a, x, to + 1) - moved(a, x, from + 1);
+    double ex = moved(a, y, to) - moved(a, y, from);
+    double ey = moved(a, y, to + 1) - moved(a, y, from + 1);
     sum += density[j] * (dx * ex + dy * ey);
   }
   return sum;

@@ -3,7 +3,7 @@
  * What member forces do to motions that stretch no member: the stress matrix of force densities.
  *
  * Omega has the sum of a node's force densities on its diagonal and minus a member's at its two
- * nodes (Connelly and Whiteley 1996). Its quadratic form, sum of density * |d2 - d1|^2 over members,
+ * nodes (Connelly and Whiteley 1996). Its form, sum of density * |d2 - d1|^2 over members,
  * is the stiffness that a prestress gives to a mechanism d.
  */
 #ifndef STRUT_ENGINE_STATICS_STRESS_MATRIX_H

@@ -29,7 +29,7 @@ static bool on_outline(const strut_model *model, const double *q, uint32_t a, ui
   return !(left && right);
 }
 
-/* Net: the pulled members' nodes are connected, struts end on them, and none lies on the outline. */
+/* Net: what is pulled is connected, struts end on it, and none lies on the outline. */
 static bool inside(const strut_model *model, const double *q, const strut_rigidity *r,
                    double largest, int32_t *parent) {
   const strut_member_table *t = &model->members;
@@ -82,7 +82,8 @@ static bool all_states_stiffen(const strut_rigidity *r) {
 }
 
 static const char *label_of(const strut_tensegrity *t) {
-  if (!t->judged) return t->self_stress ? "not judged: too many states" : "no tensegrity: no state of self-stress";
+  if (!t->self_stress) return "no tensegrity: no state of self-stress";
+  if (!t->judged) return "not judged: too many states";
   if (!t->cables) return "no tensegrity: members that are no cables are pulled, or cables pressed";
   if (t->mechanism && t->all_states && t->struts_apart)
     return t->struts_inside ? "ideal tensegrity" : "pure tensegrity";

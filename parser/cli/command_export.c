@@ -10,7 +10,7 @@
 
 static const strut_option options[] = {
     {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or a configuration"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };

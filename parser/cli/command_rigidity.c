@@ -9,7 +9,7 @@
 #include "parser/cli/streams.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or a configuration"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},

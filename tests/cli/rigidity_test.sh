@@ -65,4 +65,13 @@ expect 0 rigidity held.yaml
 out_has "s = 1"
 out_has "f = 0"
 
+# At an equilibrium by its name: the crawler lies on the ground, its forces balance there.
+crawler=$here/../../models/crawler/crawler.yaml
+expect 0 rigidity "$crawler" --at I --json
+out_has '"at":	"I"'
+out_has '"equilibrium":	true'
+out_has '"rank":	7'
+expect 1 rigidity "$crawler" --at IV
+err_has "IV"
+
 [ $failures -eq 0 ]

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Self-stress and mechanisms of structures whose answers are known, computed apart or closed forms. */
+/* Self-stress and mechanisms of structures whose answers are known, or closed forms. */
 #include <math.h>
 #include <string.h>
 
