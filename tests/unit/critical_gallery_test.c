@@ -218,8 +218,8 @@ static void x_joint(void **state) {
 }
 
 /*
- * P13: besides the gallery's four states the mirrored triangle has a fifth with both springs crossed,
- * beyond the cusp where one of them is a point: its length has no sign.
+ * P13: besides the four states of the formula, which takes a spring's length as signed, there is a
+ * fifth beyond the cusp where one spring is a point: turned right round onto the fixed triangle.
  */
 static void dual_triangle(void **state) {
   const double c = sqrt(0.75);
@@ -231,7 +231,6 @@ static void dual_triangle(void **state) {
                                {STRUT_SPRING, 3, 5, 100, 0.8}};
   fixture f = {0};
   (void)state;
-  (void)node, (void)member;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){0, 0, 4, 67.995, 67.995}, 5, 1e-3);
