@@ -65,22 +65,23 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
   strut_buffer_add(table, "%s%smodes at %s", name, *name ? ": " : "", modes->at);
   for (int32_t i = 0; i < modes->closed_count; i++)
     strut_buffer_add(table, "%s%s", i ? ", " : ", on ", name_of(model, modes->closed[i]));
-  strut_buffer_add(table, "\n  %d coordinates, %s; the stiffnesses span %.2g\n",
-                   (int)modes->coordinates,
-                   modes->dense ? "all modes computed" : "the lowest modes computed",
-                   modes->condition);
+  strut_buffer_add(
+      table, "\n  %d coordinates, %s; the stiffnesses span %.2g\n", (int)modes->coordinates,
+      modes->dense ? "all modes computed" : "the lowest modes computed", modes->condition);
   if (!modes->at_rest)
-    strut_buffer_add(table, "  this shape is no equilibrium: it will not stay to show these modes\n");
+    strut_buffer_add(table,
+                     "  this shape is no equilibrium: it will not stay to show these modes\n");
   if (!modes->damped_exactly)
-    strut_buffer_add(table, "  damping by the quotient of each mode, coupling between modes left out\n");
+    strut_buffer_add(table,
+                     "  damping by the quotient of each mode, coupling between modes left out\n");
 }
 
 static void add_row(strut_buffer *table, size_t i, const strut_mode *mode) {
   char frequency[STRUT_QUANTITY_TEXT], ratio[STRUT_QUANTITY_TEXT] = "";
   strut_quantity_text(mode->angular_frequency / TURN, DIGITS, "Hz", frequency);
   if (isfinite(mode->damping_ratio)) snprintf(ratio, sizeof ratio, "%.4g", mode->damping_ratio);
-  strut_buffer_add(table, "  %4zu %14s %10s %8.1e  %-10s %s\n", i + 1, frequency, ratio, mode->error,
-                   strut_mode_kind_name(mode->kind), mode->description);
+  strut_buffer_add(table, "  %4zu %14s %10s %8.1e  %-10s %s\n", i + 1, frequency, ratio,
+                   mode->error, strut_mode_kind_name(mode->kind), mode->description);
 }
 
 char *strut_modes_table(const strut_model *model, const strut_modes *modes) {
@@ -104,8 +105,9 @@ static void add_number(strut_buffer *csv, double value) {
 
 char *strut_modes_csv(const strut_modes *modes) {
   strut_buffer csv = {0};
-  strut_buffer_add(&csv, "mode,frequency [Hz],damping ratio,damped frequency [Hz],decay rate [1/s],"
-                         "error,kind,description\n");
+  strut_buffer_add(&csv,
+                   "mode,frequency [Hz],damping ratio,damped frequency [Hz],decay rate [1/s],"
+                   "error,kind,description\n");
   for (size_t i = 0; i < modes->count; i++) {
     const strut_mode *mode = &modes->list[i];
     strut_buffer_add(&csv, "%zu", i + 1);

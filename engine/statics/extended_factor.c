@@ -128,7 +128,8 @@ void strut_extended_factorise(strut_extended_factor *f, const strut_sparse *patt
     for (int32_t i = start[j]; i < start[j + 1]; i++) f->work[row[i]] = f->value[i];
     for (int32_t c = head[j], after; c >= 0; c = after) {
       after = next[c];
-      before = fmax(before, fabs(f->diagonal[c].hi) * f->value[f->at[c]].hi * f->value[f->at[c]].hi);
+      before =
+          fmax(before, fabs(f->diagonal[c].hi) * f->value[f->at[c]].hi * f->value[f->at[c]].hi);
       subtract_column(f, c, f->at[c], j);
       if (++f->at[c] < start[c + 1]) next[c] = head[row[f->at[c]]], head[row[f->at[c]]] = c;
     }

@@ -15,8 +15,8 @@ typedef struct strut_lanczos_problem {
   int32_t n;
   double shift; /* below all eigenvalues */
   void *context;
-  void (*solve)(void *context, double *x);                   /* x becomes (K - shift M)^-1 x */
-  void (*mass)(void *context, const double *x, double *y);   /* y = M x */
+  void (*solve)(void *context, double *x);                 /* x becomes (K - shift M)^-1 x */
+  void (*mass)(void *context, const double *x, double *y); /* y = M x */
 } strut_lanczos_problem;
 
 /**

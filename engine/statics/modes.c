@@ -30,9 +30,10 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
   const strut_vibration *v = work->v;
   if (v->n == 0 || v->massive == 0)
     return strut_fail(error, STRUT_BAD_SCENE,
-                      v->n == 0 ? "no node is free to move, so that there are no modes"
-                                : "no free node has mass, so that there are no modes: give nodes or "
-                                  "members a mass");
+                      v->n == 0
+                          ? "no node is free to move, so that there are no modes"
+                          : "no free node has mass, so that there are no modes: give nodes or "
+                            "members a mass");
   if (v->massive == v->n) return STRUT_OK;
   strut_modes_factorise(&work->solver, 1e-20 * v->largest);
   int32_t weakest = work->solver.weakest;
@@ -137,14 +138,16 @@ static strut_status check_errors(const strut_modes_work *work, const strut_modes
   for (size_t i = 0; i < modes->count; i++) {
     double value = set->value[i], wrong = (set->error[i] + set->noise[i]) / fabs(value);
     if (value == 0 || wrong <= ENOUGH) continue;
-    return strut_fail(
-        error, STRUT_SINGULAR,
-        "mode %zu, of about %.6g Hz, cannot be had to 1e-8 but only to %.1g: the stiffnesses differ "
-        "so much (condition about %.1g) that %s; bring them closer together, or ask for fewer modes "
-        "with --count",
-        i + 1, sqrt(fabs(value)) / TURN, wrong, modes->condition,
-        set->noise[i] > set->error[i] ? "the last bits of rest lengths and positions decide"
-                                      : "rounding decides");
+    return strut_fail(error, STRUT_SINGULAR,
+                      "mode %zu, of about %.6g Hz, cannot be had to 1e-8 but only to %.1g: the "
+                      "stiffnesses differ "
+                      "so much (condition about %.1g) that %s; bring them closer together, or ask "
+                      "for fewer modes "
+                      "with --count",
+                      i + 1, sqrt(fabs(value)) / TURN, wrong, modes->condition,
+                      set->noise[i] > set->error[i]
+                          ? "the last bits of rest lengths and positions decide"
+                          : "rounding decides");
   }
   return STRUT_OK;
 }
@@ -183,8 +186,8 @@ static strut_status report(strut_modes_work *work, int32_t wanted, strut_modes *
   for (size_t i = 0; i < found; i++)
     if (fill_mode(work, (int32_t)i, kind[i], &modes->list[i]))
       return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  modes->damped_exactly = modes->dense && set->count <= STRUT_DAMPED_MODES &&
-                          work->v->massive == work->v->n;
+  modes->damped_exactly =
+      modes->dense && set->count <= STRUT_DAMPED_MODES && work->v->massive == work->v->n;
   strut_status status = strut_modes_damping(work, modes->damped_exactly, modes->list, error);
   return status ? status : check_errors(work, modes, error);
 }
@@ -198,8 +201,7 @@ static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *m
   if (modes->at_rest) status = strut_modes_settle(work, error);
   if (status != STRUT_OK) return status;
   modes->coordinates = v->n;
-  status = modes->dense ? strut_modes_dense(work, error)
-                        : strut_modes_sparse(work, wanted, error);
+  status = modes->dense ? strut_modes_dense(work, error) : strut_modes_sparse(work, wanted, error);
   if (status != STRUT_OK) return status;
   size_t count = (size_t)work->set.count;
   work->set.noise = strut_arena_allocate(work->arena, count, sizeof(double));
@@ -234,8 +236,8 @@ strut_status strut_modes_find(const strut_model *model, const strut_modes_option
   if (!held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (options->stuck) status = hold_stuck(model, &stand, held, error);
   if (status == STRUT_OK)
-    status = strut_vibration_create(model, stand.q, stand.closed, stand.closed_count, held,
-                                    &work.v, error);
+    status = strut_vibration_create(model, stand.q, stand.closed, stand.closed_count, held, &work.v,
+                                    error);
   if (status == STRUT_OK) {
     modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
     status = solve(&work, wanted_of(options, modes->dense), modes, error);

@@ -20,46 +20,46 @@ typedef enum strut_mode_kind {
   STRUT_MODE_RIGID,     /* no stiffness: a rigid motion that supports and contacts leave */
   STRUT_MODE_MECHANISM, /* no stiffness, but not rigid */
   STRUT_MODE_ELASTIC,
-  STRUT_MODE_UNSTABLE   /* eigenvalue below zero: it grows */
+  STRUT_MODE_UNSTABLE /* eigenvalue below zero: it grows */
 } strut_mode_kind;
 
 /** "rigid-body", "mechanism", "elastic", "unstable". */
 STRUT_API const char *strut_mode_kind_name(strut_mode_kind kind);
 
 typedef struct strut_mode {
-  double eigenvalue;       /* omega^2 [1/s^2]; 0 where there is no stiffness */
+  double eigenvalue;        /* omega^2 [1/s^2]; 0 where there is no stiffness */
   double angular_frequency; /* [rad/s]; 0 where the eigenvalue is not above zero */
-  double damping_ratio;    /* [1]; NAN where there is nothing to oscillate */
-  double damped_frequency; /* [rad/s]; 0 where it creeps */
-  double decay_rate;       /* of the amplitude, the slower one where it creeps [1/s] */
-  double residual;         /* |K x - z M x| / (|K x| + |z M x|); without stiffness, |K x| relative
+  double damping_ratio;     /* [1]; NAN where there is nothing to oscillate */
+  double damped_frequency;  /* [rad/s]; 0 where it creeps */
+  double decay_rate;        /* of the amplitude, the slower one where it creeps [1/s] */
+  double residual;          /* |K x - z M x| / (|K x| + |z M x|); without stiffness, |K x| relative
                               to the largest there can be */
-  double error;            /* of the eigenvalue, relative, estimated: of the method, and of the last
+  double error; /* of the eigenvalue, relative, estimated: of the method, and of the last
                               bits of the scene's numbers */
   strut_mode_kind kind;
-  double *shape;           /* (length) largest entry 1 */
-  char description[200];   /* in words */
+  double *shape;         /* (length) largest entry 1 */
+  char description[200]; /* in words */
 } strut_mode;
 
 typedef struct strut_modes {
-  const char *at;       /* name of the equilibrium */
-  int32_t coordinates;  /* free ones */
+  const char *at;      /* name of the equilibrium */
+  int32_t coordinates; /* free ones */
   int32_t closed_count;
   const int32_t *closed; /* (closed_count) nodes */
-  bool dense;           /* all modes were computed */
-  bool damped_exactly;  /* damping from the quadratic eigenproblem; else by the modal quotient */
-  bool at_rest;         /* the shape is an equilibrium */
-  double condition;     /* largest eigenvalue over the smallest that is not zero */
+  bool dense;            /* all modes were computed */
+  bool damped_exactly;   /* damping from the quadratic eigenproblem; else by the modal quotient */
+  bool at_rest;          /* the shape is an equilibrium */
+  double condition;      /* largest eigenvalue over the smallest that is not zero */
   size_t count;
-  strut_mode *list;     /* by eigenvalue */
+  strut_mode *list; /* by eigenvalue */
   strut_arena arena;
 } strut_modes;
 
 typedef struct strut_modes_options {
-  const char *at;   /* as for strut_stand_find */
-  int32_t count;    /* lowest so many; 0: all where dense, else STRUT_SPARSE_MODES */
-  bool stuck;       /* nodes that touch are held along the ground too, as friction would */
-  bool sparse;      /* by Lanczos's method whatever the size */
+  const char *at; /* as for strut_stand_find */
+  int32_t count;  /* lowest so many; 0: all where dense, else STRUT_SPARSE_MODES */
+  bool stuck;     /* nodes that touch are held along the ground too, as friction would */
+  bool sparse;    /* by Lanczos's method whatever the size */
 } strut_modes_options;
 
 /**

@@ -22,8 +22,8 @@ typedef struct quadratic {
   gsl_vector_complex *value;
   gsl_matrix_complex *vector;
   gsl_eigen_nonsymmv_workspace *w;
-  double *weight;  /* (2 n, n) how much of mode j is in solution i */
-  uint8_t *taken;  /* (2 n) solutions */
+  double *weight;          /* (2 n, n) how much of mode j is in solution i */
+  uint8_t *taken;          /* (2 n) solutions */
   int32_t *first, *second; /* (n) of each mode: solutions, NONE or NOT_WANTED */
 } quadratic;
 
@@ -105,11 +105,11 @@ static void describe(const quadratic *p, size_t j, strut_mode *mode) {
     mode->damping_ratio = -re / hypot(re, im);
     return;
   }
-  double other = p->second[j] < 0 ? re : GSL_REAL(gsl_vector_complex_get(p->value, (size_t)p->second[j]));
+  double other =
+      p->second[j] < 0 ? re : GSL_REAL(gsl_vector_complex_get(p->value, (size_t)p->second[j]));
   mode->damped_frequency = 0.0;
   mode->decay_rate = -fmax(re, other);
-  if (re * other > 0)
-    mode->damping_ratio = -(re + other) / (2.0 * sqrt(re * other));
+  if (re * other > 0) mode->damping_ratio = -(re + other) / (2.0 * sqrt(re * other));
 }
 
 /* Each mode by itself: exact where the damping does not couple them. */

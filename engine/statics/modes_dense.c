@@ -17,7 +17,7 @@
 typedef struct dense {
   strut_modes_work *work;
   size_t n, massive;
-  size_t *row;    /* (massive) coordinates with mass */
+  size_t *row; /* (massive) coordinates with mass */
   gsl_matrix *a, *b, *vector;
   gsl_vector *value;
 } dense;

@@ -24,9 +24,9 @@ typedef struct strut_modes_work {
   strut_vibration *v;
   strut_modes_solver solver;
   strut_eigen_set set;
-  double soft;          /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
+  double soft; /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
   int32_t rigid_count;
-  double *rigid;        /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
+  double *rigid; /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
   strut_arena *arena;
 } strut_modes_work;
 

@@ -105,8 +105,7 @@ static void measure_noise(strut_modes_work *work, const double *noise) {
     double sum = 0.0;
     for (int32_t j = 0; j < v->model->members.count; j++) {
       if (noise[j] == 0) continue;
-      double across =
-          strut_vibration_spread(v, j, set->vector + (size_t)i * (size_t)v->n).across;
+      double across = strut_vibration_spread(v, j, set->vector + (size_t)i * (size_t)v->n).across;
       sum += noise[j] * across * across;
     }
     set->noise[i] = fmax(set->noise[i], 2.0 * fabs(sum)); /* twice: there are few samples */
@@ -132,8 +131,7 @@ static double find_soft(const strut_modes_work *work) {
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error) {
   strut_vibration *v = work->v;
   strut_dd *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
-  double *noise =
-      strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
+  double *noise = strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
   if (!step || !noise) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (at_rest) strut_modes_factorise(&work->solver, find_soft(work));
   for (uint64_t sample = 0; sample < SAMPLES; sample++) {

@@ -11,8 +11,9 @@ enum { MOST_ITERATIONS = 5 };
 static const double NOTHING = 1e-24;
 /* Eigenvalues are one where they differ by less than this, relative. */
 static const double CLUSTER = 1e-6;
-static const double OFFSET = 1e-7; /* of the shift from the eigenvalue, so that it stays invertible */
-static const double GOOD = 1e-13;  /* relative error at which nothing is left to do */
+static const double OFFSET =
+    1e-7; /* of the shift from the eigenvalue, so that it stays invertible */
+static const double GOOD = 1e-13; /* relative error at which nothing is left to do */
 
 typedef struct pair {
   strut_dd *x, *mx, *kx;

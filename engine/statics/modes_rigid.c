@@ -12,7 +12,8 @@ typedef struct pivot {
 
 static pivot middle_of(const strut_vibration *v) {
   pivot c = {0.0, 0.0, v->model->size > 0 ? v->model->size : 1.0};
-  for (int32_t i = 0; i < v->model->node_count; i++) c.x += v->q[2 * i].hi, c.y += v->q[2 * i + 1].hi;
+  for (int32_t i = 0; i < v->model->node_count; i++)
+    c.x += v->q[2 * i].hi, c.y += v->q[2 * i + 1].hi;
   c.x /= v->model->node_count;
   c.y /= v->model->node_count;
   return c;

@@ -36,7 +36,8 @@ void strut_modes_solver_free(strut_modes_solver *solver) {
 static bool factorise_plainly(strut_modes_solver *s) {
   const strut_vibration *v = s->v;
   strut_inertia inertia;
-  for (int32_t i = 0; i < s->sum.start[v->n]; i++) s->sum.value[i] = v->k[i].hi + s->shift * v->m[i];
+  for (int32_t i = 0; i < s->sum.start[v->n]; i++)
+    s->sum.value[i] = v->k[i].hi + s->shift * v->m[i];
   if (strut_ldl_factorise(s->plain, &s->sum, 0.0, &inertia) != STRUT_OK) return false;
   if (!(inertia.smallest > SAFE_PIVOT)) return false;
   s->negative = inertia.negative;
@@ -71,8 +72,7 @@ void strut_modes_solve(strut_modes_solver *s, strut_dd *x) {
     strut_vibration_stiffness(v, x, s->r);
     strut_vibration_mass(v, x, s->mx);
     for (int32_t i = 0; i < n; i++)
-      s->step[i] =
-          dd_double(dd_sub(s->b[i], dd_add(s->r[i], dd_scale(s->mx[i], s->shift))));
+      s->step[i] = dd_double(dd_sub(s->b[i], dd_add(s->r[i], dd_scale(s->mx[i], s->shift))));
     strut_ldl_solve(s->plain, s->step);
     for (int32_t i = 0; i < n; i++) x[i] = dd_add(x[i], dd_of(s->step[i]));
   }

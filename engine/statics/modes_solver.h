@@ -17,11 +17,11 @@ typedef struct strut_modes_solver {
   const strut_vibration *v;
   strut_ldl *plain;
   strut_extended_factor *extended;
-  strut_sparse sum;   /* K + shift M as doubles, in the pattern's places */
-  bool is_plain;      /* which of the two was factorised last */
+  strut_sparse sum; /* K + shift M as doubles, in the pattern's places */
+  bool is_plain;    /* which of the two was factorised last */
   double shift;
-  int32_t negative;   /* eigenvalues below -shift */
-  int32_t weakest;    /* row whose pivot lost most, and what is left of it, relative */
+  int32_t negative; /* eigenvalues below -shift */
+  int32_t weakest;  /* row whose pivot lost most, and what is left of it, relative */
   double loss;
   strut_dd *b, *r, *mx; /* (n) each */
   double *step;         /* (n) */

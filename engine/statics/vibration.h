@@ -24,15 +24,15 @@ typedef struct strut_vibration {
   const strut_model *model;
   strut_potential *shape; /* coordinates, and the pattern of all matrices here; owned */
   int32_t n;
-  strut_dd *q;                  /* (length) [m] */
+  strut_dd *q;                    /* (length) [m] */
   strut_vibration_member *member; /* (member_count) */
-  uint8_t *closed;              /* (contacts) 1 where the ground pushes, there with stiffness */
-  strut_dd *k;                  /* K [N/m], in the pattern's places as the next two */
-  double *m, *d;                /* M [kg], D [N s/m] */
-  double *mass;                 /* (n) row sums of M: 0 where nothing has mass */
-  int32_t massive;              /* rows with mass */
-  double largest;               /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
-  strut_dd *work;               /* (n) */
+  uint8_t *closed;                /* (contacts) 1 where the ground pushes, there with stiffness */
+  strut_dd *k;                    /* K [N/m], in the pattern's places as the next two */
+  double *m, *d;                  /* M [kg], D [N s/m] */
+  double *mass;                   /* (n) row sums of M: 0 where nothing has mass */
+  int32_t massive;                /* rows with mass */
+  double largest;                 /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
+  strut_dd *work;                 /* (n) */
   strut_arena arena;
 } strut_vibration;
 

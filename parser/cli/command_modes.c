@@ -34,7 +34,8 @@ static strut_status write_files(const char *directory, const strut_model *model,
   strut_status status = strut_directory_create(directory, error);
   if (status == STRUT_OK)
     status = write_file(directory, "modes.json", strut_modes_json(model, modes), error);
-  if (status == STRUT_OK) status = write_file(directory, "modes.csv", strut_modes_csv(modes), error);
+  if (status == STRUT_OK)
+    status = write_file(directory, "modes.csv", strut_modes_csv(modes), error);
   return status;
 }
 

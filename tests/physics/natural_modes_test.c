@@ -38,8 +38,12 @@ static size_t count_kind(strut_mode_kind kind) {
   return count;
 }
 
-static const x_frame FRAME = {.side = 1, .cable_stiffness = 1000, .bar_stiffness = 5e4,
-                              .force_density = 120, .cable_mass = 0.02, .bar_mass = 0.3};
+static const x_frame FRAME = {.side = 1,
+                              .cable_stiffness = 1000,
+                              .bar_stiffness = 5e4,
+                              .force_density = 120,
+                              .cable_mass = 0.02,
+                              .bar_mass = 0.3};
 
 static void test_x_frame(void **unused) {
   (void)unused;
@@ -111,8 +115,7 @@ static void test_x_frame_with_unequal_members(void **unused) {
   find(&scene);
   for (size_t i = 0; i < 8; i++) {
     size_t below = 0;
-    for (size_t n = 0; n < 8; n++)
-      below += gsl_vector_get(value, n) < gsl_vector_get(value, i);
+    for (size_t n = 0; n < 8; n++) below += gsl_vector_get(value, n) < gsl_vector_get(value, i);
     if (below < 3)
       assert_near(gsl_vector_get(value, i), 0, 1e-9 * modes.list[7].eigenvalue);
     else
@@ -228,8 +231,7 @@ static void test_damping_that_couples_modes(void **unused) {
   build_support(&scene, 0, 0), build_mass(&scene, 1, 0, m[0]), build_mass(&scene, 2, 0, m[1]);
   build_support(&scene, 3, 0);
   for (int i = 1; i < 3; i++) scene.nodes[i].fixed[1] = true;
-  for (int i = 0; i < 3; i++)
-    build_member(&scene, STRUT_SPRING, i, i + 1, k[i], i == 0 ? d : 0, 0);
+  for (int i = 0; i < 3; i++) build_member(&scene, STRUT_SPRING, i, i + 1, k[i], i == 0 ? d : 0, 0);
   find(&scene);
   for (size_t i = 0; i < 2; i++) {
     double x = -modes.list[i].decay_rate, y = modes.list[i].damped_frequency;
@@ -338,8 +340,7 @@ static void test_stiffness_ratios_of_a_million_million(void **unused) {
   scene.mass_model = STRUT_MASS_LUMPED;
   for (int i = 0; i < 8; i++) build_mass(&scene, i, 0, i ? 1 : 0), scene.nodes[i].fixed[1] = true;
   scene.nodes[0].fixed[0] = true;
-  for (int i = 0; i < 7; i++)
-    build_member(&scene, STRUT_SPRING, i, i + 1, i % 2 ? 1e12 : 1, 0, 0);
+  for (int i = 0; i < 7; i++) build_member(&scene, STRUT_SPRING, i, i + 1, i % 2 ? 1e12 : 1, 0, 0);
   find(&scene);
   /* Pairs of mass 2 in a chain of 4 soft springs: 3 pairs and a mass of 1 at the end, K = chain. */
   gsl_matrix *k = gsl_matrix_calloc(4, 4), *m = gsl_matrix_calloc(4, 4);
@@ -353,8 +354,7 @@ static void test_stiffness_ratios_of_a_million_million(void **unused) {
   assert_int_equal(gsl_eigen_gensymm(k, m, value, w), 0);
   for (size_t i = 0; i < 4; i++) {
     size_t below = 0;
-    for (size_t n = 0; n < 4; n++)
-      below += gsl_vector_get(value, n) < gsl_vector_get(value, i);
+    for (size_t n = 0; n < 4; n++) below += gsl_vector_get(value, n) < gsl_vector_get(value, i);
     assert_relative(modes.list[below].eigenvalue, gsl_vector_get(value, i), 1e-11);
     assert_true(modes.list[below].error < 1e-11);
   }
@@ -392,8 +392,7 @@ static void test_refuses_what_the_last_bits_decide(void **unused) {
   strut_error error = {0};
   strut_scene_init(&scene);
   build_support(&scene, -1, 0), build_mass(&scene, 0, 0, 1), build_support(&scene, 1, 0);
-  for (int i = 0; i < 2; i++)
-    build_sized(&scene, STRUT_CABLE, i, i + 1, 1e13, 0, 0, 1 - 1e-13);
+  for (int i = 0; i < 2; i++) build_sized(&scene, STRUT_CABLE, i, i + 1, 1e13, 0, 0, 1 - 1e-13);
   strut_modes_options options = {.at = "drawn"};
   model = motion_compile(&scene);
   assert_int_equal(strut_modes_find(model, &options, &modes, &error), STRUT_SINGULAR);
