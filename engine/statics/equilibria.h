@@ -30,7 +30,7 @@ typedef struct strut_equilibrium {
   double *member_force;           /* (member_count) tension positive [N] */
   strut_fate fate;
   int32_t tips_over;              /* node about which it turns, or -1 */
-  int32_t ends_as;                /* index of the equilibrium it ends in, or -1; itself if it stands */
+  int32_t ends_as;                /* the equilibrium it ends in, or -1; itself if it stands */
   double *rest;                   /* (length) where it comes to rest on the real ground, or NULL */
   double rest_energy;             /* (13) there [J] */
   double rest_residual;           /* largest net force there [N] */

@@ -36,7 +36,7 @@ typedef struct strut_hunt {
   strut_model *model;     /* of flat.scene */
   strut_supports supports;
   strut_unrest unrest;
-  bool on_ground;         /* the ground takes part; else it is not there, or nothing presses on it */
+  bool on_ground;         /* else there is no ground, or nothing presses on it */
   strut_potential *world; /* on the real ground */
   strut_relaxer *relaxer;
   strut_landscape landscape;
@@ -49,8 +49,8 @@ typedef struct strut_hunt {
 int32_t strut_hunt_add(strut_hunt *hunt);
 
 /**
- * Fills in what holds at point's shape: energy, member forces, reactions on `potential`, nodes below.
- * `set` NULL: as the scene itself stands. The point's arrays are copied, its shape oriented.
+ * Fills in what holds at point's shape: energy, member forces, reactions on `potential`, nodes
+ * below. `set` NULL: as the scene itself stands. The point's arrays are copied, its shape oriented.
  */
 strut_status strut_hunt_fill(strut_hunt *hunt, strut_find *find, const strut_potential *potential,
                              const uint8_t *held, const strut_node_set *set,

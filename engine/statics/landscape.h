@@ -39,8 +39,8 @@ int32_t strut_landscape_way(const strut_landscape *landscape, int32_t a, int32_t
 int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);
 
 /**
- * The minima between a and b on the shortest way over saddles up to `highest`, in order: their count
- * into via (minima).
+ * The minima between a and b on the shortest way over saddles up to `highest`, in order: their
+ * count into via (minima).
  */
 int32_t strut_landscape_between(const strut_landscape *landscape, int32_t a, int32_t b,
                                 int32_t highest, int32_t *via);

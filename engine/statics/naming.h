@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Names for equilibria: a scene's configurations, by contacts and shape; and which way round a shape
- * that has a mirror image is shown.
+ * Names for equilibria: a scene's configurations, by contacts and shape; and which way round a
+ * shape that has a mirror image is shown.
  */
 #ifndef STRUT_ENGINE_STATICS_NAMING_H
 #define STRUT_ENGINE_STATICS_NAMING_H
@@ -12,18 +12,19 @@
 #define STRUT_NAMED_WITHIN 0.05
 
 /**
- * Of a shape q and its mirror image, where that is an equilibrium too (nothing acts along x, and all
- * that is held along x shares one x), takes the one that is nearest to a configuration, else to the
- * drawn shape; softest (may be NULL) goes with it. held: (length) coordinates held besides the scene's.
- * STRUT_OK or STRUT_NO_MEMORY.
+ * Of a shape q and its mirror image, where that is an equilibrium too (nothing acts along x, and
+ * all that is held along x shares one x), takes the one that is nearest to a configuration, else to
+ * the drawn shape; softest (may be NULL) goes with it. held: (length) coordinates held besides the
+ * scene's. STRUT_OK or STRUT_NO_MEMORY.
  */
 strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *q,
                                 double *softest);
 
 /**
- * Names the list (count): equilibria that stand by configurations where they fit, the others unnamed-1,
- * ... in order. Where a configuration without a shape fits several, they are NAME, NAME-2, ...: by
- * its contact sets in their order, then by energy. Names are the scene's or in the arena.
+ * Names the list (count): equilibria that stand by configurations where they fit, the others
+ * unnamed-1, ... in order. Where a configuration without a shape fits several, they are NAME,
+ * NAME-2, ...: by its contact sets in their order, then by energy. Names are the scene's or in the
+ * arena.
  */
 strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
                                    strut_arena *arena);

@@ -226,7 +226,8 @@ strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, cons
     relaxed->simulated = r->state->step > 0;
     memcpy(q, end == DECIDED ? r->quenched : r->state->q, bytes);
   }
-  if (end == STOPPED) return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
+  if (end == STOPPED)
+    return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
   if (end == DECIDED)
     come_down(r, centre_x(r->model, r->start), q, relaxed);
   else

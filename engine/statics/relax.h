@@ -26,7 +26,7 @@ typedef enum strut_relaxed_end {
 
 typedef struct strut_relaxed {
   strut_relaxed_end end;
-  bool simulated;      /* false: it lay below the pass, or there is nothing to simulate, from the start */
+  bool simulated;      /* false: below the pass from the start, or without a motion */
   double time;         /* simulated [s] */
   double residual;     /* largest net force at rest [N] */
   double acceleration; /* largest there [m/s^2]; 0 for a scene without mass */
@@ -53,8 +53,8 @@ strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *q);
 void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed);
 
 /**
- * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass where
- * the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
+ * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass
+ * where the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
  */
 strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes,
                          const void *context, const volatile sig_atomic_t *interrupt,

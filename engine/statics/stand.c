@@ -229,7 +229,7 @@ strut_status strut_stand_find(const strut_model *model, const char *name, strut_
   *stand = (strut_stand){.name = start ? "start" : "drawn"};
   stand->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *stand->q);
   if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (name && (c = find_configuration(scene, name))) start = drawn = false; /* it may be called so */
+  if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
   if (!c && !start && !drawn) return unknown(scene, name, error);
   if (!c && start && scene->start_equilibrium >= 0)
     c = &scene->configurations[scene->start_equilibrium];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Static supports in place of the ground, as in (12): which contact nodes are held in turn, and how.
+ * Static supports in place of the ground, as in (12): which contact nodes are held in turn, and
+ * how.
  */
 #ifndef STRUT_ENGINE_STATICS_SUPPORTS_H
 #define STRUT_ENGINE_STATICS_SUPPORTS_H
@@ -20,9 +21,10 @@ typedef struct strut_supports {
 
 /**
  * The sets for a scene on level ground: `wanted`, else those the scene names, else every set of as
- * many contact nodes as it takes to hold the rigid motions that the scene leaves free: pairs where it
- * holds nothing, single nodes where one motion is left, none where its own supports suffice. Arrays
- * in the arena. STRUT_OK, STRUT_NO_MEMORY, or STRUT_USAGE for a wanted node that cannot touch.
+ * many contact nodes as it takes to hold the rigid motions that the scene leaves free: pairs where
+ * it holds nothing, single nodes where one motion is left, none where its own supports suffice.
+ * Arrays in the arena. STRUT_OK, STRUT_NO_MEMORY, or STRUT_USAGE for a wanted node that cannot
+ * touch.
  */
 strut_status strut_supports_choose(const strut_scene *flat, const strut_node_set *wanted,
                                    strut_arena *arena, strut_supports *supports,

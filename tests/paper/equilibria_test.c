@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Section 3.1 of the paper, step by step, on models/crawler/crawler.yaml: the solutions of (12), all
- * of them, their stability and support reactions; dynamic relaxation with (10); states I, II and III;
- * and how high the passes between them are. Against the figures measured by an independent program,
- * and against slow searches that share no code with the engine (reference_statics.c).
+ * Section 3.1 of the paper, step by step, on models/crawler/crawler.yaml: the solutions of (12),
+ * all of them, their stability and support reactions; dynamic relaxation with (10); states I, II
+ * and III; and how high the passes between them are. Against the figures measured by an independent
+ * program, and against slow searches that share no code with the engine (reference_statics.c).
  */
 #include <math.h>
 #include <string.h>
@@ -289,9 +289,10 @@ static const strut_barrier *barrier(const char *from, const char *to) {
 }
 
 /*
- * The slow searches of reference_statics.c, from 1500 and 6000 random starts on the real ground, found
- * passes of 22.708987716 J between I and III, 22.723569408 J straight from I to II, 22.239377841 J
- * from III over node 5 to its mirror image; I at 22.706124755 J and III at 22.239299001 J.
+ * The slow searches of reference_statics.c, from 1500 and 6000 random starts on the real ground,
+ * found passes of 22.708987716 J between I and III, 22.723569408 J straight from I to II,
+ * 22.239377841 J from III over node 5 to its mirror image; I at 22.706124755 J and III at
+ * 22.239299001 J.
  */
 static void test_barriers(void **unused) {
   (void)unused;
@@ -299,7 +300,7 @@ static void test_barriers(void **unused) {
   assert_near(barrier("I", "III")->height, between - one, 2e-9);
   assert_near(barrier("III", "I")->height, between - three, 2e-9);
   assert_near(barrier("I", "II")->height, between - one, 2e-9); /* the lowest way lies over III */
-  /* the straight one is seldom met, so it may stay unknown; but nothing lower leads straight there */
+  /* the straight one is seldom met and may stay unknown; but none that is lower leads there */
   double direct = barrier("I", "II")->direct;
   if (isfinite(direct)) assert_near(direct, 22.723569408 - one, 2e-9);
   assert_near(barrier("III", "III-2")->height, 22.239377841 - three, 2e-9);

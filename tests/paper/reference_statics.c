@@ -107,7 +107,7 @@ static double norm(const double g[STATICS]) {
   return sqrt(sum);
 }
 
-/* Newton's step with every curvature counted as upward (or, level: towards |g| = 0), at most far. */
+/* Newton's step, every curvature counted as upward (or, level: towards |g| = 0), at most far. */
 static void newton(const statics *s, const double q[STATICS], bool level, double damping,
                    double far, double step[STATICS]) {
   double value[STATICS], vector[STATICS][STATICS], g[STATICS];
