@@ -22,7 +22,7 @@ const char *strut_stress_source_words(strut_stress_source source) {
 
 const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mechanism *motion,
                                   char words[STRUT_RIGIDITY_WORDS]) {
-  char moved[STRUT_QUANTITY_TEXT], strain[STRUT_QUANTITY_TEXT], stiff[STRUT_QUANTITY_TEXT];
+  char moved[STRUT_QUANTITY_TEXT], stiff[STRUT_QUANTITY_TEXT];
   bool followed = isfinite(motion->moved) && motion->kind == STRUT_MOTION_FINITE;
   words[0] = '\0';
   if (motion->kind == STRUT_MOTION_RIGID_BODY) {
@@ -34,8 +34,7 @@ const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mecha
     snprintf(words, STRUT_RIGIDITY_WORDS, "a state of self-stress stiffens it%s",
              all->stiffener_pulls ? "" : ", but none is known that does so and presses no cable");
   } else if (followed) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "lengths stay within %s of themselves after %s",
-             strut_quantity_text(motion->strain, 2, "", strain),
+    snprintf(words, STRUT_RIGIDITY_WORDS, "lengths stay within %.0e of themselves after %s", motion->strain,
              strut_quantity_text(motion->moved, DIGITS, "m", moved));
   } else if (motion->kind == STRUT_MOTION_FINITE) {
     snprintf(words, STRUT_RIGIDITY_WORDS, "without self-stress no length depends on the others");

@@ -42,25 +42,31 @@ static double dot(const double *x, const double *y, size_t n) {
   return sum;
 }
 
+static void remove_direction(double *x, const double *unit, size_t n) {
+  double sum = dot(x, unit, n);
+  for (size_t c = 0; c < n; c++) x[c] -= sum * unit[c];
+}
+
 /* What the null space has beside the rigid motions: of its vectors those with most left first. */
 static void collect(sorter *s, const double *space, size_t count, size_t rigid) {
-  double *rest = space ? s->turned : NULL;
+  double *rest = s->turned;
+  memcpy(rest, space, count * s->rows * sizeof *rest);
+  for (size_t i = 0; i < count; i++)
+    for (size_t r = 0; r < rigid; r++)
+      remove_direction(rest + i * s->rows, s->motion + r * s->rows, s->rows);
   for (size_t k = 0; k < s->n; k++) {
     double best = -1.0, *chosen = s->inner + k * s->rows;
     for (size_t i = 0; i < count; i++) {
-      memcpy(rest, space + i * s->rows, s->rows * sizeof *rest);
-      for (int twice = 0; twice < 2; twice++)
-        for (size_t r = 0; r < rigid + k; r++) {
-          const double *other = s->motion + r * s->rows;
-          double sum = dot(rest, other, s->rows);
-          for (size_t c = 0; c < s->rows; c++) rest[c] -= sum * other[c];
-        }
-      double left = dot(rest, rest, s->rows);
+      double left = dot(rest + i * s->rows, rest + i * s->rows, s->rows);
       if (left <= best * 1.0001) continue;
       best = left;
-      memcpy(chosen, rest, s->rows * sizeof *rest);
+      memcpy(chosen, rest + i * s->rows, s->rows * sizeof *rest);
     }
-    for (size_t c = 0; c < s->rows; c++) chosen[c] /= sqrt(best);
+    for (size_t r = 0; r < rigid + k; r++) /* again: once leaves rounding */
+      remove_direction(chosen, s->motion + r * s->rows, s->rows);
+    double norm = sqrt(dot(chosen, chosen, s->rows));
+    for (size_t c = 0; c < s->rows; c++) chosen[c] /= norm;
+    for (size_t i = 0; i < count; i++) remove_direction(rest + i * s->rows, chosen, s->rows);
   }
 }
 
@@ -157,6 +163,29 @@ static strut_status follow(sorter *s, strut_mechanism *m) {
   return status;
 }
 
+/* Of two motions one state of self-stress stiffens some combinations and drives others: between
+   them lie two that it leaves alone, which may be the ways of a linkage that lies flat. */
+static strut_status try_between(sorter *s, strut_mechanism *two) {
+  double *x = s->inner + (s->n - 2) * s->rows, *y = x + s->rows;
+  double scale = set_density(s, s->states->force);
+  double a = strut_stress_form(s->model, s->a, s->density, x, x);
+  double b = strut_stress_form(s->model, s->a, s->density, x, y);
+  double c = strut_stress_form(s->model, s->a, s->density, y, y), root = b * b - a * c;
+  if (!(root > ROUNDING * scale * scale)) return STRUT_OK;
+  double *way = strut_arena_allocate(s->arena, 2 * s->rows, sizeof *way);
+  if (!way) return STRUT_NO_MEMORY;
+  for (int k = 0; k < 2; k++) { /* a u^2 + 2 b u v + c v^2 = 0, without cancellation */
+    double t = b + (b >= 0 ? sqrt(root) : -sqrt(root));
+    double u = k == 0 ? -t : c, v = k == 0 ? a : -t, norm = hypot(u, v);
+    for (size_t i = 0; i < s->rows; i++)
+      way[(size_t)k * s->rows + i] = (u * x[i] + v * y[i]) / norm;
+    two[k].motion = way + (size_t)k * s->rows;
+    strut_status status = follow(s, &two[k]);
+    if (status != STRUT_OK) return status;
+  }
+  return STRUT_OK;
+}
+
 /* Nothing stiffens them all: those without any form are walked along. */
 static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
   size_t silent = 0;
@@ -171,7 +200,8 @@ static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
     strut_status status = follow(s, &list[i]);
     if (status != STRUT_OK) return status;
   }
-  return STRUT_OK;
+  bool pair = told && s->states->count == 1 && s->n - silent == 2;
+  return pair ? try_between(s, list + silent) : STRUT_OK;
 }
 
 static strut_mechanism blank(strut_motion_kind kind, const double *motion) {

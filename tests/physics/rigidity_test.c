@@ -131,6 +131,21 @@ static void test_four_bars_move(void **unused) {
   truss_free(&t);
 }
 
+/* A rhombus folded flat opens as a rhombus or as a bar that swings: two finite motions. */
+static void test_folded_rhombus(void **unused) {
+  (void)unused;
+  static const double at[][2] = {{0, 0}, {1, 0}, {2, 0}, {1, 0}};
+  strut_scene scene;
+  truss t;
+  strut_scene_init(&scene);
+  truss_nodes(&scene, at, 4);
+  truss_members(&scene, STRUT_BAR, "1-2 2-3 3-4 4-1");
+  truss_look(&t, &scene);
+  truss_expect(&t, 3, 1, 5);
+  truss_expect_kinds(&t, 3, 0, 2);
+  truss_free(&t);
+}
+
 static void test_t_bar(void **unused) {
   (void)unused;
   static const double at[][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
@@ -359,6 +374,7 @@ int main(void) {
       cmocka_unit_test(test_double_x),
       cmocka_unit_test(test_d_bar),
       cmocka_unit_test(test_four_bars_move),
+      cmocka_unit_test(test_folded_rhombus),
       cmocka_unit_test(test_t_bar),
       cmocka_unit_test(test_half_t_bar),
       cmocka_unit_test(test_hexagon_of_two_struts),
