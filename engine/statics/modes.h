@@ -4,8 +4,8 @@
  *
  * K x = z M x, z = omega^2. Up to STRUT_DENSE_MODES free coordinates by GSL's dense eigensolver,
  * above by shift-invert Lanczos (ARPACK), which is checked against the number of eigenvalues below
- * the last one that a factor's signs count. Each mode is then improved by inverse iteration in twice
- * a double's precision until its eigenvalue is right to 1e-12 or cannot be.
+ * the last one that a factor's signs count. Each mode is then improved by inverse iteration in
+ * twice a double's precision until its eigenvalue is right to 1e-12 or cannot be.
  *
  * Friction and drives do not act; a closed contact is a spring both ways, its damper too.
  */
@@ -63,8 +63,8 @@ typedef struct strut_modes_options {
 } strut_modes_options;
 
 /**
- * Fails with what strut_stand_find fails with; STRUT_SINGULAR where an elastic mode asked for cannot
- * be had to 1e-8, with the condition, and where a node without mass is held by nothing;
+ * Fails with what strut_stand_find fails with; STRUT_SINGULAR where an elastic mode asked for
+ * cannot be had to 1e-8, with the condition, and where a node without mass is held by nothing;
  * STRUT_BAD_SCENE where nothing is free to move or nothing has mass; STRUT_NO_MEMORY.
  * strut_modes_free releases it, after a failure too. The model must outlive it.
  */

@@ -9,9 +9,9 @@
 #include "engine/statics/modes_parts.h"
 
 /*
- * Two ways, each right where the other is not: K x = z M x has errors of the last bit of the largest
- * eigenvalue, its inverse those of the last bit of the smallest. Where the range of eigenvalues is
- * small the first will do; where some coordinates have no mass there is only the second, which
+ * Two ways, each right where the other is not: K x = z M x has errors of the last bit of the
+ * largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of eigenvalues
+ * is small the first will do; where some coordinates have no mass there is only the second, which
  * condenses them.
  */
 typedef struct dense {
@@ -125,7 +125,8 @@ static void take_inverse(dense *d, const gsl_matrix *small, size_t from, size_t 
 }
 
 /*
- * Ascending eigenvalues are 1/t: first the negative t from 0 down, then the positive from the largest.
+ * Ascending eigenvalues are 1/t: first the negative t from 0 down, then the positive from the
+ * largest.
  * A negative one within the rounding of the largest is a huge eigenvalue.
  */
 static void sort_inverse(const dense *d, double top, size_t *order) {

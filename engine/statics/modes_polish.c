@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shape to twice a double's precision, and what the last bits of the scene do to a stiffness. */
+/* The shape to twice a double's precision, and what last bits do to a stiffness. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

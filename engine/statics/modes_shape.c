@@ -5,8 +5,8 @@
 #include "engine/statics/modes_parts.h"
 
 /*
- * A structure that nothing holds comes to rest nowhere, but where it is drawn in balance its modes are
- * as good as any: some of them are the free motions.
+ * A structure that nothing holds comes to rest nowhere, but where it is drawn in balance its modes
+ * are as good as any: some of them are the free motions.
  */
 strut_status strut_modes_shape(const strut_model *model, const char *name, strut_arena *arena,
                                strut_stand *stand, strut_error *error) {

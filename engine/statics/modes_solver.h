@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * (K + shift M) x = b: by a plain factor and corrections where the shift keeps the condition within a
- * double's reach, else by a factor of twice a double's precision.
+ * (K + shift M) x = b: by a plain factor and corrections where the shift keeps the condition within
+ * a double's reach, else by a factor of twice a double's precision.
  *
  * Either way solutions are good to far more than a double holds, and the signs of the factor count
  * the eigenvalues below -shift: a plain factor is one of a matrix that differs by 1e-15 of the

@@ -49,7 +49,7 @@ void strut_vibration_free(strut_vibration *vibration);
 /** Computes members and K anew after a change of q. */
 void strut_vibration_update(strut_vibration *vibration);
 
-/** force (n): net force of members, ground, gravity and constant loads on the free coordinates [N]. */
+/** force (n): net force of members, ground, gravity and constant loads on free coordinates [N]. */
 void strut_vibration_force(const strut_vibration *vibration, strut_dd *force);
 
 /** y = K x. */

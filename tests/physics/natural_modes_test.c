@@ -366,7 +366,7 @@ static void test_stiffness_ratios_of_a_million_million(void **unused) {
   free_modes(&scene);
 }
 
-/* Soft cables around bars 1e13 times as stiff: the cables' stretch decides, and that is well known. */
+/* Soft cables around bars 1e13 times as stiff: their stretch decides, which is known. */
 static void test_stiff_bars_in_soft_cables(void **unused) {
   (void)unused;
   strut_scene scene;
