@@ -10,7 +10,7 @@
 
 /*
  * Two ways, each right where the other is not: K x = z M x has errors of the last bit of the
- * largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of eigenvalues
+ * largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of them
  * is small the first will do; where some coordinates have no mass there is only the second, which
  * condenses them.
  */
