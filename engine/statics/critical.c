@@ -215,6 +215,13 @@ static strut_task random_climb(const search *s, int64_t number) {
   return task;
 }
 
+static strut_status climb_hints(search *s) {
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < s->effort->hint_count && !status; i++)
+    status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = s->effort->hint[i]});
+  return status ? status : run(s);
+}
+
 static int64_t passes(const search *s) {
   int64_t count = 0;
   for (size_t i = 0; i < s->all.count; i++)
@@ -243,7 +250,8 @@ static strut_status find_saddles(search *s) {
   if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   s->climbs_left = affordable(n, 4e6, 4, 2000);
   for (int turn = 0; turn < ROUNDS && !status; turn++) {
-    status = climb_modes(s);
+    status = turn == 0 ? climb_hints(s) : STRUT_OK;
+    if (!status) status = climb_modes(s);
     if (!status) status = climb_pairs(s);
     if (!status && turn == 0) status = random_climbs(s);
     while (!status &&

@@ -51,6 +51,8 @@ typedef struct strut_critical_effort {
   bool saddles;    /* look for saddles too, and where they lead down to */
   size_t extra_count;           /* starts that the caller knows of, tried first */
   const double *const *extra;   /* (extra_count) each (length) */
+  size_t hint_count;            /* shapes close to a saddle with one negative eigenvalue */
+  const double *const *hint;    /* (hint_count) each (length) */
 } strut_critical_effort;
 
 /**

@@ -22,13 +22,26 @@ static strut_fate first_judgement(const strut_hunt *h, const strut_find *f) {
   return h->unrest == STRUT_UNREST_NONE ? STRUT_FATE_STANDS : STRUT_FATE_NO_REST;
 }
 
-/* The search on the real ground begins with what lies below each that may stand. */
+/* A saddle on supports that only push is one on the ground too, all but the ground's give. */
+static bool is_pass(const strut_hunt *h, const strut_find *f) {
+  bool under = false;
+  for (int32_t i = 0; i < h->model->node_count; i++) under = under || f->e.below[i];
+  return f->e.supports && f->e.point.negative == 1 && !f->pulls && !under;
+}
+
+/*
+ * The search on the real ground begins with what lies below each that may stand, and with the
+ * saddles that supports have shown.
+ */
 static strut_status explore(strut_hunt *h) {
   const strut_equilibria_options *o = h->options;
-  size_t length = (size_t)h->model->length, extras = 0;
+  size_t length = (size_t)h->model->length, extras = 0, hints = 0;
   strut_arena scratch = {0};
   const double **extra = strut_arena_allocate(&scratch, 2 * h->count + 1, sizeof *extra);
-  strut_status status = extra ? STRUT_OK : STRUT_NO_MEMORY;
+  const double **hint = strut_arena_allocate(&scratch, h->count + 1, sizeof *hint);
+  strut_status status = extra && hint ? STRUT_OK : STRUT_NO_MEMORY;
+  for (size_t i = 0; i < h->count && !status; i++)
+    if (is_pass(h, &h->finds[i])) hint[hints++] = h->finds[i].e.point.q;
   for (size_t i = 0; i < h->count && !status; i++) {
     strut_equilibrium *e = &h->finds[i].e;
     if (!is_followed(h, &h->finds[i]) && !e->rest) continue;
@@ -45,7 +58,9 @@ static strut_status explore(strut_hunt *h) {
                                   .seed = h->out->seed,
                                   .saddles = !o->standing_only,
                                   .extra_count = extras,
-                                  .extra = extra};
+                                  .extra = extra,
+                                  .hint_count = hints,
+                                  .hint = hint};
   if (h->explored) strut_landscape_free(&h->landscape);
   h->explored = true;
   if (!status) status = strut_landscape_create(h->world, &effort, &h->landscape, h->error);

@@ -117,6 +117,8 @@ static bool climb(const strut_batch *b, worker *w, const strut_task *task, doubl
   int32_t index = 1;
   if (task->kind == STRUT_TASK_CLIMB_PAIR) {
     highest_between(p, task->q, task->other, q);
+  } else if (task->kind == STRUT_TASK_CLIMB_SHAPE) {
+    memcpy(q, task->q, bytes);
   } else if (task->q) {
     memcpy(q, task->q, bytes);
     strut_shake(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
@@ -142,8 +144,7 @@ static strut_descent_end descend(const strut_batch *b, worker *w, const strut_ta
 
 static void work(strut_batch *b, const strut_task *task, strut_task_result *result) {
   worker *w = &b->workers[this_thread()];
-  bool up = task->kind == STRUT_TASK_CLIMB_MODE || task->kind == STRUT_TASK_CLIMB_PAIR ||
-            task->kind == STRUT_TASK_CLIMB_RANDOM;
+  bool up = task->kind >= STRUT_TASK_CLIMB_MODE && task->kind <= STRUT_TASK_CLIMB_RANDOM;
   if (up)
     result->end = climb(b, w, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
   else

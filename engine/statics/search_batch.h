@@ -17,6 +17,7 @@ typedef enum strut_task_kind {
   STRUT_TASK_FOLD,        /* down from fold `number` of q */
   STRUT_TASK_RANDOM,      /* down from random shape `number` */
   STRUT_TASK_CLIMB_MODE,  /* up from the minimum q along mode `number`, `side` +-1 */
+  STRUT_TASK_CLIMB_SHAPE, /* up from q itself, which is close to a saddle */
   STRUT_TASK_CLIMB_PAIR,  /* up from the highest place on the straight way from q to other */
   STRUT_TASK_CLIMB_RANDOM, /* up from random shape `number`, or from q shaken if not NULL */
   STRUT_TASK_DOWN         /* down from the saddle q along `other`, `side` +-1 */
