@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The front door of the libraries: everything a program needs to read a scene, compile it, run it
- * and write what came out. Installed as include/strut/strut.h, beside the tree it includes.
+ * The front door of the libraries: everything a program needs to read a scene, compile it, know it
+ * at rest, run it and write what came out. Installed as include/strut/strut.h, beside the tree it includes.
  *
  * The libraries are written in C17; C++ programs may include this header as it stands.
  */
@@ -36,6 +36,12 @@ extern "C" {
 #include "engine/scene/check.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/signal.h"
+#include "engine/statics/equilibria.h"
+#include "engine/statics/form.h"
+#include "engine/statics/modes.h"
+#include "engine/statics/path.h"
+#include "engine/statics/rigidity.h"
+#include "engine/statics/stand.h"
 #include "parser/read_scene.h"
 #include "parser/write_scene.h"
 
