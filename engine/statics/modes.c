@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -166,6 +167,7 @@ static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind
   mode->damping_ratio = value > 0 ? 0.0 : (double)NAN;
   mode->residual = value != 0 ? set->residual[i] : set->error[i] / v->largest;
   mode->error = (set->error[i] + set->noise[i]) / (value != 0 ? fabs(value) : v->largest);
+  if (value != 0) mode->error = fmax(mode->error, DBL_EPSILON); /* it is handed out as a double */
   for (int32_t k = 0; k < v->n; k++)
     if (fabs(x[k]) > fabs(largest) * (1 + 1e-9)) largest = x[k];
   for (int32_t k = 0; k < v->n; k++) mode->shape[v->shape->coordinate[k]] = x[k] / largest;

@@ -201,6 +201,42 @@ static strut_status unknown(const strut_scene *scene, const char *name, strut_er
                     names);
 }
 
+/* Names that only a search gives: unnamed-3, or III-2 where a configuration has several. */
+static bool is_listed(const strut_scene *scene, const char *name) {
+  const char *dash = strrchr(name, '-');
+  if (!dash || dash[1] == 0 || dash[1 + strspn(dash + 1, "0123456789")] != 0) return false;
+  size_t stem = (size_t)(dash - name);
+  if (stem == strlen("unnamed") && strncmp(name, "unnamed", stem) == 0) return true;
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const char *own = scene->configurations[i].name;
+    if (strlen(own) == stem && strncmp(own, name, stem) == 0) return true;
+  }
+  return false;
+}
+
+/* The equilibrium of that name in the list that the scene's own search makes. */
+static strut_status from_list(const strut_model *model, const char *name, strut_arena *arena,
+                              strut_stand *stand, strut_error *error) {
+  strut_equilibria_options options = {0};
+  strut_equilibria all;
+  strut_status status = strut_equilibria_find(model, &options, &all, error);
+  bool found = false;
+  for (size_t i = 0; i < all.count && !status && !found; i++) {
+    const strut_equilibrium *e = &all.list[i];
+    if (strcmp(e->name, name) != 0) continue;
+    found = true;
+    stand->name = strut_arena_text(arena, name, strlen(name));
+    if (!stand->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    bool stands = e->fate == STRUT_FATE_STANDS && e->rest;
+    memcpy(stand->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *stand->q);
+  }
+  strut_equilibria_free(&all);
+  if (status || found) return status;
+  return strut_fail(error, STRUT_USAGE,
+                    "there is no equilibrium '%.100s'; 'strut equilibria' lists what there is",
+                    name);
+}
+
 static strut_status seek(const strut_model *model, const strut_configuration *c, double *q,
                          strut_error *error) {
   strut_equilibria scratch = {0};
@@ -230,7 +266,11 @@ strut_status strut_stand_find(const strut_model *model, const char *name, strut_
   stand->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *stand->q);
   if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
-  if (!c && !start && !drawn) return unknown(scene, name, error);
+  if (!c && !start && !drawn) {
+    if (!is_listed(scene, name)) return unknown(scene, name, error);
+    strut_status status = from_list(model, name, arena, stand, error);
+    return status ? status : judge(model, arena, stand, error);
+  }
   if (!c && start && scene->start_equilibrium >= 0)
     c = &scene->configurations[scene->start_equilibrium];
   if (c) stand->name = c->name;

@@ -8,9 +8,10 @@
 #include "engine/model/model.h"
 
 typedef struct strut_stand {
-  const char *name;  /* "drawn", "start", or a configuration's */
+  const char *name;  /* "drawn", "start", a configuration's, or one that the list of all gives */
   double *q;         /* (length) [m] */
-  bool at_rest;      /* false only for "drawn" where that is no equilibrium */
+  bool at_rest;      /* false where it is no equilibrium on the real ground: as drawn, or listed on
+                        supports that it does not stand on */
   double residual;   /* largest net force on a free coordinate [N] */
   double scale;      /* sum of the weights and loads [N], or of member forces without any */
   int32_t closed_count;
@@ -21,7 +22,8 @@ typedef struct strut_stand {
 /**
  * name NULL or "start": the equilibrium that the scene's start comes to rest in; "drawn": the drawn
  * shape as it is; else a configuration of the scene: from its positions where it has some, else by a
- * search on its contacts. All in the arena. Fails with STRUT_USAGE and a suggestion for an unknown
+ * search on its contacts; "unnamed-3" and the like: from the list that strut_equilibria_find makes
+ * with the scene's own effort. All in the arena. Fails with STRUT_USAGE and a suggestion for an unknown
  * name, STRUT_NOT_SETTLED where there is no such equilibrium, with a sentence that says which nodes
  * move, STRUT_NO_MEMORY.
  */

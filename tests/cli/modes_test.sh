@@ -92,4 +92,12 @@ for text in "on a, b" "6 coordinates" "the whole moves along x" "the ground"; do
 expect 0 modes standing.yaml --stuck
 out_has "4 coordinates"
 grep -q rigid-body out && fail "held along the ground it has no rigid motion"
+
+# A name that only the list of all equilibria gives.
+expect 0 modes standing.yaml --at unnamed-1
+out_has "modes at unnamed-1, on"
+expect 1 modes standing.yaml --at unnamed-99
+err_has "there is no equilibrium 'unnamed-99'"
+expect 1 modes standing.yaml --at top-1
+err_has "choose among: start, drawn"
 done_testing
