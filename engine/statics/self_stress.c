@@ -129,7 +129,7 @@ static void count_cables(const strut_model *model, const double *force, size_t c
 static bool scale(const strut_model *model, double *force, size_t columns) {
   size_t pulled, pressed;
   double unit = force[leader(model, force, columns)];
-  for (size_t j = 0; j < columns && unit != 0.0; j++) force[j] /= unit;
+  for (size_t j = 0; j < columns && unit != 0.0; j++) force[j] = force[j] / unit + 0.0; /* no -0 */
   count_cables(model, force, columns, &pulled, &pressed);
   return pressed == 0;
 }
