@@ -10,7 +10,7 @@
 #include "engine/output/equilibria_report.h"
 #include "engine/output/quantity_text.h"
 
-enum { MOST_ROWS = 80, MOST_SHAPES = 6, MOST_NODES = 12, NAMES = 64 };
+enum { MOST_ROWS = 80, MOST_SHAPES = 6, MOST_SADDLES = 24, MOST_NODES = 12, NAMES = 64 };
 
 typedef struct quantity {
   char text[STRUT_QUANTITY_TEXT];
@@ -37,13 +37,14 @@ static void add_row(strut_buffer *table, const strut_scene *scene, const strut_e
   char names[NAMES];
   list_names(scene, e->supports ? e->supports->node : NULL, e->supports ? e->supports->count : 0,
              names);
-  double lowest = e->point.eigenvalue_count ? e->point.eigenvalues[0] : (double)NAN;
+  int32_t first = e->point.label == STRUT_STABLE ? e->point.zero : 0; /* free motions apart */
+  double lowest =
+      first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
   strut_buffer_add(table, "  %-12s %-10s %-8s %14s %13s %7" PRId64 "  %s\n", e->name, names,
                    strut_stability_name(e->point.label), in(e->energy, 8, "J").text,
                    in(lowest, 5, "N/m").text, e->point.found, e->verdict);
 }
 
-/* Saddles and maxima are many: those that matter appear by name among the barriers. */
 static void add_list(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
   size_t shown = 0, left = 0, unstable = 0;
   if (all->count == 0) return;
@@ -64,6 +65,32 @@ static void add_list(strut_buffer *table, const strut_equilibria *all, const str
   if (unstable)
     strut_buffer_add(table, "  and %zu unstable ones, saddles and maxima; --json lists all\n",
                      unstable);
+}
+
+/* Saddles with one way down on either side; the real ground's, which are few and matter, first. */
+static void add_saddles(strut_buffer *table, const strut_equilibria *all,
+                        const strut_scene *scene) {
+  size_t shown = 0, left = 0;
+  for (int held = 0; held < 2; held++)
+    for (size_t i = 0; i < all->count; i++) {
+      const strut_equilibrium *e = &all->list[i];
+      const int32_t *down = e->point.down;
+      char names[NAMES];
+      if (e->point.negative != 1 || (e->supports != NULL) != held) continue;
+      if (down[0] < 0 || down[1] < 0) continue;
+      if (shown == MOST_SADDLES) {
+        left++;
+        continue;
+      }
+      if (shown++ == 0)
+        strut_buffer_add(table, "\n  %-12s %-10s %14s %13s  %s\n", "saddle", "held", "energy",
+                         "lowest", "between");
+      list_names(scene, held ? e->supports->node : NULL, held ? e->supports->count : 0, names);
+      strut_buffer_add(table, "  %-12s %-10s %14s %13s  %s, %s\n", e->name, names,
+                       in(e->energy, 8, "J").text, in(e->point.eigenvalues[0], 5, "N/m").text,
+                       all->list[down[0]].name, all->list[down[1]].name);
+    }
+  if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
 }
 
 static bool is_named(const strut_equilibrium *e) { return strncmp(e->name, "unnamed-", 8) != 0; }
@@ -136,6 +163,7 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
                      all->missed, all->missed_one);
   if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
   add_list(&table, all, scene);
+  add_saddles(&table, all, scene);
   add_shapes(&table, all, scene);
   add_barriers(&table, all);
   strut_c_locale_leave(locale);
