@@ -12,16 +12,6 @@
 
 enum { MOST_ROWS = 80, MOST_SHAPES = 6, MOST_SADDLES = 24, MOST_NODES = 12, NAMES = 64 };
 
-typedef struct quantity {
-  char text[STRUT_QUANTITY_TEXT];
-} quantity;
-
-static quantity in(double value, int digits, const char *unit) {
-  quantity q;
-  strut_quantity_text(value, digits, unit, q.text);
-  return q;
-}
-
 static void list_names(const strut_scene *scene, const int32_t *node, size_t count,
                        char text[NAMES]) {
   size_t used = 0;
@@ -38,11 +28,10 @@ static void add_row(strut_buffer *table, const strut_scene *scene, const strut_e
   list_names(scene, e->supports ? e->supports->node : NULL, e->supports ? e->supports->count : 0,
              names);
   int32_t first = e->point.label == STRUT_STABLE ? e->point.zero : 0; /* free motions apart */
-  double lowest =
-      first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
+  double lowest = first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
   strut_buffer_add(table, "  %-12s %-10s %-8s %14s %13s %7" PRId64 "  %s\n", e->name, names,
-                   strut_stability_name(e->point.label), in(e->energy, 8, "J").text,
-                   in(lowest, 5, "N/m").text, e->point.found, e->verdict);
+                   strut_stability_name(e->point.label), strut_quantity_of(e->energy, 8, "J").text,
+                   strut_quantity_of(lowest, 5, "N/m").text, e->point.found, e->verdict);
 }
 
 static void add_list(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
@@ -87,7 +76,8 @@ static void add_saddles(strut_buffer *table, const strut_equilibria *all,
                          "lowest", "between");
       list_names(scene, held ? e->supports->node : NULL, held ? e->supports->count : 0, names);
       strut_buffer_add(table, "  %-12s %-10s %14s %13s  %s, %s\n", e->name, names,
-                       in(e->energy, 8, "J").text, in(e->point.eigenvalues[0], 5, "N/m").text,
+                       strut_quantity_of(e->energy, 8, "J").text,
+                       strut_quantity_of(e->point.eigenvalues[0], 5, "N/m").text,
                        all->list[down[0]].name, all->list[down[1]].name);
     }
   if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
@@ -101,10 +91,11 @@ static void add_shape(strut_buffer *table, const strut_scene *scene, const strut
   strut_buffer_add(table, e->contact_count ? " %14s\n" : "\n", "presses with");
   for (size_t i = 0; i < scene->node_count && i < MOST_NODES; i++) {
     strut_buffer_add(table, "  %-12s %14s %14s", scene->nodes[i].name,
-                     in(e->rest[2 * i], 7, "m").text, in(e->rest[2 * i + 1], 7, "m").text);
+                     strut_quantity_of(e->rest[2 * i], 7, "m").text,
+                     strut_quantity_of(e->rest[2 * i + 1], 7, "m").text);
     for (int32_t k = 0; k < e->contact_count; k++)
       if (e->contacts[k] == (int32_t)i)
-        strut_buffer_add(table, " %14s", in(e->normal[k], 6, "N").text);
+        strut_buffer_add(table, " %14s", strut_quantity_of(e->normal[k], 6, "N").text);
     strut_buffer_add(table, "\n");
   }
   if (scene->node_count > MOST_NODES)
@@ -112,8 +103,7 @@ static void add_shape(strut_buffer *table, const strut_scene *scene, const strut
 }
 
 /* Those that configurations name first. */
-static void add_shapes(strut_buffer *table, const strut_equilibria *all,
-                       const strut_scene *scene) {
+static void add_shapes(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
   int shown = 0;
   for (int named = 1; named >= 0; named--)
     for (size_t i = 0; i < all->count && shown < MOST_SHAPES; i++) {
@@ -140,8 +130,8 @@ static void add_barriers(strut_buffer *table, const strut_equilibria *all) {
     }
     shown++;
     strut_buffer_add(table, "  %-12s %-12s %14s %14s  %s", all->list[b->from].name,
-                     all->list[b->to].name, in(b->height, 6, "J").text,
-                     isnan(b->direct) ? "-" : in(b->direct, 6, "J").text,
+                     all->list[b->to].name, strut_quantity_of(b->height, 6, "J").text,
+                     isnan(b->direct) ? "-" : strut_quantity_of(b->direct, 6, "J").text,
                      b->saddle >= 0 ? all->list[b->saddle].name : "-");
     for (int32_t k = 0; k < b->via_count; k++)
       strut_buffer_add(table, "%s%s", k ? ", " : ", by way of ",

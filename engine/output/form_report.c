@@ -10,14 +10,8 @@
 
 enum { MOST_MEMBERS = 40, DIGITS = 7 };
 
-typedef struct quantity {
-  char text[STRUT_QUANTITY_TEXT];
-} quantity;
-
-static quantity in(double value, const char *unit) {
-  quantity q;
-  strut_quantity_text(value, DIGITS, unit, q.text);
-  return q;
+static strut_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
 }
 
 static void add_head(strut_buffer *table, const strut_form *form, const strut_scene *scene) {

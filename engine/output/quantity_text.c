@@ -36,3 +36,9 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
   strut_c_locale_leave(locale);
   return text;
 }
+
+strut_quantity strut_quantity_of(double value, int digits, const char *unit) {
+  strut_quantity quantity;
+  strut_quantity_text(value, digits, unit, quantity.text);
+  return quantity;
+}

@@ -10,14 +10,8 @@
 
 enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
 
-typedef struct quantity {
-  char text[STRUT_QUANTITY_TEXT];
-} quantity;
-
-static quantity in(double value, const char *unit) {
-  quantity q;
-  strut_quantity_text(value, DIGITS, unit, q.text);
-  return q;
+static strut_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
 }
 
 static void add_rank(strut_buffer *table, const strut_rigidity *r) {

@@ -11,14 +11,8 @@
 
 enum { MOST_ROWS = 10, DIGITS = 4 };
 
-typedef struct quantity {
-  char text[STRUT_QUANTITY_TEXT];
-} quantity;
-
-static quantity in(double value, const char *unit) {
-  quantity q;
-  strut_quantity_text(value, DIGITS, unit, q.text);
-  return q;
+static strut_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
 }
 
 static const char *measured(const strut_scene *scene) {

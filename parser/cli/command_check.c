@@ -21,14 +21,8 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-typedef struct quantity {
-  char text[STRUT_QUANTITY_TEXT];
-} quantity;
-
-static quantity in(double value, const char *unit) {
-  quantity q;
-  strut_quantity_text(value, DIGITS, unit, q.text);
-  return q;
+static strut_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
 }
 
 static const char *kind_name(strut_member_kind kind) {
