@@ -143,4 +143,5 @@ const strut_command strut_command_equilibria = {
         "Exit code 3 where nothing is ever at rest.\n",
     .options = options,
     .run = run,
+    .timed = true,
 };

@@ -89,4 +89,5 @@ const strut_command strut_command_modes = {
         "rest in. Up to 400 coordinates all modes are computed, above the ten lowest.\n",
     .options = options,
     .run = run,
+    .timed = true,
 };

@@ -89,4 +89,5 @@ const strut_command strut_command_path = {
         "Friction and drives are left out.\n",
     .options = options,
     .run = run,
+    .timed = true,
 };

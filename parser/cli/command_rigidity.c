@@ -78,4 +78,5 @@ const strut_command strut_command_rigidity = {
         "support here.\n",
     .options = options,
     .run = run,
+    .timed = true,
 };

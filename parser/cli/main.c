@@ -3,17 +3,32 @@
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
+#include "engine/output/quantity_text.h"
 #include "parser/cli/commands.h"
 #include "parser/cli/streams.h"
 
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Below a table; never into JSON or a file, which are the same every time. */
+static void print_time(double taken) {
+  printf("\n  took %s\n", strut_quantity_of(taken, 3, "s").text);
+}
+
 static strut_status run_command(const strut_command *command, int argc, char **argv) {
   strut_arguments arguments;
+  double begin = now();
   strut_status status = strut_arguments_read(command, argc, argv, &arguments);
   if (status == STRUT_OK && arguments.help) {
     strut_command_help(command);
   } else if (status == STRUT_OK) {
     status = command->run(&arguments);
+    if (status == STRUT_OK && command->timed && !arguments.json) print_time(now() - begin);
   }
   strut_arguments_free(&arguments);
   return status;

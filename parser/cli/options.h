@@ -70,6 +70,7 @@ typedef struct strut_command {
   const char *details;         /* lines for its own help; may be NULL */
   const strut_option *options; /* besides --help, which every command has */
   strut_status (*run)(const strut_arguments *arguments);
+  bool timed; /* the time it took stands below its table */
 } strut_command;
 
 /** Reads argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
