@@ -122,9 +122,10 @@ static strut_status from_start(strut_hunt *h, double *q) {
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
 static bool fits(strut_hunt *h, const strut_configuration *c, const double *shape,
-                 const double *q) {
+                 const double *q, strut_node_set *rests_on) {
   strut_equilibrium e = {0};
   if (strut_hunt_contacts(h, q, &e)) return false;
+  *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
   bool on_set = c->set_count == 0;
   for (size_t k = 0; k < c->set_count; k++)
     on_set = on_set || strut_same_nodes(&c->sets[k], e.contacts, e.contact_count);
@@ -132,9 +133,9 @@ static bool fits(strut_hunt *h, const strut_configuration *c, const double *shap
                        STRUT_NAMED_WITHIN * h->model->size;
 }
 
-/* From the configuration's shape; *found tells whether it stands there. */
+/* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
 static strut_status from_shape(strut_hunt *h, const strut_configuration *c, double *q,
-                               bool *found) {
+                               bool *found, strut_node_set *rests_on) {
   size_t nodes = h->flat.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
   if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
@@ -145,7 +146,7 @@ static strut_status from_shape(strut_hunt *h, const strut_configuration *c, doub
   memcpy(q, shape, (size_t)h->model->length * sizeof *q);
   strut_status status = relax(h, "the configuration's shape", q);
   if (status == STRUT_NOT_SETTLED) return STRUT_OK;
-  *found = !status && fits(h, c, shape, q);
+  *found = !status && fits(h, c, shape, q, rests_on);
   return status;
 }
 
@@ -166,7 +167,7 @@ static strut_status take_named(const strut_model *model, const strut_node_set *s
 
 /* On its contact sets in turn, else on all supports. In the original's coordinates. */
 static strut_status by_search(const strut_model *model, const strut_configuration *c, double *q,
-                              strut_error *error) {
+                              const strut_node_set *rests_on, strut_error *error) {
   bool found = false;
   strut_status status = STRUT_OK;
   for (size_t k = 0; k < c->set_count && !status && !found; k++)
@@ -175,11 +176,20 @@ static strut_status by_search(const strut_model *model, const strut_configuratio
   if (!status && !found && c->set_count == 0)
     status = take_named(model, NULL, c->name, q, &found, error);
   if (status || found) return status;
+  char instead[200] = "";
+  size_t used = 0;
+  for (size_t i = 0; i < rests_on->count && used < sizeof instead; i++) {
+    int n = snprintf(instead + used, sizeof instead - used, "%s%s",
+                     i ? ", " : "; from its shape it comes to rest on ",
+                     model->scene->nodes[rests_on->node[i]].name);
+    if (n < 0) break;
+    used += (size_t)n;
+  }
   return strut_fail(error, STRUT_NOT_SETTLED,
-                    "no equilibrium fits configuration '%s': none stands%s%s; 'strut equilibria' "
-                    "lists what there is",
+                    "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut "
+                    "equilibria' lists what there is",
                     c->name, c->set_count ? " on its contacts" : "",
-                    c->shaped ? " in about its shape" : "");
+                    c->shaped ? " in about its shape" : "", instead);
 }
 
 static const strut_configuration *find_configuration(const strut_scene *scene, const char *name) {
@@ -241,15 +251,16 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
                          strut_error *error) {
   strut_equilibria scratch = {0};
   strut_hunt h = {.out = &scratch, .error = error};
+  strut_node_set rests_on = {0};
   bool found = !c, turned = true;
   strut_status status = prepare(&h, model);
   if (!status && !c) status = from_start(&h, q);
   if (!status && c && c->shaped)
     status = from_shape(&h, &h.flat.scene.configurations[c - model->scene->configurations], q,
-                        &found);
+                        &found, &rests_on);
   if (!status && !found) {
     turned = false;
-    status = by_search(model, c, q, error);
+    status = by_search(model, c, q, &rests_on, error);
   }
   if (!status && turned)
     strut_flat_to_original(&h.flat, (size_t)model->node_count, q);
