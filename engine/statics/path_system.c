@@ -109,8 +109,8 @@ static void add_contacts(strut_path_system *s) {
   }
 }
 
-/* A unit motion of the whole: along the ground, out of it, or a turn. */
-static void rigid_motion(const strut_path_system *s, int which, double *motion) {
+/* A unit motion of the whole: along the ground, out of it, or a turn. False: supports forbid it. */
+static bool rigid_motion(const strut_path_system *s, int which, double *motion) {
   const double axis[2][2] = {{1, 0}, {0, 1}};
   bool sloped = s->model.contacts.count > 0;
   const double *along = sloped ? s->model.contacts.tangent : axis[0];
@@ -122,13 +122,16 @@ static void rigid_motion(const strut_path_system *s, int which, double *motion) 
   for (int32_t i = 0; i < nodes; i++)
     if (s->model.fixed[2 * i] && s->model.fixed[2 * i + 1] && pins++ == 0)
       centre[0] = s->q[2 * i], centre[1] = s->q[2 * i + 1];
-  for (int32_t k = 0; k < s->n; k++) {
-    int32_t at = s->potential->coordinate[k];
+  bool possible = true;
+  for (int32_t at = 0; at < 2 * nodes; at++) {
     double turn = at % 2 == 0 ? -(s->q[at + 1] - centre[1]) : s->q[at - 1] - centre[0];
-    motion[k] = which == 0 ? along[at % 2] : which == 1 ? out[at % 2] : turn / s->size;
-    sum += motion[k] * motion[k];
+    double there = which == 0 ? along[at % 2] : which == 1 ? out[at % 2] : turn / s->size;
+    int32_t row = s->potential->row_of[at];
+    if (row < 0 && fabs(there) > RIGID) possible = false;
+    if (row >= 0) motion[row] = there, sum += there * there;
   }
   for (int32_t k = 0; k < s->n && sum > 0; k++) motion[k] /= sqrt(sum);
+  return possible;
 }
 
 /* Holds rigid motions that meet no stiffness and no load: they would make every matrix singular. */
@@ -141,7 +144,7 @@ static void hold_rigid_motions(strut_path_system *s) {
   gsl_vector_view motion = gsl_vector_view_array(s->row, n);
   gsl_vector_view product = gsl_vector_subvector(s->solution, 0, n);
   for (int k = 0; k < MOTIONS; k++) {
-    rigid_motion(s, k, s->row);
+    if (!rigid_motion(s, k, s->row)) continue;
     work = load = 0;
     for (int32_t i = 0; i < s->n; i++) {
       double p = s->load[s->potential->coordinate[i]];

@@ -57,4 +57,17 @@ err_has "nothing holds the structure"
 sed '/^loads/,$d; /^parameters/d' arch.yaml >idle.yaml
 expect 1 path idle.yaml
 err_has "no constant load"
+# Stiffnesses that span twelve decades do not make a held chain one that moves as a whole.
+cat >chain.yaml <<'END'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y},
+        c: {position: [2, 0], fixed: y}, d: {position: [3, 0], fixed: y}}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: 1}
+  bc: {kind: spring, nodes: [b, c], stiffness: 1e12}
+  cd: {kind: spring, nodes: [c, d], stiffness: 1}
+loads: {tip: {node: d, force: [1, 0]}}
+END
+expect 0 path chain.yaml
+out_has "2 m             0 m  stable"
 done_testing
