@@ -2,21 +2,21 @@
 #include "engine/statics/spectrum.h"
 
 #include <float.h>
-#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <string.h>
+
+#include "engine/statics/eigen.h"
 
 struct strut_spectrum_room {
   const strut_potential *potential;
   strut_arena arena;
   strut_sparse *hessian;
-  gsl_eigen_symmv_workspace *workspace, *soft_workspace; /* the latter for soft_n rows */
-  int32_t soft_n;
   double least; /* of the spectrum at hand [N] */
   bool uneven;  /* stiffnesses differ by so much that the dense solver may lose the soft ones */
-  double *dense, *basis;       /* (n, n) each: Hessian, eigenvectors in columns */
-  double *soft, *soft_basis;   /* (n, n) room for the form on soft modes and its eigenvectors */
+  double *dense;               /* (n, n) Hessian, then its eigenvectors */
+  double *soft;                /* (n, n) room for the form on soft modes, then its eigenvectors */
   double *raw, *value, *noise; /* (n) */
+  double *work;                /* (n) */
   double *vector, *turned;     /* (n, n) */
   double *along, *across, *form_noise; /* (n) of one member in each soft mode; noise of the form */
   int32_t *order;                      /* (n) */
@@ -46,18 +46,16 @@ strut_spectrum_room *strut_spectrum_create(const strut_potential *potential) {
   if (!room) return NULL;
   room->potential = potential;
   room->uneven = is_uneven(potential->model);
-  double **square[] = {&room->dense,      &room->basis,  &room->soft,
-                       &room->soft_basis, &room->vector, &room->turned};
-  double **line[] = {&room->raw,   &room->value,  &room->noise,
+  double **square[] = {&room->dense, &room->soft, &room->vector, &room->turned};
+  double **line[] = {&room->raw,   &room->value,  &room->noise,     &room->work,
                      &room->along, &room->across, &room->form_noise};
   bool good = true;
-  for (size_t i = 0; i < 6; i++) {
+  for (size_t i = 0; i < sizeof square / sizeof square[0]; i++)
     good = good && (*square[i] = numbers(&room->arena, n * n));
+  for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
     good = good && (*line[i] = numbers(&room->arena, n));
-  }
   good = good && (room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order));
   good = good && (room->hessian = strut_potential_matrix(potential, &room->arena));
-  if (good && n > 0) good = (room->workspace = gsl_eigen_symmv_alloc(n));
   if (good) return room;
   strut_spectrum_free(room);
   return NULL;
@@ -65,8 +63,6 @@ strut_spectrum_room *strut_spectrum_create(const strut_potential *potential) {
 
 void strut_spectrum_free(strut_spectrum_room *room) {
   if (!room) return;
-  if (room->workspace) gsl_eigen_symmv_free(room->workspace);
-  if (room->soft_workspace) gsl_eigen_symmv_free(room->soft_workspace);
   strut_arena_free(&room->arena);
   strut_release(room);
 }
@@ -78,15 +74,6 @@ static void sort_order(const double *value, int32_t n, int32_t *order) {
     for (; k > 0 && value[order[k - 1]] > value[i]; k--) order[k] = order[k - 1];
     order[k] = i;
   }
-}
-
-/* Eigenvalues and eigenvectors of a dense symmetric matrix (n, n), which is destroyed. */
-static void solve(double *matrix, int32_t n, gsl_eigen_symmv_workspace *workspace, double *value,
-                  double *basis) {
-  gsl_matrix_view a = gsl_matrix_view_array(matrix, (size_t)n, (size_t)n);
-  gsl_matrix_view v = gsl_matrix_view_array(basis, (size_t)n, (size_t)n);
-  gsl_vector_view d = gsl_vector_view_array(value, (size_t)n);
-  gsl_eigen_symmv(&a.matrix, &d.vector, &v.matrix, workspace);
 }
 
 static bool fill_dense(strut_spectrum_room *room) {
@@ -175,13 +162,7 @@ static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
   add_contacts(room, q, count);
   for (size_t i = 0; i < m; i++)
     for (size_t k = 0; k < i; k++) room->soft[k * m + i] = room->soft[i * m + k];
-  if (room->soft_n != count) {
-    if (room->soft_workspace) gsl_eigen_symmv_free(room->soft_workspace);
-    room->soft_workspace = gsl_eigen_symmv_alloc(m);
-    room->soft_n = room->soft_workspace ? count : 0;
-    if (!room->soft_workspace) return false;
-  }
-  solve(room->soft, count, room->soft_workspace, room->raw, room->soft_basis);
+  if (!strut_eigen(room->soft, count, room->raw, room->work)) return false;
   sort_order(room->raw, count, room->order);
   double largest = fmax(fabs(room->raw[room->order[0]]), fabs(room->raw[room->order[m - 1]]));
   memset(room->turned, 0, m * n * sizeof *room->turned);
@@ -189,7 +170,7 @@ static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
     size_t column = (size_t)room->order[i];
     double noise = count * DBL_EPSILON * largest; /* of the dense solver, among the soft modes */
     for (size_t k = 0; k < m; k++) {
-      double weight = room->soft_basis[k * m + column];
+      double weight = room->soft[column * m + k];
       noise += weight * weight * room->form_noise[k];
       for (size_t at = 0; at < n; at++)
         room->turned[i * n + at] += weight * room->vector[k * n + at];
@@ -209,13 +190,13 @@ bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, double l
   room->least = least;
   strut_potential_hessian_above(room->potential, q, least, room->hessian);
   if (!fill_dense(room)) return false;
-  solve(room->dense, n, room->workspace, room->raw, room->basis);
+  if (!strut_eigen(room->dense, n, room->raw, room->work)) return false;
   sort_order(room->raw, n, room->order);
   size_t rows = (size_t)n;
   for (size_t i = 0; i < rows; i++) {
     room->value[i] = room->raw[room->order[i]];
-    for (size_t at = 0; at < rows; at++)
-      room->vector[i * rows + at] = room->basis[at * rows + (size_t)room->order[i]];
+    memcpy(room->vector + i * rows, room->dense + (size_t)room->order[i] * rows,
+           rows * sizeof *room->vector);
   }
   double largest = fmax(fabs(room->value[0]), fabs(room->value[n - 1]));
   for (int32_t i = 0; i < n; i++) {

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/eigen.h"
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+enum { MOST_STEPS = 80 };
+
+/* Row i becomes the vector of the reflection that clears it, by way of d (its entries) and e. */
+static void reflect_row(double *z, size_t n, size_t i, double scale, double *d, double *e) {
+  double h = 0.0, f, g;
+  for (size_t k = 0; k < i; k++) d[k] /= scale, h += d[k] * d[k];
+  f = d[i - 1];
+  g = f > 0 ? -sqrt(h) : sqrt(h);
+  e[i] = scale * g;
+  h -= f * g;
+  d[i - 1] = f - g;
+  for (size_t j = 0; j < i; j++) e[j] = 0.0;
+  for (size_t j = 0; j < i; j++) {
+    const double *row = z + j * n;
+    f = z[i * n + j] = d[j];
+    g = e[j] + row[j] * f;
+    for (size_t k = j + 1; k < i; k++) {
+      g += row[k] * d[k];
+      e[k] += row[k] * f;
+    }
+    e[j] = g;
+  }
+  f = 0.0;
+  for (size_t j = 0; j < i; j++) e[j] /= h, f += e[j] * d[j];
+  for (size_t j = 0; j < i; j++) e[j] -= f / (h + h) * d[j];
+  for (size_t j = 0; j < i; j++) {
+    double *row = z + j * n;
+    f = d[j], g = e[j];
+    for (size_t k = j; k < i; k++) row[k] -= f * e[k] + g * d[k];
+    d[j] = row[i - 1];
+    row[i] = 0.0;
+  }
+  d[i] = h;
+}
+
+/* The matrix as diagonal d and off-diagonal e[1..n-1]; z keeps the reflections. */
+static void reduce(double *z, size_t n, double *d, double *e) {
+  for (size_t j = 0; j < n; j++) d[j] = z[j * n + n - 1];
+  for (size_t i = n - 1; i > 0; i--) {
+    double scale = 0.0;
+    for (size_t k = 0; k < i; k++) scale += fabs(d[k]);
+    if (scale > 0) {
+      reflect_row(z, n, i, scale, d, e);
+      continue;
+    }
+    e[i] = d[i - 1];
+    for (size_t j = 0; j < i; j++) {
+      d[j] = z[j * n + i - 1];
+      z[j * n + i] = z[i * n + j] = 0.0;
+    }
+    d[i] = 0.0;
+  }
+}
+
+/* The product of the reflections into z, transposed; d becomes the diagonal. */
+static void accumulate(double *z, size_t n, double *d, double *e) {
+  for (size_t i = 0; i + 1 < n; i++) {
+    double h = d[i + 1], *next = z + (i + 1) * n;
+    z[i * n + n - 1] = z[i * n + i];
+    z[i * n + i] = 1.0;
+    if (h != 0.0) {
+      for (size_t k = 0; k <= i; k++) d[k] = next[k] / h;
+      for (size_t j = 0; j <= i; j++) {
+        double g = 0.0, *row = z + j * n;
+        for (size_t k = 0; k <= i; k++) g += next[k] * row[k];
+        for (size_t k = 0; k <= i; k++) row[k] -= g * d[k];
+      }
+    }
+    for (size_t k = 0; k <= i; k++) next[k] = 0.0;
+  }
+  for (size_t j = 0; j < n; j++) {
+    d[j] = z[j * n + n - 1];
+    z[j * n + n - 1] = 0.0;
+  }
+  z[n * n - 1] = 1.0;
+  for (size_t i = 1; i < n; i++) e[i - 1] = e[i];
+  e[n - 1] = 0.0;
+}
+
+static void rotate(double *lower, double *upper, size_t n, double c, double s) {
+  for (size_t k = 0; k < n; k++) {
+    double h = upper[k];
+    upper[k] = s * lower[k] + c * h;
+    lower[k] = c * lower[k] - s * h;
+  }
+}
+
+/* One QL step on rows l to m; `shift` gathers what was taken off the diagonal. */
+static void step(double *z, size_t n, size_t l, size_t m, double *d, double *e, double *shift) {
+  double g = d[l], p = (d[l + 1] - g) / (2.0 * e[l]), r = sqrt(p * p + 1.0);
+  if (!(r <= DBL_MAX)) r = fabs(p);
+  if (p < 0) r = -r;
+  d[l] = e[l] / (p + r);
+  d[l + 1] = e[l] * (p + r);
+  double beside = d[l + 1], off = e[l + 1], h = g - d[l];
+  for (size_t i = l + 2; i < n; i++) d[i] -= h;
+  *shift += h;
+  p = d[m];
+  double c = 1.0, c2 = 1.0, c3 = 1.0, s = 0.0, s2 = 0.0;
+  for (size_t i = m; i-- > l;) {
+    c3 = c2, c2 = c, s2 = s;
+    g = c * e[i], h = c * p;
+    r = sqrt(p * p + e[i] * e[i]);
+    e[i + 1] = s * r;
+    s = r > 0 ? e[i] / r : 0.0, c = r > 0 ? p / r : 1.0;
+    p = c * d[i] - s * g;
+    d[i + 1] = h + s * (c * g + s * d[i]);
+    rotate(z + i * n, z + (i + 1) * n, n, c, s);
+  }
+  p = -s * s2 * c3 * off * e[l] / beside;
+  e[l] = s * p;
+  d[l] = c * p;
+}
+
+static bool diagonalise(double *z, size_t n, double *d, double *e) {
+  double shift = 0.0, largest = 0.0;
+  for (size_t l = 0; l < n; l++) {
+    largest = fmax(largest, fabs(d[l]) + fabs(e[l]));
+    size_t m = l;
+    while (fabs(e[m]) > DBL_EPSILON * largest) m++; /* the last one is 0 */
+    for (int k = 0; m > l && fabs(e[l]) > DBL_EPSILON * largest; k++) {
+      if (k == MOST_STEPS) return false;
+      step(z, n, l, m, d, e, &shift);
+    }
+    d[l] += shift;
+    e[l] = 0.0;
+  }
+  return true;
+}
+
+bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
+  size_t n = (size_t)rows;
+  double largest = 0.0;
+  int power = 0;
+  if (n == 0) return true;
+  for (size_t i = 0; i < n * n; i++) largest = fmax(largest, fabs(matrix[i]));
+  /* squares must neither overflow nor vanish */
+  if (largest > 0) frexp(largest, &power);
+  bool scaled = power > 400 || power < -400;
+  for (size_t i = 0; i < n * n && scaled; i++) matrix[i] = ldexp(matrix[i], -power);
+  reduce(matrix, n, value, work);
+  accumulate(matrix, n, value, work);
+  if (!diagonalise(matrix, n, value, work)) return false;
+  for (size_t i = 0; i < n && scaled; i++) value[i] = ldexp(value[i], power);
+  return true;
+}
