@@ -4,6 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Rounding may set copies of one point apart by so many times what separates points elsewhere. */
+static const double MOST_BLUR = 1000.0;
+
 struct strut_placement {
   const double *q;
   strut_placement *next;
@@ -64,15 +67,42 @@ static bool same_energy(const strut_gathering *g, double a, double b) {
   return fabs(a - b) <= g->flat + 1e-9 * fmin(fabs(a), fabs(b));
 }
 
-static bool same_point(const strut_gathering *g, const double *q, const double *known) {
-  if (place_distance(g, q, known) <= g->near) return true;
-  return g->congruent && strut_shape_distance(g->potential->model, q, known, true, NULL) <= g->near;
+static bool same_point(const strut_gathering *g, const double *q, const double *known,
+                       double near) {
+  if (place_distance(g, q, known) <= near) return true;
+  return g->congruent && strut_shape_distance(g->potential->model, q, known, true, NULL) <= near;
+}
+
+/*
+ * Close to a fork the softest direction is so soft that a point is known there only to the rounding
+ * of the forces over that stiffness: each of two copies to no more than strut_minimise allows.
+ */
+static double blur(const strut_gathering *g, const strut_critical_point *point) {
+  const strut_potential *p = g->potential;
+  double soft = 0.0, last = 0.0;
+  for (int32_t skip = 0; skip <= point->zero; skip++) { /* the next larger one, in magnitude */
+    soft = HUGE_VAL;
+    for (int32_t i = 0; i < point->eigenvalue_count; i++) {
+      double size = fabs(point->eigenvalues[i]);
+      if (size < soft && (skip == 0 || size > last)) soft = size;
+    }
+    last = soft;
+  }
+  double far = 16.0 * sqrt((double)p->n) * strut_potential_rounding(p, point->q) / soft;
+  return fmin(far, MOST_BLUR * g->near);
 }
 
 static int32_t find(const strut_gathering *g, const double *q, double energy) {
   for (size_t i = 0; i < g->count; i++)
-    if (same_energy(g, energy, g->points[i].potential) && same_point(g, q, g->points[i].q))
+    if (same_energy(g, energy, g->points[i].potential) &&
+        same_point(g, q, g->points[i].q, g->near))
       return (int32_t)i;
+  for (size_t i = 0; i < g->count; i++) {
+    const strut_critical_point *known = &g->points[i];
+    if (fabs(energy - known->potential) > g->flat + 1e-12 * fabs(energy)) continue;
+    double near = blur(g, known);
+    if (near > g->near && same_point(g, q, known->q, near)) return (int32_t)i;
+  }
   return -1;
 }
 
@@ -82,8 +112,9 @@ int32_t strut_gathering_find(const strut_gathering *g, const double *q) {
 
 static bool remember_placement(strut_gathering *g, int32_t index, const double *q) {
   strut_placement **end = &g->placement[index];
+  double near = fmax(g->near, blur(g, &g->points[index]));
   for (; *end; end = &(*end)->next)
-    if (place_distance(g, q, (*end)->q) <= g->near) return true;
+    if (place_distance(g, q, (*end)->q) <= near) return true;
   size_t length = (size_t)g->potential->model->length;
   double *copy = strut_arena_allocate(g->arena, length, sizeof *copy);
   *end = strut_arena_allocate(g->arena, 1, sizeof **end);

@@ -8,7 +8,7 @@
 #include "engine/statics/spectrum.h"
 #include "engine/statics/trust_step.h"
 
-enum { MOST_STEPS = 150, MOST_POLISH = 12 };
+enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 
 struct strut_climber {
   const strut_potential *potential;
@@ -17,6 +17,7 @@ struct strut_climber {
   double size;
   double *g, *part, *value, *x; /* (n) */
   double *step, *follow;        /* (n) */
+  double *straight, *g_trial;   /* (n) the step before it was bent, and the gradient at its end */
   uint8_t *idle;                /* (n) */
   double *trial, *begin;        /* (length) */
   strut_arena arena;
@@ -29,7 +30,8 @@ strut_climber *strut_climber_create(const strut_potential *p) {
   c->potential = p;
   c->size = p->model->size > 0 ? p->model->size : 1.0;
   c->spectra = strut_spectrum_create(p);
-  double **line[] = {&c->g, &c->part, &c->value, &c->x, &c->step, &c->follow};
+  double **line[] = {&c->g,    &c->part,   &c->value,    &c->x,
+                     &c->step, &c->follow, &c->straight, &c->g_trial};
   bool good = c->spectra != NULL;
   for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
     good = good && (*line[i] = strut_arena_allocate(&c->arena, n, sizeof(double)));
@@ -116,6 +118,45 @@ static void move(strut_climber *c, const double *q) {
   for (int32_t i = 0; i < p->n; i++) c->trial[p->coordinate[i]] += c->step[i];
 }
 
+/* Brings modes much stiffer than mu, the followed ones apart, into balance at the step's end. */
+static bool straighten(strut_climber *c, double mu, double scale) {
+  int32_t n = c->now.n;
+  double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
+  bool any = false;
+  strut_potential_gradient(c->potential, c->trial, c->g_trial);
+  for (int32_t i = 0; i < n; i++) {
+    const double *mode = c->now.vector + (size_t)i * (size_t)n;
+    if (!(c->value[i] > stiff && c->now.value[i] > stiff)) continue;
+    double far = dot(mode, c->g_trial, n) / c->now.value[i];
+    for (int32_t k = 0; k < n; k++) c->step[k] -= far * mode[k];
+    any = true;
+  }
+  return any;
+}
+
+/*
+ * The way bends with every stiff bar that turns: as in a descent, without which a climb beside very
+ * stiff bars gets nowhere. Lowers `there` as long as that makes the quadratic truer.
+ */
+static double bend(strut_climber *c, const double *q, double mu, double scale, double there,
+                   double wanted) {
+  size_t bytes = (size_t)c->now.n * sizeof *c->step;
+  for (int i = 0; i < MOST_BENDS && !(there < wanted); i++) {
+    memcpy(c->straight, c->step, bytes);
+    if (!straighten(c, mu, scale)) break;
+    move(c, q);
+    double lower = strut_potential_value(c->potential, c->trial);
+    if (lower < there) {
+      there = lower;
+      continue;
+    }
+    memcpy(c->step, c->straight, bytes);
+    move(c, q);
+    break;
+  }
+  return there;
+}
+
 /* One step of the climb; the radius follows how true the quadratic was. */
 static bool climb_once(strut_climber *c, double *q, double *radius) {
   const strut_potential *p = c->potential;
@@ -124,11 +165,12 @@ static bool climb_once(strut_climber *c, double *q, double *radius) {
   double here = strut_potential_value(p, q);
   for (int tries = 0; tries < 30; tries++) {
     double length, ratio = 1.0;
-    strut_trust_step(&image, *radius, c->x);
+    double mu = strut_trust_step(&image, *radius, c->x);
     double change = assemble(c, &length);
     if (!(length > 0)) return false;
     move(c, q);
     double there = strut_potential_value(p, c->trial);
+    there = bend(c, q, mu, image.scale, there, here + change + 0.3 * fabs(change));
     if (fabs(change) > 1e-9 * (fabs(here) + fabs(there))) ratio = (there - here) / change;
     bool good = ratio > 0.0 && ratio < 2.0;
     if (good && fabs(ratio - 1.0) < 0.3 && length > 0.99 * *radius)
