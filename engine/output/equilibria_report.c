@@ -138,6 +138,7 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   struct cJSON *missed = strut_json_object(&json, json.root, "missed");
   strut_json_number(&json, missed, "chance", all->missed);
   strut_json_number(&json, missed, "bound", all->missed_one);
+  strut_json_bool(&json, missed, "cut_short", all->cut_short);
   strut_json_text(&json, json.root, "remark", all->remark[0] ? all->remark : NULL);
   struct cJSON *list = strut_json_array(&json, json.root, "equilibria");
   for (size_t i = 0; i < all->count; i++)

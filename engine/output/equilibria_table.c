@@ -151,6 +151,10 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
     strut_buffer_add(&table,
                      "  chance that one more start finds a new stable one: %.2g, at most %.2g\n",
                      all->missed, all->missed_one);
+  if (all->cut_short)
+    strut_buffer_add(&table,
+                     "  cut short: for its size it would take more starts and climbs; --starts N "
+                     "asks for more\n");
   if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
   add_list(&table, all, scene);
   add_saddles(&table, all, scene);

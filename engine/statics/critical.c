@@ -9,6 +9,13 @@
 #include "engine/statics/search_batch.h"
 #include "engine/statics/starts.h"
 
+/*
+ * All searches of one command together may take so many Hessians apart, each times what it costs;
+ * and by what share of that each part of a search must be over.
+ */
+static const double MOST_WORK = 6e9;
+static const double KNOWN_BY = 0.2, RANDOM_BY = 0.4, FOLDS_BY = 0.5, CLIMBS_BY = 0.9;
+
 enum { LEAST_RANDOM = 256, PER_MINIMUM = 32, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
 
 typedef struct search {
@@ -22,6 +29,8 @@ typedef struct search {
   int64_t random, room; /* random starts made; how many points `hits` has room for */
   int64_t *hits;        /* of them, on each point; of strut_allocate */
   int64_t climbs_left;
+  double cost, spent, budget; /* of one Hessian, so far, and at most */
+  size_t batch_size;          /* tasks before the work done is looked at again */
   size_t climbed, paired; /* points up to which modes and pairs were climbed */
   strut_error *error;
 } search;
@@ -64,7 +73,10 @@ static strut_status read_result(search *s, const strut_task *task,
 static strut_status run(search *s) {
   const strut_task_result *result = strut_batch_run(s->batch, s->task, s->tasks);
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < s->tasks && !status; i++) status = read_result(s, &s->task[i], &result[i]);
+  for (size_t i = 0; i < s->tasks && !status; i++) {
+    s->spent += s->cost * (double)result[i].looks;
+    status = read_result(s, &s->task[i], &result[i]);
+  }
   s->tasks = 0;
   return status;
 }
@@ -72,7 +84,23 @@ static strut_status run(search *s) {
 /* Puts a task into the batch, which is worked off when full. */
 static strut_status add(search *s, strut_task task) {
   s->task[s->tasks++] = task;
-  return s->tasks == STRUT_BATCH ? run(s) : STRUT_OK;
+  return s->tasks == s->batch_size ? run(s) : STRUT_OK;
+}
+
+/* Is it time to end a part of the search? Then it is cut short. */
+static bool over(search *s, double share) {
+  if (s->spent <= share * s->budget) return false;
+  s->set->cut_short = true;
+  return true;
+}
+
+static void set_budget(search *s) {
+  double n = s->potential->n, descent, size;
+  s->cost = n * n * (n + 30.0);
+  s->budget = MOST_WORK / (s->effort->searches > 1 ? s->effort->searches : 1);
+  descent = 60.0 * s->cost + 1.0;
+  size = 0.05 * s->budget / descent;
+  s->batch_size = size < 4.0 ? 4 : size > STRUT_BATCH ? STRUT_BATCH : (size_t)size;
 }
 
 /* How many descents or climbs a structure of this size may have: their cost grows with its cube. */
@@ -90,7 +118,7 @@ static strut_status known_starts(search *s) {
   int64_t most = affordable(s->potential->n, 4e6, 4, 256), folds = strut_fold_count(s->potential);
   if (s->potential->n > STRUT_DENSE_STATICS) folds = 0;
   if (folds > most) folds = most;
-  for (int64_t i = 0; i < folds && !status; i++)
+  for (int64_t i = 0; i < folds && !status && !over(s, KNOWN_BY); i++)
     status = add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
   return status ? status : run(s);
 }
@@ -107,11 +135,12 @@ static int64_t met_once(const search *s, int64_t *distinct) {
   return once;
 }
 
-static bool enough(const search *s, int64_t most) {
+static bool enough(search *s, int64_t most) {
   int64_t distinct, once = met_once(s, &distinct), least = PER_MINIMUM * distinct;
-  if (s->random >= most) return true;
   if (least < LEAST_RANDOM) least = LEAST_RANDOM;
-  return s->random >= least && 150 * once <= s->random;
+  if (s->random >= least && 150 * once <= s->random) return true;
+  if (s->random >= most) s->set->cut_short = true;
+  return s->random >= most || over(s, RANDOM_BY);
 }
 
 static strut_status random_starts(search *s) {
@@ -119,12 +148,15 @@ static strut_status random_starts(search *s) {
   int64_t wanted = s->effort->starts, most = affordable(n, 1.5e7, 4, 4000);
   strut_status status = STRUT_OK;
   if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
+  double before = s->spent;
+  int64_t size = (int64_t)s->batch_size;
   while (!status && (wanted > 0 ? s->random < wanted : !enough(s, most))) {
-    int64_t left = wanted > 0 ? wanted - s->random : STRUT_BATCH;
-    for (int64_t i = 0; i < left && i < STRUT_BATCH && !status; i++)
+    int64_t left = (wanted > 0 ? wanted : most) - s->random;
+    for (int64_t i = 0; i < left && i < size && !status; i++)
       status = add(s, (strut_task){.kind = STRUT_TASK_RANDOM, .number = s->random++});
     if (!status) status = run(s);
   }
+  if (wanted > 0) s->budget += s->spent - before; /* as it was asked for */
   return status;
 }
 
@@ -135,14 +167,15 @@ static strut_status folded_minima(search *s) {
   strut_status status = STRUT_OK;
   if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int64_t fold = 0; fold < folds && left > 0 && !status; fold++)
-    for (size_t i = 0; i < s->all.count && left > 0 && !status; i++, left--)
+    for (size_t i = 0; i < s->all.count && left > 0 && !status && !over(s, FOLDS_BY); i++, left--)
       status =
           add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
   return status ? status : run(s);
 }
 
 static strut_status climb_from(search *s, strut_task task) {
-  return s->climbs_left-- > 0 ? add(s, task) : STRUT_OK;
+  if (s->climbs_left-- <= 0) s->set->cut_short = true;
+  return s->climbs_left >= 0 && !over(s, CLIMBS_BY) ? add(s, task) : STRUT_OK;
 }
 
 /* Along the softest modes of every minimum not yet climbed from. */
@@ -189,7 +222,7 @@ static strut_status climb_pairs(search *s) {
 static strut_status go_down(search *s, size_t begin) {
   strut_status status = STRUT_OK;
   size_t end = s->all.count;
-  for (size_t i = begin; i < end && !status; i++) {
+  for (size_t i = begin; i < end && !status && !over(s, 1.0); i++) {
     const strut_critical_point *point = &s->all.points[i];
     const double *q = point->q, *direction = point->softest;
     if (is_minimum(point) || point->negative != 1) continue;
@@ -307,6 +340,7 @@ strut_status strut_critical_search(const strut_potential *potential,
   bool climbs = effort->saddles && potential->n <= STRUT_DENSE_STATICS;
   int64_t distinct;
   *set = (strut_critical_set){0};
+  set_budget(&s);
   strut_gathering_start(&s.all, potential, &set->arena);
   strut_status status = strut_batch_create(potential, effort->seed, climbs, &s.batch, error);
   if (!status) status = known_starts(&s);

@@ -41,6 +41,7 @@ typedef struct strut_critical_set {
   int64_t saddle_starts;        /* tried for saddles */
   int64_t exhausted, runaway;   /* starts that ended nowhere */
   double missed;      /* estimated chance that a further start would find a new minimum (Good-Turing) */
+  bool cut_short;     /* the structure is too large for as many starts and climbs as it asks for */
   double missed_one;  /* upper 95 % bound on the share of starts of a minimum never seen: 3/starts-like */
   strut_arena arena;
 } strut_critical_set;
@@ -48,6 +49,7 @@ typedef struct strut_critical_set {
 typedef struct strut_critical_effort {
   int64_t starts;  /* random starts for minima; 0: until `missed` is small, within reason */
   uint64_t seed;
+  int32_t searches; /* how many searches share one search's work, on supports in turn; 0: 1 */
   bool saddles;    /* look for saddles too, and where they lead down to */
   size_t extra_count;           /* starts that the caller knows of, tried first */
   const double *const *extra;   /* (extra_count) each (length) */
@@ -60,7 +62,9 @@ typedef struct strut_critical_effort {
  * generator of its own, so that threads change no bit. Merged are points that a rigid motion of the
  * whole, mirrored or not, carries onto each other, if scene and supports fix at most three
  * coordinates (then only placements differ); else only equal points. Above STRUT_DENSE_STATICS
- * coordinates only the model's own start and `extra` are tried unless `starts` says otherwise.
+ * coordinates only the model's own start and `extra` are tried unless `starts` says otherwise. Below,
+ * the work is bounded, counted in Hessians taken apart, to some ten seconds of one core in all: what
+ * ends early for that is cut_short.
  */
 STRUT_API strut_status strut_critical_search(const strut_potential *potential,
                                              const strut_critical_effort *effort,

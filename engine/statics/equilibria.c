@@ -18,6 +18,7 @@ static void count_starts(strut_hunt *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
   h->out->missed = fmax(h->out->missed, set->missed);
   h->out->missed_one = fmax(h->out->missed_one, set->missed_one);
+  h->out->cut_short = h->out->cut_short || set->cut_short;
 }
 
 /* The level scene with all shapes laid on the set, its start too: `placed` shares the rest. */
@@ -68,6 +69,7 @@ static strut_status search_held(strut_hunt *h, const strut_potential *potential,
   if (!extra) return no_memory(h);
   strut_critical_effort effort = {.starts = o->starts ? o->starts : h->flat.scene.search.starts,
                                   .seed = h->out->seed,
+                                  .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,
                                   .extra = extra};
   for (size_t s = 0; s < shapes; s++)

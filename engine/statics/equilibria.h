@@ -60,6 +60,7 @@ typedef struct strut_equilibria {
   int64_t starts;
   double missed;            /* the largest over the searches, as in strut_critical_set */
   double missed_one;        /* the same, its upper bound */
+  bool cut_short;           /* some search ended early, for the structure's size */
   char remark[400];         /* why there is none, or what moves freely; else empty */
   strut_arena arena;
 } strut_equilibria;

@@ -56,6 +56,7 @@ static strut_status explore(strut_hunt *h) {
   if (status) strut_fail(h->error, status, "out of memory");
   strut_critical_effort effort = {.starts = o->starts ? o->starts : h->flat.scene.search.starts,
                                   .seed = h->out->seed,
+                                  .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,
                                   .extra_count = extras,
                                   .extra = extra,

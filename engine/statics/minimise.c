@@ -14,6 +14,7 @@ struct strut_minimiser {
   const strut_potential *potential;
   const strut_curvature *curvature;
   void *room;
+  int64_t looks;
   double size;                /* of the structure [m] */
   double farthest;            /* no step may be longer [m] */
   double *g, *g_trial, *step; /* (n) */
@@ -52,6 +53,13 @@ void strut_minimiser_free(strut_minimiser *minimiser) {
   if (minimiser->room) minimiser->curvature->free(minimiser->room);
   strut_arena_free(&minimiser->arena);
   strut_release(minimiser);
+}
+
+int64_t strut_minimiser_looks(const strut_minimiser *m) { return m->looks; }
+
+static bool look(strut_minimiser *m, const double *q) {
+  m->looks++;
+  return m->curvature->look(m->room, q);
 }
 
 static double largest_of(const double *g, int32_t n) {
@@ -99,8 +107,7 @@ static void polish(strut_minimiser *m, double *q, double tolerance, double reach
   int32_t n = m->potential->n;
   double earlier = HUGE_VAL;
   for (int i = 0; i < MOST_POLISH; i++) {
-    double length =
-        m->curvature->look(m->room, q) ? m->curvature->newton(m->room, m->g, m->step) : HUGE_VAL;
+    double length = look(m, q) ? m->curvature->newton(m->room, m->g, m->step) : HUGE_VAL;
     if (!(length < 0.9 * earlier) || length > reach) break;
     move(m, q, 1.0);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
@@ -235,7 +242,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
       end.end = STRUT_DESCENT_RUNAWAY;
       return end;
     }
-    if (!m->curvature->look(m->room, q)) return end;
+    if (!look(m, q)) return end;
     if (end.residual <= allowed) {
       if ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius)) {
         energy = strut_potential_value(m->potential, q);

@@ -15,6 +15,7 @@ struct strut_climber {
   strut_spectrum_room *spectra;
   strut_spectrum now;
   double size;
+  int64_t looks;
   double *g, *part, *value, *x; /* (n) */
   double *step, *follow;        /* (n) */
   double *straight, *g_trial;   /* (n) the step before it was bent, and the gradient at its end */
@@ -49,6 +50,8 @@ void strut_climber_free(strut_climber *c) {
   strut_arena_free(&c->arena);
   strut_release(c);
 }
+
+int64_t strut_climber_looks(const strut_climber *c) { return c->looks; }
 
 static double dot(const double *a, const double *b, int32_t n) {
   double sum = 0.0;
@@ -110,6 +113,11 @@ static double assemble(strut_climber *c, double *length) {
   }
   *length = sqrt(square);
   return change;
+}
+
+static bool take_apart(strut_climber *c, const double *q, bool careful) {
+  c->looks++;
+  return strut_spectrum_compute(c->spectra, q, 0.0, careful, &c->now);
 }
 
 static void move(strut_climber *c, const double *q) {
@@ -196,7 +204,7 @@ static void polish(strut_climber *c, double *q) {
   double earlier = HUGE_VAL, length;
   for (int i = 0; i < MOST_POLISH; i++) {
     look_at(c, q);
-    if (!strut_spectrum_compute(c->spectra, q, 0.0, false, &c->now)) return;
+    if (!take_apart(c, q, false)) return;
     look(c, HUGE_VAL);
     for (int32_t k = 0; k < c->now.n; k++) c->x[k] = c->idle[k] ? 0.0 : -c->part[k] / c->value[k];
     assemble(c, &length);
@@ -239,7 +247,7 @@ bool strut_climb(strut_climber *c, int32_t index, const double *direction, doubl
       polish(c, q);
       return look_at(c, q) <= 8.0 * strut_potential_rounding(p, q) && !has_collapsed(c, q);
     }
-    if (!strut_spectrum_compute(c->spectra, q, 0.0, false, &c->now)) return false;
+    if (!take_apart(c, q, false)) return false;
     look(c, root * allowed);
     if (has_left(c, q) || !turn_over(c, index, direction != NULL) || !climb_once(c, q, &radius))
       return false;
@@ -250,7 +258,7 @@ bool strut_climb(strut_climber *c, int32_t index, const double *direction, doubl
 bool strut_climb_away(strut_climber *c, int32_t mode, double far, double *q, double *direction) {
   int32_t n = c->potential->n, left = mode;
   look_at(c, q);
-  if (!strut_spectrum_compute(c->spectra, q, 0.0, true, &c->now)) return false;
+  if (!take_apart(c, q, true)) return false;
   look(c, HUGE_VAL);
   for (int32_t i = 0; i < n; i++) {
     if (c->idle[i] || left-- > 0) continue;

@@ -142,13 +142,19 @@ static strut_descent_end descend(const strut_batch *b, worker *w, const strut_ta
                                                                        : STRUT_DESCENT_EXHAUSTED;
 }
 
+static int64_t looks_of(const worker *w) {
+  return strut_minimiser_looks(w->minimiser) + (w->climber ? strut_climber_looks(w->climber) : 0);
+}
+
 static void work(strut_batch *b, const strut_task *task, strut_task_result *result) {
   worker *w = &b->workers[this_thread()];
   bool up = task->kind >= STRUT_TASK_CLIMB_MODE && task->kind <= STRUT_TASK_CLIMB_RANDOM;
+  int64_t before = looks_of(w);
   if (up)
     result->end = climb(b, w, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
   else
     result->end = descend(b, w, task, result->q);
+  result->looks = looks_of(w) - before;
 }
 
 const strut_task_result *strut_batch_run(strut_batch *batch, const strut_task *task, size_t count) {

@@ -33,7 +33,8 @@ typedef struct strut_task {
 
 typedef struct strut_task_result {
   strut_descent_end end;
-  double *q; /* (length) where it ended */
+  double *q;     /* (length) where it ended */
+  int64_t looks; /* Hessians taken apart on the way */
 } strut_task_result;
 
 typedef struct strut_batch strut_batch;
