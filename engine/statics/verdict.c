@@ -4,13 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/statics/floppy.h"
 #include "engine/statics/hunt.h"
 #include "engine/statics/naming.h"
 
 enum { NAMES = 100 };
-
-/* Nodes that move at least this share of the one that moves most. */
-static const double MOVES = 0.1;
 
 /* A part of the structure (nodes that members connect): what acts on it, what may hold it. */
 typedef struct part {
@@ -89,23 +87,34 @@ strut_unrest strut_hunt_look_for_unrest(strut_hunt *h) {
   return worst;
 }
 
-static void flag_moving(const strut_hunt *h, const double *mode, uint8_t *flag) {
-  double most = 0.0;
-  int32_t count = h->model->node_count;
-  for (int32_t i = 0; i < count; i++) most = fmax(most, hypot(mode[2 * i], mode[2 * i + 1]));
-  for (int32_t i = 0; i < count; i++)
-    flag[i] = hypot(mode[2 * i], mode[2 * i + 1]) > MOVES * most;
+/* Does the free motion lead anywhere? Asked of the forces that it was found with. */
+static bool leads_away(const strut_hunt *h, const strut_equilibrium *e, uint8_t *held) {
+  strut_potential *potential = NULL;
+  if (!e->supports) return strut_floppy_stays(h->world, &e->point);
+  memset(held, 0, (size_t)h->model->length);
+  strut_supports_hold(&h->supports, e->supports, held);
+  bool stays = strut_potential_create(h->model, held, false, &potential, NULL) == STRUT_OK &&
+               strut_floppy_stays(potential, &e->point);
+  strut_potential_free(potential);
+  return stays;
 }
 
-static void say_floppy(strut_hunt *h, const strut_equilibrium *e, uint8_t *flag, size_t room,
+/* True if it leads away at one energy. flag: (length) */
+static bool say_floppy(strut_hunt *h, const strut_equilibrium *e, uint8_t *flag, size_t room,
                        char *text) {
   char names[NAMES];
   int32_t count = 0;
-  flag_moving(h, e->point.softest, flag);
+  bool away = leads_away(h, e, flag);
+  strut_floppy_nodes(h->model, &e->point, flag);
   for (int32_t i = 0; i < h->model->node_count; i++) count += flag[i];
   strut_list_nodes(&h->flat.scene, flag, sizeof names, names);
-  snprintf(text, room, "%s %s %s without stiffness", count == 1 ? "node" : "nodes", names,
-           count == 1 ? "moves" : "move together");
+  if (away)
+    snprintf(text, room, "%s %s %s without stiffness", count == 1 ? "node" : "nodes", names,
+             count == 1 ? "moves" : "move together");
+  else
+    snprintf(text, room, "%s %s %s no stiffness to second order", count == 1 ? "node" : "nodes",
+             names, count == 1 ? "meets" : "meet");
+  return away;
 }
 
 static void say_tips(strut_hunt *h, const strut_find *finds, const strut_find *f, uint8_t *flag,
@@ -161,10 +170,14 @@ static void remark_on(strut_hunt *h, strut_find *finds, size_t count, uint8_t *f
     if (floppy < 0 && finds[i].e.fate == STRUT_FATE_FLOPPY) floppy = (int32_t)i;
   }
   if (floppy >= 0) {
-    say_floppy(h, &finds[floppy].e, flag, room, remark);
+    bool away = say_floppy(h, &finds[floppy].e, flag, room, remark);
     size_t used = strlen(remark);
-    snprintf(remark + used, room - used, ": '%s' is one of many shapes of one energy",
-             finds[floppy].e.name);
+    if (away)
+      snprintf(remark + used, room - used, ": '%s' is one of many shapes of one energy",
+               finds[floppy].e.name);
+    else
+      snprintf(remark + used, room - used, " in '%s'; pushed further, it does not stay",
+               finds[floppy].e.name);
   } else if (count == 0) {
     snprintf(remark, room, "no equilibrium was found from any of %lld starts",
              (long long)h->out->starts);
@@ -181,7 +194,7 @@ static void remark_on(strut_hunt *h, strut_find *finds, size_t count, uint8_t *f
 }
 
 void strut_hunt_say(strut_hunt *h, strut_find *finds, size_t count) {
-  uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->node_count, 1);
+  uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, 1);
   if (!flag) return;
   for (size_t i = 0; i < count; i++) say_one(h, finds, &finds[i], flag);
   if (!h->out->remark[0]) remark_on(h, finds, count, flag);

@@ -76,4 +76,58 @@ out_has '"equilibria":	[]'
 out_has '"remark":	"nothing holds the structure'
 expect 1 equilibria bar.yaml --supports a,b
 err_has "supports"
+# Cables that lie straight along their struts at rest: nodes off the line stretch them, if by little.
+cat >hexagon.yaml <<'YAML'
+strut: 1
+groups:
+  cable: {kind: cable, stiffness: 1 N/m, rest_length: 0.9 m}
+  strut: {kind: bar, stiffness: 10 N/m, rest_length: 1.8 m}
+  j: {mass: 1 kg}
+nodes:
+  n1: {position: [1, 0], group: j}
+  n2: {position: [cos(60 deg), sin(60 deg)], group: j}
+  n3: {position: [cos(120 deg), sin(120 deg)], group: j}
+  n4: {position: [-1, 0], group: j}
+  n5: {position: [cos(240 deg), sin(240 deg)], group: j}
+  n6: {position: [cos(300 deg), sin(300 deg)], group: j}
+members:
+  c12: {group: cable, nodes: [n1, n2]}
+  c23: {group: cable, nodes: [n2, n3]}
+  c34: {group: cable, nodes: [n3, n4]}
+  c45: {group: cable, nodes: [n4, n5]}
+  c56: {group: cable, nodes: [n5, n6]}
+  c61: {group: cable, nodes: [n6, n1]}
+  s13: {group: strut, nodes: [n1, n3]}
+  s35: {group: strut, nodes: [n3, n5]}
+  s51: {group: strut, nodes: [n5, n1]}
+YAML
+expect 0 equilibria hexagon.yaml
+out_has "nodes n2, n4 and n6 meet no stiffness to second order"
+out_has_not "one of many shapes"
+
+# Large ones end soon, and say so.
+{
+  printf 'strut: 1\ngravity: [0, -9.8 m/s^2]\ngroups:\n  bar: {kind: bar, stiffness: 1e6 N/m}\n'
+  printf '  cable: {kind: cable, stiffness: 1e4 N/m, rest_length_ratio: 95 %%}\n'
+  printf 'nodes:\n'
+  for k in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do
+    fix=", mass: 0.1 kg"
+    [ $k = 0 ] && fix=", fixed: both"
+    printf '  a%s: {position: [0, 0.5*%s]%s}\n  b%s: {position: [0.6, 0.5*%s]%s}\n' \
+      $k $k "$fix" $k $k "$fix"
+  done
+  printf 'members:\n'
+  for k in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
+    n=$((k + 1))
+    printf '  x%s: {group: bar, nodes: [a%s, b%s]}\n  y%s: {group: bar, nodes: [b%s, a%s]}\n' \
+      $k $k $n $k $k $n
+    printf '  l%s: {group: cable, nodes: [a%s, a%s]}\n  r%s: {group: cable, nodes: [b%s, b%s]}\n' \
+      $k $k $n $k $k $n
+    printf '  t%s: {group: cable, nodes: [a%s, b%s]}\n' $k $n $n
+  done
+} >tower.yaml
+expect 0 equilibria tower.yaml
+out_has "cut short"
+expect 0 equilibria "$crawler" --starts 20
+out_has_not "cut short"
 done_testing
