@@ -19,7 +19,8 @@ typedef struct whole {
 
 static double speed(const double *q, const double *mode, const whole *w, int32_t i) {
   double dx = q[2 * i] - q[2 * w->about], dy = q[2 * i + 1] - q[2 * w->about + 1];
-  return hypot(mode[2 * i] - w->shift[0] + w->turn * dy, mode[2 * i + 1] - w->shift[1] - w->turn * dx);
+  return hypot(mode[2 * i] - w->shift[0] + w->turn * dy,
+               mode[2 * i + 1] - w->shift[1] - w->turn * dx);
 }
 
 /* Flags the nodes that move besides w; their count. */

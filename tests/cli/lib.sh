@@ -35,6 +35,7 @@ expect() {
 }
 
 out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }
+out_has_not() { ! grep -qF -- "$1" "$work/out" || fail "stdout has '$1'"; }
 err_has() { grep -qF -- "$1" "$work/err" || fail "stderr lacks '$1'"; }
 out_empty() { [ ! -s "$work/out" ] || fail "stdout is not empty"; }
 err_empty() { [ ! -s "$work/err" ] || fail "stderr is not empty"; }
