@@ -149,7 +149,8 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
                    scene->name, *scene->name ? ": " : "", all->count, all->starts, all->seed);
   if (all->count)
     strut_buffer_add(&table,
-                     "  chance that one more start finds a new stable one: %.2g, at most %.2g\n",
+                     "  chance that one more start finds a new stable one: about %.2g; a stable one "
+                     "never met\n  would have less than %.2g of the starts (95 %%)\n",
                      all->missed, all->missed_one);
   if (all->cut_short)
     strut_buffer_add(&table,
