@@ -44,6 +44,7 @@ static void compile_nodes(strut_model *model, bool *failed) {
     }
   }
   model->size = fmax(high[0] - low[0], high[1] - low[1]);
+  if (!(model->size > 0)) model->size = 1.0;
   model->start = start, model->velocity = velocity;
   model->point_mass = mass, model->fixed = fixed;
 }

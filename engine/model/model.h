@@ -83,7 +83,7 @@ typedef struct strut_model {
   const strut_scene *scene;
   unsigned plan; /* strut_term bits */
   int32_t node_count, length;
-  double size;             /* largest extent of the drawn shape [m]: the scale for "beyond" */
+  double size;             /* largest extent as drawn, or 1 [m]: the scale for "beyond" */
   const double *start;     /* (length) positions at t = 0 */
   const double *velocity;  /* (length) velocities at t = 0 */
   const double *constant_force; /* (length) gravity and constant loads; NULL when all zero */

@@ -15,7 +15,10 @@ static const double STABLE = 0.02;    /* of the size: what an equilibrium may mo
 static const double NEARLY = 1e3;     /* of the rounding in forces: what a descent may leave */
 static const double STEP_SHARE = 0.7; /* of the largest stable step */
 static const double HOLD = 10.0;      /* duration of an added run [s] */
-static const double IDLE_STEP = 1e-3; /* step where nothing limits it [s] */
+static const double MEET = 1e-9;      /* nodes this near are in one place [largest extent] */
+static const double LARGEST_SIZE = 1e100; /* [m]: sums of squares of it are numbers */
+static const double LEAST_STEP = 1e-300;  /* [s] */
+static const double IDLE_STEP = 1e-3;     /* step where nothing limits it [s] */
 
 const char *strut_form_source_name(strut_form_source source) {
   static const char *const names[] = {"scene", "densities", "lengths", "prestress"};
@@ -32,6 +35,12 @@ bool strut_form_touches(const strut_former *f, int32_t contact) {
   return strut_form_depth(f, contact) >= -TOUCH * f->size;
 }
 
+static strut_status out_of_range(strut_error *error) {
+  return strut_fail(error, STRUT_DIVERGED,
+                    "energies and forces leave the range of numbers; check the units of sizes, "
+                    "stiffnesses and loads");
+}
+
 strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut_error *error) {
   strut_member *m = &f->scene->members[j];
   const double *a = f->scene->nodes[m->node[0]].start;
@@ -40,6 +49,7 @@ strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut
   double rest = m->axial_stiffness > 0 ? m->axial_stiffness * length / (m->axial_stiffness + force)
                 : m->stiffness > 0     ? length - force / m->stiffness
                                        : length;
+  if (!isfinite(force) || !isfinite(length)) return out_of_range(error);
   bool carries = m->axial_stiffness > 0 || m->stiffness > 0 || force == 0;
   if (!carries || !isfinite(rest) || rest < 0)
     return strut_fail(error, STRUT_NOT_SETTLED,
@@ -84,6 +94,24 @@ static void quieten(strut_scene *scene) {
     scene->nodes[i].velocity[0] = scene->nodes[i].velocity[1] = 0.0;
   scene->settle.wanted = false;
   scene->start_equilibrium = -1;
+}
+
+/* A shape may have put a member's ends in one place, where it has no direction and no strain. */
+static strut_status check_lengths(const strut_former *f, strut_error *error) {
+  const strut_scene *scene = f->scene;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
+    strut_rest rest;
+    bool apart = hypot(b->start[0] - a->start[0], b->start[1] - a->start[1]) > MEET * f->size;
+    if (strut_member_rest(scene, j, &rest) && (apart || f->form->from != STRUT_FORM_DENSITIES))
+      continue;
+    return strut_fail(error, STRUT_NOT_SETTLED,
+                      "in this form nodes '%s' and '%s', the ends of '%s', lie in one place; "
+                      "other densities or supports keep them apart",
+                      a->name, b->name, m->name);
+  }
+  return STRUT_OK;
 }
 
 /* Rest lengths as lengths: said in other ways they would change with the drawn shape. */
@@ -146,6 +174,9 @@ static double farthest(const strut_scene *scene, const double *q, size_t *node) 
 static strut_status judge(const strut_former *f, const strut_descent *d, const double *q,
                           strut_error *error) {
   size_t node = 0;
+  bool finite = isfinite(d->residual);
+  for (size_t i = 0; i < 2 * f->scene->node_count; i++) finite = finite && isfinite(q[i]);
+  if (!finite) return out_of_range(error);
   double moved = farthest(f->scene, q, &node);
   const char *name = f->scene->nodes[node].name;
   if (d->end == STRUT_DESCENT_RUNAWAY)
@@ -211,9 +242,13 @@ static strut_status add_run(strut_former *f, strut_error *error) {
   f->form->massless = status == STRUT_OK && !model->mass;
   if (status == STRUT_OK && model->mass) {
     status = strut_step_limit_estimate(model, &limit, error);
-    double step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;
+    if (status == STRUT_OK && !(limit.limit > LEAST_STEP))
+      status = strut_fail(error, STRUT_BAD_SCENE,
+                          "stiffnesses are so large beside the masses that no step can be given; "
+                          "check their units");
     f->form->run_added = e->step == 0 || (e->duration == 0 && e->periods == 0);
-    if (status == STRUT_OK && (e->step == 0 || e->step > limit.limit)) e->step = step;
+    if (status == STRUT_OK && (e->step == 0 || e->step > limit.limit))
+      e->step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;
     if (e->duration == 0 && e->periods == 0) e->duration = HOLD;
   }
   strut_model_free(model);
@@ -228,7 +263,8 @@ static strut_status find(strut_former *f, strut_error *error) {
   if (status != STRUT_OK) return status;
   fix_lengths(scene);
   quieten(scene);
-  status = polish(f, error);
+  status = check_lengths(f, error);
+  if (status == STRUT_OK) status = polish(f, error);
   return status == STRUT_OK ? add_run(f, error) : status;
 }
 
@@ -266,8 +302,13 @@ strut_status strut_form_find(strut_scene *scene, const strut_form_options *optio
       drawn[i] = scene->nodes[i / 2].position[i % 2];
     f.model = model, f.potential = potential;
     f.size = model->size > 0 ? model->size : 1.0;
+    if (f.size > LARGEST_SIZE)
+      status = strut_fail(error, STRUT_BAD_SCENE,
+                          "the drawn shape is %.3g m large, too large to compute with; check its "
+                          "units",
+                          f.size);
     form->driven = scene->actuator_count > 0 || model->loads.count > 0;
-    status = find(&f, error);
+    if (status == STRUT_OK) status = find(&f, error);
   }
   if (status == STRUT_OK) {
     form->moved = moved_from(drawn, scene);

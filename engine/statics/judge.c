@@ -9,6 +9,8 @@
 #include "engine/statics/rigid_motions.h"
 #include "engine/statics/spectrum.h"
 
+static const double LARGEST = 1e150; /* entry of a stiffness matrix */
+
 const char *strut_stability_name(strut_stability stability) {
   static const char *const names[] = {"stable", "floppy", "saddle", "maximum"};
   return names[stability];
@@ -74,6 +76,13 @@ static double largest_diagonal(const strut_sparse *h) {
   return largest;
 }
 
+/* Whether products of two entries, as factors and eigenvalues form them, are numbers. */
+static bool is_finite(const strut_sparse *h) {
+  for (int32_t k = 0; k < h->start[h->n]; k++)
+    if (!(fabs(h->value[k]) < LARGEST)) return false;
+  return true;
+}
+
 static bool judge(strut_judgement *j, const double *q, strut_arena *arena,
                   strut_critical_point *point) {
   const strut_potential *p = j->potential;
@@ -112,6 +121,11 @@ strut_status strut_critical_judge(const strut_potential *potential, const double
     memcpy(point->q, q, length * sizeof *q);
     good = judge(&j, q, arena, point);
   }
+  bool finite = good || !j.hessian || is_finite(j.hessian);
   strut_arena_free(&scratch);
+  if (!finite)
+    return strut_fail(error, STRUT_DIVERGED,
+                      "the structure moves to where energies and stiffnesses leave the range of "
+                      "numbers; check the units of sizes, stiffnesses and loads");
   return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }

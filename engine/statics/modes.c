@@ -8,7 +8,8 @@
 #include "engine/statics/modes_parts.h"
 
 static const double TURN = 6.283185307179586476925;
-static const double ENOUGH = 1e-8; /* relative error of an eigenvalue that is worth printing */
+static const double ENOUGH = 1e-8;   /* relative error of an eigenvalue that is worth printing */
+static const double LARGEST = 1e150; /* eigenvalue; products of two of them are numbers */
 
 const char *strut_mode_kind_name(strut_mode_kind kind) {
   static const char *const names[] = {"rigid-body", "mechanism", "elastic", "unstable"};
@@ -35,6 +36,10 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
                           ? "no node is free to move, so that there are no modes"
                           : "no free node has mass, so that there are no modes: give nodes or "
                             "members a mass");
+  if (!isfinite(v->largest) || v->largest > LARGEST)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "stiffnesses are so large beside the masses that frequencies cannot be "
+                      "computed; check their units");
   if (v->massive == v->n) return STRUT_OK;
   strut_modes_factorise(&work->solver, 1e-20 * v->largest);
   int32_t weakest = work->solver.weakest;
@@ -159,14 +164,15 @@ static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind
   const strut_vibration *v = work->v;
   const double *x = set->vector + (size_t)i * (size_t)v->n;
   double value = set->value[i], largest = 0.0;
+  double beside = value != 0 ? fabs(value) : v->largest > 0 ? v->largest : 1.0;
   mode->shape = strut_arena_allocate(work->arena, (size_t)v->model->length, sizeof(double));
   if (!mode->shape) return STRUT_NO_MEMORY;
   mode->kind = kind;
   mode->eigenvalue = value;
   mode->angular_frequency = value > 0 ? sqrt(value) : 0.0;
   mode->damping_ratio = value > 0 ? 0.0 : (double)NAN;
-  mode->residual = value != 0 ? set->residual[i] : set->error[i] / v->largest;
-  mode->error = (set->error[i] + set->noise[i]) / (value != 0 ? fabs(value) : v->largest);
+  mode->residual = value != 0 ? set->residual[i] : set->error[i] / beside;
+  mode->error = (set->error[i] + set->noise[i]) / beside;
   if (value != 0) mode->error = fmax(mode->error, DBL_EPSILON); /* it is handed out as a double */
   for (int32_t k = 0; k < v->n; k++)
     if (fabs(x[k]) > fabs(largest) * (1 + 1e-9)) largest = x[k];

@@ -12,6 +12,8 @@
 
 /* Simulated steps between two looks at the energy; the pause grows while nothing is decided. */
 static const int64_t FIRST_LOOK = 128, LAST_LOOK = 8192;
+/* Steps after which it counts as moving on, however short they are beside initial.settle.limit. */
+static const int64_t MOST_STEPS = 10000000;
 /* Quenches in a row that end in one place, and the share of the first excess energy still there. */
 enum { AGREE = 5 };
 static const double DIED = 1e-3;
@@ -163,7 +165,8 @@ static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, con
   memset(r->state->v, 0, bytes);
   double first = total_energy(r), look = (double)FIRST_LOOK;
   if (decided(r, first, r->state->q, passes, context, &v)) return DECIDED;
-  while ((double)r->state->step * step < r->model->scene->settle.limit) {
+  while (r->state->step < MOST_STEPS &&
+         (double)r->state->step * step < r->model->scene->settle.limit) {
     if (interrupt && *interrupt) return STOPPED;
     r->method->advance(r->model, r->state, r->workspace, step, (int64_t)look);
     double energy = total_energy(r);
@@ -197,7 +200,7 @@ static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed
 /* Downhill from where it is, with the centre of mass brought to x. */
 static void come_down(strut_relaxer *r, double x, double *q, strut_relaxed *relaxed) {
   strut_descent descent = strut_relaxer_quench(r, q);
-  relaxed->end = descent.end == STRUT_DESCENT_REACHED ? STRUT_RELAXED_RESTS
+  relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS
                  : descent.end == STRUT_DESCENT_RUNAWAY ? STRUT_RELAXED_LEAVES
                                                         : STRUT_RELAXED_MOVES;
   restore_centre(r->model, x, q);

@@ -21,7 +21,7 @@ typedef double (*strut_pass_of)(const void *context, const double *q);
 typedef enum strut_relaxed_end {
   STRUT_RELAXED_RESTS,
   STRUT_RELAXED_LEAVES, /* moves off without end: falls, slides, is lifted */
-  STRUT_RELAXED_MOVES   /* still moves after the scene's initial.settle.limit */
+  STRUT_RELAXED_MOVES   /* still moves after the scene's initial.settle.limit, or 1e7 steps */
 } strut_relaxed_end;
 
 typedef struct strut_relaxed {

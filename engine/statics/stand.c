@@ -90,6 +90,17 @@ static void clean_up(strut_hunt *h) {
   strut_arena_free(&h->out->arena);
 }
 
+/* The node that moved most from one shape to the other. */
+static const char *farthest(const strut_hunt *h, const double *from, const double *to) {
+  int32_t node = 0;
+  double most = -1.0;
+  for (int32_t i = 0; i < h->model->node_count; i++) {
+    double moved = hypot(to[2 * i] - from[2 * i], to[2 * i + 1] - from[2 * i + 1]);
+    if (moved > most) most = moved, node = i;
+  }
+  return h->flat.scene.nodes[node].name;
+}
+
 /* q (level coordinates) goes where the structure comes to rest from it. */
 static strut_status relax(strut_hunt *h, const char *what, double *q) {
   size_t bytes = (size_t)h->model->length * sizeof *q;
@@ -97,8 +108,10 @@ static strut_status relax(strut_hunt *h, const char *what, double *q) {
   strut_status status = STRUT_OK;
   if (h->world->n == 0) return STRUT_OK;
   double *near = strut_arena_allocate(&h->out->arena, 1, bytes);
-  if (!near) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  double *from = strut_arena_allocate(&h->out->arena, 1, bytes);
+  if (!near || !from) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
   memcpy(near, q, bytes);
+  memcpy(from, q, bytes);
   strut_relax_down(h->relaxer, near, &relaxed);
   bool close = relaxed.end == STRUT_RELAXED_RESTS &&
                strut_shape_distance(h->model, q, near, false, NULL) < NEAR * h->model->size;
@@ -109,10 +122,12 @@ static strut_status relax(strut_hunt *h, const char *what, double *q) {
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
   return strut_fail(h->error, STRUT_NOT_SETTLED,
                     relaxed.end == STRUT_RELAXED_LEAVES
-                        ? "from %s the structure moves off without end: nothing holds it there"
+                        ? "from %s the structure moves off without end, %s farthest: nothing "
+                          "holds it there"
                         : "from %s the structure does not come to rest within "
-                          "initial.settle.limit; give a larger one",
-                    what);
+                          "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
+                          "larger limit, or more damping",
+                    what, farthest(h, from, q));
 }
 
 static strut_status from_start(strut_hunt *h, double *q) {
@@ -121,8 +136,8 @@ static strut_status from_start(strut_hunt *h, double *q) {
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
-static bool fits(strut_hunt *h, const strut_configuration *c, const double *shape,
-                 const double *q, strut_node_set *rests_on) {
+static bool fits(strut_hunt *h, const strut_configuration *c, const double *shape, const double *q,
+                 strut_node_set *rests_on) {
   strut_equilibrium e = {0};
   if (strut_hunt_contacts(h, q, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
@@ -134,8 +149,8 @@ static bool fits(strut_hunt *h, const strut_configuration *c, const double *shap
 }
 
 /* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
-static strut_status from_shape(strut_hunt *h, const strut_configuration *c, double *q,
-                               bool *found, strut_node_set *rests_on) {
+static strut_status from_shape(strut_hunt *h, const strut_configuration *c, double *q, bool *found,
+                               strut_node_set *rests_on) {
   size_t nodes = h->flat.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
   if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
@@ -171,8 +186,8 @@ static strut_status by_search(const strut_model *model, const strut_configuratio
   bool found = false;
   strut_status status = STRUT_OK;
   for (size_t k = 0; k < c->set_count && !status && !found; k++)
-    status = take_named(model, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q, &found,
-                        error);
+    status =
+        take_named(model, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q, &found, error);
   if (!status && !found && c->set_count == 0)
     status = take_named(model, NULL, c->name, q, &found, error);
   if (status || found) return status;
@@ -262,8 +277,7 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
     turned = false;
     status = by_search(model, c, q, &rests_on, error);
   }
-  if (!status && turned)
-    strut_flat_to_original(&h.flat, (size_t)model->node_count, q);
+  if (!status && turned) strut_flat_to_original(&h.flat, (size_t)model->node_count, q);
   clean_up(&h);
   return status;
 }

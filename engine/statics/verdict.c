@@ -50,10 +50,20 @@ static strut_unrest unrest_of(const strut_hunt *h, const part *p) {
   return along ? STRUT_UNREST_SLIDES : STRUT_UNREST_NONE;
 }
 
-static void say_unrest(strut_hunt *h, strut_unrest unrest, const uint8_t *flag) {
-  char names[NAMES] = "all nodes", *remark = h->out->remark;
+/* What friction would have to do: the force along the ground against the one that presses on it. */
+static void say_friction(const part *p, size_t room, char *text) {
+  if (p->force[1] < 0)
+    snprintf(text, room, "with it, a coefficient of at least %.4g holds it",
+             fabs(p->force[0] / p->force[1]));
+  else
+    snprintf(text, room, "with it too, as nothing presses it down");
+}
+
+static void say_unrest(strut_hunt *h, strut_unrest unrest, const part *p, const uint8_t *flag) {
+  char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t count = 0;
+  say_friction(p, sizeof friction, friction);
   for (int32_t i = 0; i < h->model->node_count; i++) count += flag[i];
   bool all = count == h->model->node_count;
   if (!all) strut_list_nodes(&h->flat.scene, flag, sizeof names, names);
@@ -64,9 +74,8 @@ static void say_unrest(strut_hunt *h, strut_unrest unrest, const uint8_t *flag) 
     snprintf(remark, room, "loads lift %s off the ground, %s", what, names);
   else
     snprintf(remark, room,
-             "nothing but friction holds %s along the ground, %s: without friction it slides; "
-             "with it, a coefficient of at least %.4g holds it",
-             what, names, fabs(h->flat.sine / h->flat.cosine));
+             "nothing but friction holds %s along the ground, %s: without friction it slides; %s",
+             what, names, friction);
 }
 
 strut_unrest strut_hunt_look_for_unrest(strut_hunt *h) {
@@ -81,7 +90,7 @@ strut_unrest strut_hunt_look_for_unrest(strut_hunt *h) {
     for (int32_t i = 0; i < nodes && worst == STRUT_UNREST_NONE; i++)
       if (parent[i] == i && (worst = unrest_of(h, &parts[i])) != STRUT_UNREST_NONE) moves = i;
     for (int32_t i = 0; i < nodes; i++) flag[i] = parent[i] == moves;
-    if (moves >= 0) say_unrest(h, worst, flag);
+    if (moves >= 0) say_unrest(h, worst, &parts[moves], flag);
   }
   strut_arena_free(&scratch);
   return worst;

@@ -97,8 +97,10 @@ static void bound_spectrum(strut_vibration *v) {
       if (a->row[at] != j) sum[a->row[at]] += fabs(v->k[at].hi);
     }
   v->largest = 0.0;
-  for (int32_t i = 0; i < v->n; i++)
-    if (v->mass[i] > 0) v->largest = fmax(v->largest, 2.0 * sum[i] / v->m[a->start[i]]);
+  for (int32_t i = 0; i < v->n; i++) {
+    double bound = v->mass[i] > 0 ? 2.0 * sum[i] / v->m[a->start[i]] : 0.0;
+    if (!(bound <= v->largest)) v->largest = bound; /* what is no number shows */
+  }
 }
 
 void strut_vibration_update(strut_vibration *v) {

@@ -207,6 +207,39 @@ static void test_a_mechanism(void **unused) {
   done(&f);
 }
 
+/* What friction would have to hold is a matter of all forces, not of the slope alone. */
+static void test_a_push_along_the_ground(void **unused) {
+  (void)unused;
+  found f;
+  triangle(&f.scene, 0.4);
+  double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
+  build_load(&f.scene, 2, 2.5 * weight, 0, -1);
+  search(&f);
+  assert_int_equal(count(&f, STRUT_FATE_STANDS), 0);
+  assert_says(f.all.remark, "a coefficient of at least 2.5 holds it");
+  done(&f);
+}
+
+/* One node has no extent to measure distances by; it rests all the same. */
+static void test_one_node(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_arena arena = {0};
+  strut_stand stand;
+  strut_error error = {0};
+  strut_scene_init(&scene);
+  build_node(&scene, 0, 0);
+  scene.nodes[0].mass = 1;
+  build_contact(&scene, 0, 1e5, 10);
+  scene.gravity[1] = -G;
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_stand_find(model, "start", &arena, &stand, &error), STRUT_OK);
+  assert_near(stand.q[1], -G / 1e5, 1e-15);
+  strut_arena_free(&arena);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
 /* A slope is level ground with gravity turned: the same solutions, but nothing rests. */
 static void test_a_slope(void **unused) {
   (void)unused;
@@ -380,6 +413,8 @@ int main(void) {
       cmocka_unit_test(test_what_falls),
       cmocka_unit_test(test_a_part_that_falls),
       cmocka_unit_test(test_a_mechanism),
+      cmocka_unit_test(test_a_push_along_the_ground),
+      cmocka_unit_test(test_one_node),
       cmocka_unit_test(test_a_slope),
       cmocka_unit_test(test_supports_must_touch),
       cmocka_unit_test(test_stands),
