@@ -21,13 +21,17 @@ breaches() {
     BEGIN {
       floor["engine/base"] = 1; floor["engine/scene"] = 2; floor["engine/model"] = 3
       floor["engine/forces"] = 4; floor["engine/integrate"] = 5; floor["engine/run"] = 6
-      floor["engine/statics"] = 7; floor["engine/output"] = 8; floor["engine/study"] = 9
+      floor["engine/statics"] = 7; floor["engine/statics/search"] = 7.1
+      floor["engine/statics/equilibria"] = 7.2; floor["engine/statics/modes"] = 7.3
+      floor["engine/statics/rigidity"] = 7.3; floor["engine/statics/form"] = 7.3
+      floor["engine/statics/path"] = 7.3
+      floor["engine/output"] = 8; floor["engine/study"] = 9
       # Foreign libraries live in one folder each; those of linear algebra even in one room.
       home["yaml.h"] = "parser"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
       home["cJSON.h"] = home["cjson/cJSON.h"] = "engine/output"
       room_of["cholmod.h"] = "engine/model/linear_solver"
-      room_of["SuiteSparseQR_C.h"] = "engine/statics/sparse_qr"
-      room_of["arpack.h"] = room_of["arpack/arpack.h"] = "engine/statics/lanczos"
+      room_of["SuiteSparseQR_C.h"] = "engine/statics/rigidity/sparse_qr"
+      room_of["arpack.h"] = room_of["arpack/arpack.h"] = "engine/statics/modes/lanczos"
       room_of["glpk.h"] = "engine/statics/linear_program"
     }
     {
@@ -71,7 +75,8 @@ expect() {
   rm -rf "$scratch/tree"
   mkdir -p "$scratch/tree"
   for header in engine/base/a.h engine/scene/a.h engine/model/a.h engine/forces/a.h \
-    engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/output/a.h engine/study/a.h \
+    engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/statics/search/a.h \
+    engine/statics/modes/a.h engine/output/a.h engine/study/a.h \
     engine/odd/a.h parser/a.h parser/cli/a.h tests/a.h "$2"; do
     mkdir -p "$scratch/tree/${header%/*}"
     : >"$scratch/tree/$header"
@@ -100,6 +105,9 @@ expect 1 engine/forces/b.c '#include "engine/run/a.h" // why'
 expect 1 engine/run/b.c '#include "engine/output/a.h"'
 expect 1 engine/statics/b.c '#include "engine/output/a.h"'
 expect 0 engine/output/b.c '#include "engine/statics/a.h"'
+expect 0 engine/statics/modes/b.c '#include "engine/statics/search/a.h"'
+expect 1 engine/statics/search/b.c '#include "engine/statics/modes/a.h"'
+expect 1 engine/statics/form/b.c '#include "engine/statics/modes/a.h"'
 expect 1 engine/run/b.c '#include "parser/a.h"'
 expect 1 parser/b.c '#include "engine/model/a.h"'
 expect 1 parser/b.c '#include "parser/cli/a.h"'

@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_EQUILIBRIA_REPORT_H
 #define STRUT_ENGINE_OUTPUT_EQUILIBRIA_REPORT_H
 
-#include "engine/statics/equilibria.h"
+#include "engine/statics/equilibria/equilibria.h"
 
 STRUT_API char *strut_equilibria_json(const strut_equilibria *equilibria, const strut_model *model);
 STRUT_API char *strut_equilibria_table(const strut_equilibria *equilibria,

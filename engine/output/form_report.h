@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_FORM_REPORT_H
 #define STRUT_ENGINE_OUTPUT_FORM_REPORT_H
 
-#include "engine/statics/form.h"
+#include "engine/statics/form/form.h"
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. The scene is the one found. */
 STRUT_API char *strut_form_json(const strut_form *form, const strut_scene *scene);

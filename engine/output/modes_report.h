@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_MODES_REPORT_H
 #define STRUT_ENGINE_OUTPUT_MODES_REPORT_H
 
-#include "engine/statics/modes.h"
+#include "engine/statics/modes/modes.h"
 
 /** Blocks of strut_allocate, or NULL when memory is out. */
 STRUT_API char *strut_modes_json(const strut_model *model, const strut_modes *modes);

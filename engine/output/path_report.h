@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_PATH_REPORT_H
 #define STRUT_ENGINE_OUTPUT_PATH_REPORT_H
 
-#include "engine/statics/path.h"
+#include "engine/statics/path/path.h"
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. */
 STRUT_API char *strut_path_json(const strut_path *path, const strut_scene *scene);

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_RIGIDITY_REPORT_H
 #define STRUT_ENGINE_OUTPUT_RIGIDITY_REPORT_H
 
-#include "engine/statics/rigidity.h"
+#include "engine/statics/rigidity/rigidity.h"
 
 /** Both in a block of strut_allocate, or NULL: out of memory. `at` is the name of the shape. */
 STRUT_API char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *model,

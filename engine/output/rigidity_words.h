@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_RIGIDITY_WORDS_H
 #define STRUT_ENGINE_OUTPUT_RIGIDITY_WORDS_H
 
-#include "engine/statics/rigidity.h"
+#include "engine/statics/rigidity/rigidity.h"
 
 enum { STRUT_RIGIDITY_WORDS = 240 };
 

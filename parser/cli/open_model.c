@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/statics/stand.h"
+#include "engine/statics/equilibria/stand.h"
 #include "parser/cli/streams.h"
 #include "parser/read_scene.h"
 

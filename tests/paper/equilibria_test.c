@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/equilibria.h"
-#include "engine/statics/stand.h"
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/equilibria/stand.h"
 #include "tests/models/run_model.h"
 #include "tests/paper/reference_crawler.h"
 #include "tests/paper/reference_statics.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/form.h"
+#include "engine/statics/form/form.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/modes.h"
+#include "engine/statics/modes/modes.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

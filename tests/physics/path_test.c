@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/statics/minimise.h"
-#include "engine/statics/path.h"
+#include "engine/statics/path/path.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

@@ -5,7 +5,7 @@
 #ifndef STRUT_TESTS_PHYSICS_TRUSS_H
 #define STRUT_TESTS_PHYSICS_TRUSS_H
 
-#include "engine/statics/rigidity.h"
+#include "engine/statics/rigidity/rigidity.h"
 
 /** Nodes at the positions, all free. */
 void truss_nodes(strut_scene *scene, const double (*position)[2], size_t count);

@@ -5,7 +5,7 @@
 #ifndef STRUT_TESTS_UNIT_CRITICAL_SUPPORT_H
 #define STRUT_TESTS_UNIT_CRITICAL_SUPPORT_H
 
-#include "engine/statics/critical.h"
+#include "engine/statics/search/critical.h"
 
 /** A scene (fill it first), and what a search of it gives. */
 typedef struct fixture {

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/equilibria/equilibria.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/statics/equilibria/barriers.h"
+#include "engine/statics/equilibria/hunt.h"
+#include "engine/statics/equilibria/naming.h"
+
+static strut_status no_memory(strut_hunt *h) {
+  return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+}
+
+/* The largest doubt counts. */
+static void count_starts(strut_hunt *h, const strut_critical_set *set) {
+  h->out->starts += set->starts;
+  h->out->missed = fmax(h->out->missed, set->missed);
+  h->out->missed_one = fmax(h->out->missed_one, set->missed_one);
+  h->out->cut_short = h->out->cut_short || set->cut_short;
+}
+
+/* The level scene with all shapes laid on the set, its start too: `placed` shares the rest. */
+static double *place_shapes(const strut_hunt *h, const strut_node_set *set, strut_scene *placed,
+                            size_t length, strut_arena *arena) {
+  const strut_scene *flat = &h->flat.scene;
+  size_t nodes = flat->node_count, shapes = flat->configuration_count;
+  *placed = *flat;
+  placed->nodes = strut_arena_allocate(arena, nodes, sizeof *placed->nodes);
+  double *shape = strut_arena_allocate(arena, (shapes + 1) * length, sizeof *shape);
+  double(*start)[2] = strut_arena_allocate(arena, nodes, sizeof *start);
+  if (!placed->nodes || !shape || !start) return NULL;
+  memcpy(placed->nodes, flat->nodes, nodes * sizeof *placed->nodes);
+  for (size_t s = 0; s <= shapes; s++) {
+    for (size_t i = 0; i < nodes; i++) {
+      bool drawn = s == shapes || !flat->configurations[s].shaped;
+      memcpy(start[i], drawn ? flat->nodes[i].position : flat->configurations[s].position[i],
+             sizeof *start);
+    }
+    strut_supports_place(&h->supports, flat, set, start);
+    memcpy(shape + s * length, start, nodes * sizeof *start);
+  }
+  for (size_t i = 0; i < nodes; i++) memcpy(placed->nodes[i].start, start[i], sizeof *start);
+  return shape;
+}
+
+static strut_status add_points(strut_hunt *h, const strut_critical_set *set,
+                               const strut_potential *potential, const uint8_t *held,
+                               const strut_node_set *supports, int32_t group) {
+  for (size_t i = 0; i < set->count; i++) {
+    int32_t at = strut_hunt_add(h);
+    if (at < 0) return no_memory(h);
+    h->finds[at].group = group;
+    h->finds[at].number = (int32_t)i;
+    strut_status status =
+        strut_hunt_fill(h, &h->finds[at], potential, held, supports, &set->points[i]);
+    if (status) return status;
+  }
+  return STRUT_OK;
+}
+
+static strut_status search_held(strut_hunt *h, const strut_potential *potential,
+                                const uint8_t *held, const double *shape,
+                                const strut_node_set *set, int32_t group, strut_arena *arena) {
+  const strut_equilibria_options *o = h->options;
+  size_t shapes = h->flat.scene.configuration_count, length = (size_t)h->model->length;
+  const double **extra = strut_arena_allocate(arena, shapes + 1, sizeof *extra);
+  if (!extra) return no_memory(h);
+  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->flat.scene.search.starts,
+                                  .seed = h->out->seed,
+                                  .searches = (int32_t)h->supports.count + 1,
+                                  .saddles = !o->standing_only,
+                                  .extra = extra};
+  for (size_t s = 0; s < shapes; s++)
+    if (h->flat.scene.configurations[s].shaped) extra[effort.extra_count++] = shape + s * length;
+  strut_critical_set found = {0};
+  strut_status status = strut_critical_search(potential, &effort, &found, h->error);
+  if (!status) count_starts(h, &found);
+  if (!status) status = add_points(h, &found, potential, held, set, group);
+  strut_critical_free(&found);
+  return status;
+}
+
+/* All solutions of (12) on one set of supports. */
+static strut_status search_on(strut_hunt *h, int32_t group) {
+  const strut_node_set *set = &h->supports.sets[group];
+  strut_arena scratch = {0};
+  strut_scene placed;
+  strut_model *model = NULL;
+  strut_potential *potential = NULL;
+  size_t length = (size_t)h->model->length;
+  double *shape = place_shapes(h, set, &placed, length, &scratch);
+  uint8_t *held = strut_arena_allocate(&scratch, length, 1);
+  strut_status status = shape && held ? strut_model_compile(&placed, &model, h->error)
+                                      : no_memory(h);
+  if (!status) {
+    strut_supports_hold(&h->supports, set, held);
+    status = strut_potential_create(model, held, false, &potential, h->error);
+  }
+  if (!status && potential->n == 0)
+    status = strut_fail(h->error, STRUT_USAGE,
+                        "with the supports held that were asked for nothing can move; hold fewer "
+                        "nodes");
+  if (!status) status = search_held(h, potential, held, shape, set, group, &scratch);
+  strut_potential_free(potential);
+  strut_model_free(model);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+static strut_status search_all_sets(strut_hunt *h) {
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < h->supports.count && !status; i++) {
+    const volatile sig_atomic_t *interrupt = h->options->interrupt;
+    status = interrupt && *interrupt
+                 ? strut_fail(h->error, STRUT_INTERRUPTED, "interrupted while searching")
+                 : search_on(h, (int32_t)i);
+  }
+  return status;
+}
+
+/* True where a support solution stands for that minimum of the real ground. */
+static bool stood_for(const strut_hunt *h, int32_t state) {
+  for (size_t i = 0; i < h->count; i++)
+    if (h->finds[i].e.supports && h->finds[i].e.fate == STRUT_FATE_STANDS &&
+        h->finds[i].state == state)
+      return true;
+  return false;
+}
+
+/* The real ground's own: stable ones that no supports stand for, and its saddles. */
+static strut_status add_ground(strut_hunt *h) {
+  const strut_critical_set *set = &h->landscape.set;
+  count_starts(h, set);
+  for (size_t i = 0; i < set->count; i++) {
+    if ((int32_t)i < h->landscape.minima && stood_for(h, (int32_t)i)) continue;
+    int32_t at = strut_hunt_add(h);
+    if (at < 0) return no_memory(h);
+    strut_find *f = &h->finds[at];
+    strut_equilibrium *e = &f->e;
+    f->group = (int32_t)h->supports.count;
+    strut_status status = strut_hunt_fill(h, f, h->world, NULL, NULL, &set->points[i]);
+    if (status) return status;
+    f->number = (int32_t)i;
+    f->state = (int32_t)i < h->landscape.minima ? (int32_t)i : -1;
+    e->fate = e->point.label == STRUT_STABLE   ? STRUT_FATE_STANDS
+              : e->point.label == STRUT_FLOPPY ? STRUT_FATE_FLOPPY
+                                               : STRUT_FATE_UNSTABLE;
+    if (e->fate == STRUT_FATE_UNSTABLE) continue;
+    e->rest = e->point.q;
+    e->rest_energy = e->energy;
+    e->rest_residual = e->point.residual;
+  }
+  return STRUT_OK;
+}
+
+/* Within a group those that stand first, then stable by energy, then saddles, then maxima. */
+static int before(const void *pa, const void *pb) {
+  const strut_find *a = pa, *b = pb;
+  int stands_a = a->e.fate == STRUT_FATE_STANDS, stands_b = b->e.fate == STRUT_FATE_STANDS;
+  if (a->group != b->group) return a->group < b->group ? -1 : 1;
+  if (stands_a != stands_b) return stands_b - stands_a;
+  if (a->e.point.label != b->e.point.label) return (int)a->e.point.label - (int)b->e.point.label;
+  if (a->e.energy != b->e.energy) return a->e.energy < b->e.energy ? -1 : 1;
+  return memcmp(&a->e.point.found, &b->e.point.found, sizeof a->e.point.found);
+}
+
+static void link_ends(strut_hunt *h) {
+  for (size_t i = 0; i < h->count; i++) {
+    strut_equilibrium *e = &h->finds[i].e;
+    if (e->fate == STRUT_FATE_STANDS) e->ends_as = (int32_t)i;
+    for (size_t k = 0; k < h->count && e->fate == STRUT_FATE_TIPS && e->ends_as < 0; k++)
+      if (h->finds[k].e.fate == STRUT_FATE_STANDS && h->finds[k].state == h->finds[i].state &&
+          h->finds[i].state >= 0)
+        e->ends_as = (int32_t)k;
+  }
+}
+
+/* What stands for point `number` of a search, in the list: on the ground what stands there. */
+static int32_t find_number(const strut_hunt *h, int32_t group, int32_t number) {
+  for (size_t i = 0; i < h->count && number >= 0; i++) {
+    const strut_find *f = &h->finds[i];
+    bool there = group == (int32_t)h->supports.count
+                     ? f->state == number && f->e.fate == STRUT_FATE_STANDS
+                     : false;
+    if (there || (f->group == group && f->number == number)) return (int32_t)i;
+  }
+  return -1;
+}
+
+/* Where saddles lead down to: from numbers in their search to places in the list. */
+static void link_saddles(strut_hunt *h) {
+  for (size_t i = 0; i < h->count; i++) {
+    strut_find *f = &h->finds[i];
+    bool leads = f->e.point.label == STRUT_SADDLE && f->e.point.negative == 1;
+    for (int k = 0; k < 2; k++)
+      f->e.point.down[k] = leads ? find_number(h, f->group, f->e.point.down[k]) : -1;
+  }
+}
+
+static void turn_back(strut_hunt *h, strut_equilibrium *e) {
+  size_t nodes = (size_t)h->model->node_count;
+  strut_flat_to_original(&h->flat, nodes, e->point.q);
+  strut_flat_to_original(&h->flat, nodes, e->point.softest);
+  strut_flat_to_original(&h->flat, nodes, e->reaction[0]);
+  if (e->rest && e->rest != e->point.q) strut_flat_to_original(&h->flat, nodes, e->rest);
+}
+
+/* Sorts, names, links and words the finds, and hands them over. */
+static strut_status finish(strut_hunt *h) {
+  strut_arena *arena = &h->out->arena;
+  if (h->count) qsort(h->finds, h->count, sizeof *h->finds, before);
+  strut_equilibrium **list = strut_arena_allocate(arena, h->count, sizeof *list);
+  h->out->list = strut_arena_allocate(arena, h->count, sizeof *h->out->list);
+  if (!list || !h->out->list) return no_memory(h);
+  for (size_t i = 0; i < h->count; i++) list[i] = &h->finds[i].e;
+  if (strut_name_equilibria(h->model, h->count, list, arena)) return no_memory(h);
+  link_ends(h);
+  link_saddles(h);
+  strut_hunt_say(h, h->finds, h->count);
+  strut_status status = STRUT_OK;
+  if (h->explored && !h->options->standing_only) status = strut_barriers_find(h);
+  for (size_t i = 0; i < h->count; i++) {
+    turn_back(h, &h->finds[i].e);
+    h->out->list[i] = h->finds[i].e;
+  }
+  h->out->count = h->count;
+  return status;
+}
+
+/* Nothing presses on the ground where no force acts across it and nothing is held there. */
+static bool is_pressed(const strut_hunt *h) {
+  double scale = 1e-12 * h->world->force_scale, sum = 0.0;
+  for (int32_t i = 0; i < h->model->node_count; i++) {
+    if (h->model->fixed[2 * i + 1]) return true;
+    sum += h->world->force[2 * i + 1];
+  }
+  return fabs(sum) > scale;
+}
+
+static strut_status make_world(strut_hunt *h, bool ground) {
+  strut_potential_free(h->world);
+  h->world = NULL;
+  h->on_ground = ground;
+  return strut_potential_create(h->model, NULL, ground, &h->world, h->error);
+}
+
+static strut_status prepare(strut_hunt *h, const strut_model *original) {
+  const strut_equilibria_options *o = h->options;
+  h->out->seed = o->seed ? *o->seed : original->scene->search.seed;
+  strut_status status = strut_flat_create(original->scene, &h->flat, h->error);
+  if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
+  if (!status) status = make_world(h, h->model && h->model->contacts.count > 0);
+  if (!status && h->on_ground && !is_pressed(h)) status = make_world(h, false);
+  if (status) return status;
+  if (h->on_ground && h->flat.askew < 0)
+    status = strut_supports_choose(&h->flat.scene, o->supports, &h->out->arena, &h->supports,
+                                   h->error);
+  else if (o->supports)
+    status = strut_fail(h->error, STRUT_USAGE,
+                        h->flat.askew >= 0
+                            ? "supports cannot take the place of a slope while a node is held in "
+                              "one direction only"
+                            : "no ground presses on the structure, so no supports can take its "
+                              "place");
+  return status;
+}
+
+static strut_status search(strut_hunt *h) {
+  if (h->world->n == 0) {
+    strncpy(h->out->remark, "nothing can move: the scene holds every node",
+            sizeof h->out->remark - 1);
+    return STRUT_OK;
+  }
+  h->unrest = strut_hunt_look_for_unrest(h);
+  if (h->unrest == STRUT_UNREST_FALLS) return STRUT_OK;
+  strut_status status = strut_relaxer_create(h->world, &h->relaxer, h->error);
+  if (!status) status = search_all_sets(h);
+  if (!status) status = strut_hunt_follow(h);
+  if (!status && h->explored) status = add_ground(h);
+  return status;
+}
+
+strut_status strut_equilibria_find(const strut_model *model,
+                                   const strut_equilibria_options *options,
+                                   strut_equilibria *equilibria, strut_error *error) {
+  memset(equilibria, 0, sizeof *equilibria);
+  strut_hunt h = {.options = options, .out = equilibria, .error = error};
+  strut_status status = prepare(&h, model);
+  if (!status) status = search(&h);
+  if (!status) status = finish(&h);
+  strut_landscape_free(&h.landscape);
+  strut_relaxer_free(h.relaxer);
+  strut_potential_free(h.world);
+  strut_model_free(h.model);
+  strut_flat_free(&h.flat);
+  return status;
+}
+
+void strut_equilibria_free(strut_equilibria *equilibria) {
+  strut_arena_free(&equilibria->arena);
+  memset(equilibria, 0, sizeof *equilibria);
+}

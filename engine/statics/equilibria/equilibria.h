@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * All equilibria of a scene the paper's way: on static supports (12), then what becomes of each on
+ * the real ground, and how high the passes between the stable ones are.
+ */
+#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
+#define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
+
+#include <signal.h>
+
+#include "engine/statics/search/critical.h"
+
+typedef enum strut_fate {
+  STRUT_FATE_STANDS,       /* rests on the contacts it was found with */
+  STRUT_FATE_TIPS,         /* comes to rest elsewhere */
+  STRUT_FATE_BELOW_GROUND, /* set aside: nodes lie under the ground */
+  STRUT_FATE_UNSTABLE,     /* a saddle or maximum: not followed */
+  STRUT_FATE_FLOPPY,
+  STRUT_FATE_NO_REST       /* did not come to rest: falls, slides */
+} strut_fate;
+
+/** One equilibrium: on held contacts (supports not NULL), or as the scene itself stands. */
+typedef struct strut_equilibrium {
+  const char *name;               /* a configuration's, or unnamed-1, ... unique in the list */
+  const strut_node_set *supports; /* contact nodes held, or NULL */
+  strut_critical_point point;     /* shape, label, eigenvalues, starts; `down` in the list */
+  double energy;                  /* (13) [J] */
+  double (*reaction)[2];          /* (node_count) of supports, the scene's own too [N] */
+  uint8_t *below;                 /* (node_count) 1 where under the ground */
+  double *member_force;           /* (member_count) tension positive [N] */
+  strut_fate fate;
+  int32_t tips_over;              /* node about which it turns, or -1 */
+  int32_t ends_as;                /* the equilibrium it ends in, or -1; itself if it stands */
+  double *rest;                   /* (length) where it comes to rest on the real ground, or NULL */
+  double rest_energy;             /* (13) there [J] */
+  double rest_residual;           /* largest net force there [N] */
+  int32_t contact_count;
+  int32_t *contacts;              /* nodes that touch at the end; before it is followed: supports */
+  double *normal;                 /* (contact_count) [N] */
+  char verdict[160];              /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
+} strut_equilibrium;
+
+/** The lowest way known between two stable equilibria on the real ground. */
+typedef struct strut_barrier {
+  int32_t from, to;  /* in the list */
+  double height;     /* [J] above `from` */
+  int32_t saddle;    /* the highest saddle on the way, in the list */
+  int32_t via_count;
+  int32_t *via;      /* (via_count) stable or floppy equilibria in between, in the list, or -1 */
+  double direct;     /* [J] of the lowest saddle that leads straight there; NAN: none is known */
+  int32_t direct_saddle; /* in the list, or -1 */
+} strut_barrier;
+
+typedef struct strut_equilibria {
+  size_t count;
+  strut_equilibrium *list;  /* by supports in the scene's order; those of the real ground last */
+  size_t barrier_count;
+  strut_barrier *barriers;
+  uint64_t seed;
+  int64_t starts;
+  double missed;            /* the largest over the searches, as in strut_critical_set */
+  double missed_one;        /* the same, its upper bound */
+  bool cut_short;           /* some search ended early, for the structure's size */
+  char remark[400];         /* why there is none, or what moves freely; else empty */
+  strut_arena arena;
+} strut_equilibria;
+
+typedef struct strut_equilibria_options {
+  int64_t starts;                   /* 0: as the scene says */
+  const uint64_t *seed;             /* NULL: as the scene says */
+  const strut_node_set *supports;   /* NULL: as the scene says */
+  bool standing_only;               /* no saddles and no barriers: what stands, and where */
+  const volatile sig_atomic_t *interrupt;
+} strut_equilibria_options;
+
+/** strut_equilibria_free releases it, after a failure too. The model must outlive it. */
+STRUT_API strut_status strut_equilibria_find(const strut_model *model,
+                                             const strut_equilibria_options *options,
+                                             strut_equilibria *equilibria, strut_error *error);
+STRUT_API void strut_equilibria_free(strut_equilibria *equilibria);
+
+#endif

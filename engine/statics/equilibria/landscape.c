@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/equilibria/landscape.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Two shapes are one: as a share of the model's size, and of the potential. */
+static const double SAME_SHAPE = 1e-5, SAME_POTENTIAL = 1e-8;
+/* Scenes and supports that fix no more coordinates leave whole shapes free to be placed. */
+enum { FEW_FIXED = 3 };
+
+static bool is_pass(const strut_critical_point *p) {
+  return p->label == STRUT_SADDLE && p->negative == 1;
+}
+
+static bool leads_from(const strut_critical_point *pass, int32_t a) {
+  return pass->down[0] == a || pass->down[1] == a;
+}
+
+static bool is_unknown(const strut_critical_point *pass) {
+  return pass->down[0] < 0 || pass->down[1] < 0;
+}
+
+static strut_status find_lowest(strut_landscape *l, strut_error *error) {
+  const strut_critical_set *set = &l->set;
+  while ((size_t)l->minima < set->count && set->points[l->minima].label <= STRUT_FLOPPY)
+    l->minima++;
+  l->lowest = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->lowest);
+  l->parent = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->parent);
+  if (!l->lowest || !l->parent) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (int32_t i = 0; i < l->minima; i++) {
+    l->lowest[i] = HUGE_VAL;
+    for (size_t k = (size_t)l->minima; k < set->count; k++) {
+      const strut_critical_point *pass = &set->points[k];
+      /* one whose ways down are not known may lead anywhere */
+      if (!is_pass(pass) || !(leads_from(pass, i) || is_unknown(pass))) continue;
+      if (pass->potential > set->points[i].potential)
+        l->lowest[i] = fmin(l->lowest[i], pass->potential);
+    }
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_landscape_create(const strut_potential *potential,
+                                    const strut_critical_effort *effort,
+                                    strut_landscape *landscape, strut_error *error) {
+  *landscape = (strut_landscape){.potential = potential};
+  landscape->merged = 2 * potential->model->node_count - potential->n <= FEW_FIXED;
+  strut_status status = strut_critical_search(potential, effort, &landscape->set, error);
+  return status ? status : find_lowest(landscape, error);
+}
+
+void strut_landscape_free(strut_landscape *landscape) {
+  strut_critical_free(&landscape->set);
+  strut_arena_free(&landscape->arena);
+  memset(landscape, 0, sizeof *landscape);
+}
+
+static double distance(const strut_landscape *l, const double *a, const double *b) {
+  const strut_model *model = l->potential->model;
+  if (l->merged) return strut_shape_distance(model, a, b, true, NULL);
+  double most = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+int32_t strut_landscape_find(const strut_landscape *l, const double *q) {
+  double potential = strut_potential_value(l->potential, q), scale = 0.0;
+  double size = l->potential->model->size;
+  for (int32_t i = 0; i < l->minima; i++)
+    scale = fmax(scale, fabs(l->set.points[i].potential));
+  for (int32_t i = 0; i < l->minima; i++) {
+    const strut_critical_point *p = &l->set.points[i];
+    if (fabs(p->potential - potential) > SAME_POTENTIAL * scale) continue;
+    /* a floppy shape is a whole family of one energy */
+    if (p->label == STRUT_FLOPPY || distance(l, p->q, q) <= SAME_SHAPE * size) return i;
+  }
+  return -1;
+}
+
+double strut_landscape_pass(const void *landscape, const double *q) {
+  const strut_landscape *l = landscape;
+  int32_t at = strut_landscape_find(l, q);
+  return at >= 0 && isfinite(l->lowest[at]) ? l->lowest[at] : -HUGE_VAL;
+}
+
+/* The root of a's tree. */
+static int32_t root(int32_t *parent, int32_t a) {
+  while (parent[a] != a) a = parent[a] = parent[parent[a]];
+  return a;
+}
+
+/* A pass whose two sides are both known. */
+static bool connects(const strut_landscape *l, const strut_critical_point *pass) {
+  return is_pass(pass) && !is_unknown(pass) && pass->down[0] < l->minima &&
+         pass->down[1] < l->minima;
+}
+
+int32_t strut_landscape_way(const strut_landscape *l, int32_t a, int32_t b) {
+  const strut_critical_set *set = &l->set;
+  int32_t *parent = l->parent;
+  for (int32_t i = 0; i < l->minima; i++) parent[i] = i;
+  /* saddles come by energy: the one that connects the two is the highest on the lowest way */
+  for (size_t k = (size_t)l->minima; k < set->count; k++) {
+    const strut_critical_point *pass = &set->points[k];
+    if (!connects(l, pass)) continue;
+    parent[root(parent, pass->down[0])] = root(parent, pass->down[1]);
+    if (root(parent, a) == root(parent, b)) return (int32_t)k;
+  }
+  return -1;
+}
+
+int32_t strut_landscape_direct(const strut_landscape *l, int32_t a, int32_t b) {
+  for (size_t k = (size_t)l->minima; k < l->set.count; k++) {
+    const strut_critical_point *pass = &l->set.points[k];
+    if (connects(l, pass) && leads_from(pass, a) && leads_from(pass, b)) return (int32_t)k;
+  }
+  return -1;
+}
+
+int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, int32_t highest,
+                                int32_t *via) {
+  int32_t *next = l->parent, count = 0;
+  for (int32_t i = 0; i < l->minima; i++) next[i] = -1;
+  next[b] = b;
+  /* in rounds from b, so that each minimum gets its next one on a shortest way */
+  for (bool grew = true; grew && next[a] < 0;) {
+    grew = false;
+    for (int32_t i = 0; i < l->minima; i++) via[i] = next[i];
+    for (int32_t k = l->minima; k <= highest; k++) {
+      const strut_critical_point *pass = &l->set.points[k];
+      for (int way = 0; way < 2 && connects(l, pass); way++) {
+        int32_t from = pass->down[way], to = pass->down[1 - way];
+        if (next[from] >= 0 || via[to] < 0) continue;
+        next[from] = to;
+        grew = true;
+      }
+    }
+  }
+  for (int32_t at = next[a]; at >= 0 && at != b; at = next[at]) via[count++] = at;
+  return count;
+}

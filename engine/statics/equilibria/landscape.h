@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The stationary points of one potential as a landscape: basins, and the passes between them.
+ */
+#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_LANDSCAPE_H
+#define STRUT_ENGINE_STATICS_EQUILIBRIA_LANDSCAPE_H
+
+#include "engine/statics/search/critical.h"
+
+typedef struct strut_landscape {
+  const strut_potential *potential;
+  bool merged;       /* congruent shapes are one point, mirror images too */
+  strut_critical_set set;
+  int32_t minima;    /* stable and floppy points: the first ones of the set */
+  double *lowest;    /* (minima) potential of the lowest pass out of it [J]; HUGE_VAL: none known */
+  int32_t *parent;   /* (minima) scratch of the ways below */
+  strut_arena arena; /* of the above */
+} strut_landscape;
+
+/** strut_landscape_free releases it, after a failure too. */
+strut_status strut_landscape_create(const strut_potential *potential,
+                                    const strut_critical_effort *effort,
+                                    strut_landscape *landscape, strut_error *error);
+void strut_landscape_free(strut_landscape *landscape);
+
+/** The minimum that the shape q (length) is, or -1. */
+int32_t strut_landscape_find(const strut_landscape *landscape, const double *q);
+
+/** A strut_pass_of for a landscape as the context. */
+double strut_landscape_pass(const void *landscape, const double *q);
+
+/**
+ * The lowest way from minimum a to minimum b: the index of the highest saddle on it, -1 where the
+ * known saddles do not connect them.
+ */
+int32_t strut_landscape_way(const strut_landscape *landscape, int32_t a, int32_t b);
+
+/** The lowest saddle that leads from minimum a down to minimum b the other way, or -1. */
+int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);
+
+/**
+ * The minima between a and b on the shortest way over saddles up to `highest`, in order: their
+ * count into via (minima).
+ */
+int32_t strut_landscape_between(const strut_landscape *landscape, int32_t a, int32_t b,
+                                int32_t highest, int32_t *via);
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Names for equilibria: a scene's configurations, by contacts and shape; and which way round a
+ * shape that has a mirror image is shown.
+ */
+#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_NAMING_H
+#define STRUT_ENGINE_STATICS_EQUILIBRIA_NAMING_H
+
+#include "engine/statics/equilibria/equilibria.h"
+
+/** What a shape may differ from a configuration that it bears the name of, in model sizes. */
+#define STRUT_NAMED_WITHIN 0.05
+
+/**
+ * Of a shape q and its mirror image, where that is an equilibrium too (nothing acts along x, and
+ * all that is held along x shares one x), takes the one that is nearest to a configuration, else to
+ * the drawn shape; softest (may be NULL) goes with it. held: (length) coordinates held besides the
+ * scene's. STRUT_OK or STRUT_NO_MEMORY.
+ */
+strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *q,
+                                double *softest);
+
+/**
+ * Names the list (count): equilibria that stand by configurations where they fit, the others
+ * unnamed-1, ... in order. Where a configuration without a shape fits several, they are NAME,
+ * NAME-2, ...: by its contact sets in their order, then by energy. Names are the scene's or in the
+ * arena.
+ */
+strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
+                                   strut_arena *arena);
+
+/** True where the set holds the same nodes, in any order. */
+bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count);
+
+/** Writes "n1, n2 and n3" for the nodes with a flag; many become "n1, n2, n3 and 5 more". */
+void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size, char *text);
+
+#endif

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Dynamic relaxation on the real ground: where (10) without drive and friction comes to rest.
+ *
+ * The model itself is simulated, with no damping but its own, until it can end in one place only;
+ * Newton's method then goes there. So the end is that of the undamped model, without its waiting.
+ */
+#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_RELAX_H
+#define STRUT_ENGINE_STATICS_EQUILIBRIA_RELAX_H
+
+#include <signal.h>
+
+#include "engine/statics/minimise.h"
+
+/**
+ * The energy that it takes to leave the basin of the minimum q, over the lowest pass known [J];
+ * -INFINITY where none is known: then the end shows only when the motion has died down.
+ */
+typedef double (*strut_pass_of)(const void *context, const double *q);
+
+typedef enum strut_relaxed_end {
+  STRUT_RELAXED_RESTS,
+  STRUT_RELAXED_LEAVES, /* moves off without end: falls, slides, is lifted */
+  STRUT_RELAXED_MOVES   /* still moves after the scene's initial.settle.limit, or 1e7 steps */
+} strut_relaxed_end;
+
+typedef struct strut_relaxed {
+  strut_relaxed_end end;
+  bool simulated;      /* false: below the pass from the start, or without a motion */
+  double time;         /* simulated [s] */
+  double residual;     /* largest net force at rest [N] */
+  double acceleration; /* largest there [m/s^2]; 0 for a scene without mass */
+} strut_relaxed;
+
+/** Memory of relaxations of one model, for one thread at a time. */
+typedef struct strut_relaxer strut_relaxer;
+/**
+ * potential: of a model without actuators, friction and loads on a signal, its ground included. It
+ * must outlive the relaxer. Simulated are models with mass, some damping and up to
+ * STRUT_DENSE_STATICS free coordinates; others go downhill from where they are.
+ */
+strut_status strut_relaxer_create(const strut_potential *potential, strut_relaxer **relaxer,
+                                  strut_error *error);
+void strut_relaxer_free(strut_relaxer *relaxer);
+
+/** Whether it has a motion to simulate. */
+bool strut_relaxer_simulates(const strut_relaxer *relaxer);
+
+/** Goes downhill from q (length) to the nearest minimum as strut_minimise does. */
+strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *q);
+
+/** The same without a motion, for a q that can end in one place only: as strut_relax tells it. */
+void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed);
+
+/**
+ * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass
+ * where the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
+ */
+strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes,
+                         const void *context, const volatile sig_atomic_t *interrupt,
+                         strut_relaxed *relaxed, strut_error *error);
+
+#endif

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/equilibria/supports.h"
+
+#include <math.h>
+
+/* Rank of the rows (1, 0, -y) and (0, 1, x) of coordinates: of all nodes, or of those held. */
+static int rank_of_rigid(const strut_scene *scene, bool only_fixed) {
+  double rows[3][3] = {{0}}, size = 0.0;
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (int c = 0; c < 2; c++)
+      size = fmax(size, fabs(scene->nodes[i].position[c] - scene->nodes[0].position[c]));
+  for (size_t i = 0; i < scene->node_count && size > 0; i++)
+    for (int c = 0; c < 2; c++) {
+      if (only_fixed && !scene->nodes[i].fixed[c]) continue;
+      double x = (scene->nodes[i].position[0] - scene->nodes[0].position[0]) / size;
+      double y = (scene->nodes[i].position[1] - scene->nodes[0].position[1]) / size;
+      double row[3] = {c == 0, c == 1, c == 0 ? -y : x};
+      for (int k = 0; k < 3; k++) { /* orthogonalise against what is there, twice is enough */
+        for (int twice = 0; twice < 2; twice++) {
+          double dot = row[0] * rows[k][0] + row[1] * rows[k][1] + row[2] * rows[k][2];
+          for (int l = 0; l < 3; l++) row[l] -= dot * rows[k][l];
+        }
+        double norm = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+        bool empty = rows[k][0] == 0 && rows[k][1] == 0 && rows[k][2] == 0;
+        if (!empty) continue;
+        for (int l = 0; l < 3 && norm > 1e-6; l++) rows[k][l] = row[l] / norm;
+        break;
+      }
+    }
+  int rank = 0;
+  for (int k = 0; k < 3; k++) rank += rows[k][0] != 0 || rows[k][1] != 0 || rows[k][2] != 0;
+  return rank;
+}
+
+static bool held_along_x(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (scene->nodes[i].fixed[0]) return true;
+  return false;
+}
+
+static bool holds_nothing(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (scene->nodes[i].fixed[0] || scene->nodes[i].fixed[1]) return false;
+  return true;
+}
+
+static bool may_touch(const strut_scene *scene, int32_t node) {
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (scene->contacts[i].node == node) return true;
+  return false;
+}
+
+static strut_status take_wanted(const strut_scene *scene, const strut_node_set *wanted,
+                                strut_arena *arena, strut_supports *supports, strut_error *error) {
+  for (size_t i = 0; i < wanted->count; i++) {
+    int32_t node = wanted->node[i];
+    if (!may_touch(scene, node))
+      return strut_fail(error, STRUT_USAGE,
+                        "node '%s' cannot touch the ground, so it cannot be a support in its "
+                        "place; name nodes that may touch it",
+                        scene->nodes[node].name);
+  }
+  supports->sets = strut_arena_allocate(arena, 1, sizeof *supports->sets);
+  if (!supports->sets) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  supports->sets[0] = *wanted;
+  supports->count = 1;
+  return STRUT_OK;
+}
+
+/* Every set of one contact node, or of two. */
+static strut_status take_all(const strut_scene *scene, size_t size, strut_arena *arena,
+                             strut_supports *supports, strut_error *error) {
+  size_t n = scene->contact_count, count = size == 1 ? n : n * (n - 1) / 2, at = 0;
+  supports->many = count > STRUT_MOST_SUPPORTS;
+  if (supports->many || n < size) return STRUT_OK;
+  supports->sets = strut_arena_allocate(arena, count, sizeof *supports->sets);
+  int32_t *node = strut_arena_allocate(arena, count * size, sizeof *node);
+  if (!supports->sets || !node) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = size == 1 ? n - 1 : i + 1; j < n; j++, at++) {
+      node[at * size] = scene->contacts[i].node;
+      if (size == 2) node[2 * at + 1] = scene->contacts[j].node;
+      supports->sets[at] = (strut_node_set){size, node + at * size};
+    }
+  supports->count = count;
+  return STRUT_OK;
+}
+
+/* Fixed in both directions, or held by a set. */
+static bool leaves_motion(const strut_scene *scene, size_t held) {
+  size_t coordinates = 0;
+  for (size_t i = 0; i < scene->node_count; i++)
+    coordinates += (size_t)(!scene->nodes[i].fixed[0] + !scene->nodes[i].fixed[1]);
+  return coordinates > held;
+}
+
+strut_status strut_supports_choose(const strut_scene *flat, const strut_node_set *wanted,
+                                   strut_arena *arena, strut_supports *supports,
+                                   strut_error *error) {
+  *supports = (strut_supports){.loose = holds_nothing(flat)};
+  if (!flat->ground.present || flat->contact_count == 0) {
+    if (!wanted) return STRUT_OK;
+    return strut_fail(error, STRUT_USAGE,
+                      "the scene has no ground, so no supports can take its place");
+  }
+  supports->pin = !held_along_x(flat);
+  if (wanted) return take_wanted(flat, wanted, arena, supports, error);
+  if (flat->search.support_count) {
+    supports->sets = flat->search.supports;
+    supports->count = flat->search.support_count;
+    return STRUT_OK;
+  }
+  int motions = rank_of_rigid(flat, false) - rank_of_rigid(flat, true);
+  int size = motions - (supports->pin ? 1 : 0);
+  if (size <= 0 || !leaves_motion(flat, (size_t)motions)) return STRUT_OK;
+  return take_all(flat, size == 1 ? 1 : 2, arena, supports, error);
+}
+
+void strut_supports_hold(const strut_supports *supports, const strut_node_set *set,
+                         uint8_t *held) {
+  for (size_t i = 0; i < set->count; i++) held[2 * set->node[i] + 1] = 1;
+  if (supports->pin && set->count) held[2 * set->node[0]] = 1;
+}
+
+/* Turns and moves the shape so that `a` comes to x, height and `b` level with it, on its side. */
+static void lay_down(const strut_scene *flat, int32_t a, int32_t b, double x, double height,
+                     double (*shape)[2]) {
+  double dx = shape[b][0] - shape[a][0], dy = shape[b][1] - shape[a][1];
+  double length = sqrt(dx * dx + dy * dy), from[2] = {shape[a][0], shape[a][1]};
+  double c = length > 0 ? fabs(dx) / length : 1, s = length > 0 ? dy / length : 0;
+  if (dx < 0) s = -s;
+  for (size_t i = 0; i < flat->node_count; i++) {
+    double rx = shape[i][0] - from[0], ry = shape[i][1] - from[1];
+    shape[i][0] = x + c * rx + s * ry;
+    shape[i][1] = height - s * rx + c * ry;
+  }
+}
+
+void strut_supports_place(const strut_supports *supports, const strut_scene *flat,
+                          const strut_node_set *set, double (*shape)[2]) {
+  if (set->count == 0) return;
+  int32_t a = set->node[0], b = set->node[set->count > 1 ? 1 : 0];
+  double x = flat->nodes[a].position[0], height = flat->ground.height;
+  if (supports->loose) lay_down(flat, a, b, x, height, shape);
+  if (supports->pin) shape[a][0] = x;
+  for (size_t i = 0; i < set->count; i++) shape[set->node[i]][1] = height;
+}

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Densities that are nearly those of some shape. A structure that stands by itself in the plane needs
+ * a matrix of densities D with three null vectors (1, x, y): shape and densities are improved in turn,
+ * each the nearest that fits the other. Then both together by Gauss and Newton, with weight and
+ * supports, each step the shortest from what was given.
+ */
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/statics/form/parts.h"
+
+enum { MOST_COORDINATES = 400, TURNS = 500, NEAREST_STEPS = 30, STEPS = 60, NULLITY = 3 };
+
+static const double CUT = 1e-9;      /* of the largest singular value: below it is none */
+static const double STILL = 1e-14;   /* of density times size: forces that are none */
+static const double SETTLED = 1e-13; /* of shape and densities: they change no more */
+static const double EXACT = 1e-10;   /* of density times size: what rounding may leave */
+
+/* Pseudo-inverse times r for the transpose of a (rows >= columns): shortest x with a' x = r. */
+static bool shortest(gsl_matrix *a, const gsl_vector *r, gsl_vector *x) {
+  size_t columns = a->size2;
+  gsl_matrix *v = gsl_matrix_alloc(columns, columns);
+  gsl_vector *s = gsl_vector_alloc(columns), *w = gsl_vector_alloc(columns);
+  bool good = v && s && w && gsl_linalg_SV_decomp(a, v, s, w) == 0;
+  if (good) {
+    gsl_blas_dgemv(CblasTrans, 1.0, v, r, 0.0, w);
+    for (size_t i = 0; i < columns; i++) {
+      double value = gsl_vector_get(s, i);
+      gsl_vector_set(w, i, value > CUT * gsl_vector_get(s, 0) ? gsl_vector_get(w, i) / value : 0.0);
+    }
+    gsl_blas_dgemv(CblasNoTrans, 1.0, a, w, 0.0, x);
+  }
+  gsl_matrix_free(v);
+  gsl_vector_free(s);
+  gsl_vector_free(w);
+  return good;
+}
+
+/* x onto the span of the three null-most eigenvectors of D(q). How far it went. */
+static double project_shape(const strut_scene *scene, const double *drawn, const double *q,
+                            gsl_matrix *d, gsl_matrix *vectors, gsl_vector *values,
+                            gsl_eigen_symmv_workspace *work, double *x) {
+  size_t n = scene->node_count;
+  double change = 0;
+  gsl_matrix_set_zero(d);
+  for (size_t j = 0; j < scene->member_count; j++) {
+    size_t a = (size_t)scene->members[j].node[0], b = (size_t)scene->members[j].node[1];
+    *gsl_matrix_ptr(d, a, a) += q[j];
+    *gsl_matrix_ptr(d, b, b) += q[j];
+    *gsl_matrix_ptr(d, a, b) -= q[j];
+    *gsl_matrix_ptr(d, b, a) -= q[j];
+  }
+  gsl_eigen_symmv(d, values, vectors, work);
+  gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_ABS_ASC);
+  for (size_t c = 0; c < 2; c++) {
+    for (size_t i = 0; i < n; i++) gsl_vector_set(values, i, 0.0);
+    for (size_t k = 0; k < NULLITY && k < n; k++) {
+      double share = 0;
+      for (size_t i = 0; i < n; i++) share += gsl_matrix_get(vectors, i, k) * drawn[2 * i + c];
+      for (size_t i = 0; i < n; i++)
+        *gsl_vector_ptr(values, i) += share * gsl_matrix_get(vectors, i, k);
+    }
+    for (size_t i = 0; i < n; i++) {
+      change = fmax(change, fabs(gsl_vector_get(values, i) - x[2 * i + c]));
+      x[2 * i + c] = gsl_vector_get(values, i);
+    }
+  }
+  return change;
+}
+
+/* The directions of density space that leave forces in x, and how much: balance = U S V'. */
+static bool decompose(const strut_scene *scene, const double *x, gsl_matrix *balance, gsl_matrix *v,
+                      gsl_vector *s, gsl_vector *room) {
+  gsl_matrix_set_zero(balance);
+  for (size_t j = 0; j < scene->member_count; j++)
+    for (size_t c = 0; c < 2; c++) {
+      size_t a = 2 * (size_t)scene->members[j].node[0] + c;
+      size_t b = 2 * (size_t)scene->members[j].node[1] + c;
+      gsl_matrix_set(balance, j, a, x[b] - x[a]);
+      gsl_matrix_set(balance, j, b, x[a] - x[b]);
+    }
+  return gsl_linalg_SV_decomp(balance, v, s, room) == 0;
+}
+
+/*
+ * q onto the densities that hold x: without its parts that leave forces. Where there are too few
+ * members for a state of self-stress in every shape, the part that leaves least is kept.
+ */
+static double project_densities(const strut_scene *scene, const gsl_matrix *u, const gsl_vector *s,
+                                double *q) {
+  size_t b = scene->member_count, most = 2 * scene->node_count - NULLITY;
+  double change = 0;
+  for (size_t k = 0; k < b && k < most; k++) {
+    double share = 0;
+    if (k + 1 == b || !(gsl_vector_get(s, k) > CUT * gsl_vector_get(s, 0))) break;
+    for (size_t j = 0; j < b; j++) share += gsl_matrix_get(u, j, k) * q[j];
+    for (size_t j = 0; j < b; j++) q[j] -= share * gsl_matrix_get(u, j, k);
+    change = fmax(change, fabs(share));
+  }
+  return change;
+}
+
+/* Shape and densities in turn; rows of `balance` beyond the members are zero. */
+static bool take_turns(strut_former *f, const double *drawn, double *x, double *q) {
+  const strut_scene *scene = f->scene;
+  size_t n = scene->node_count, b = scene->member_count, tall = b > 2 * n ? b : 2 * n;
+  gsl_matrix *d = gsl_matrix_alloc(n, n), *vectors = gsl_matrix_alloc(n, n);
+  gsl_matrix *balance = gsl_matrix_alloc(tall, 2 * n), *v = gsl_matrix_alloc(2 * n, 2 * n);
+  gsl_vector *values = gsl_vector_alloc(n), *s = gsl_vector_alloc(2 * n);
+  gsl_vector *room = gsl_vector_alloc(2 * n);
+  gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
+  bool good = d && vectors && balance && v && values && s && room && work;
+  double largest = 0;
+  for (size_t j = 0; j < b; j++) largest = fmax(largest, fabs(q[j]));
+  for (int k = 0; k < TURNS && good; k++) {
+    double moved = project_shape(scene, drawn, q, d, vectors, values, work, x), changed = 0;
+    good = decompose(scene, x, balance, v, s, room);
+    if (good) changed = project_densities(scene, balance, s, q);
+    if (moved <= SETTLED * f->size && changed <= SETTLED * largest) break;
+  }
+  gsl_matrix_free(d);
+  gsl_matrix_free(vectors);
+  gsl_matrix_free(balance);
+  gsl_matrix_free(v);
+  gsl_vector_free(values);
+  gsl_vector_free(s);
+  gsl_vector_free(room);
+  gsl_eigen_symmv_free(work);
+  return good;
+}
+
+/* Turns and shifts x so that it lies as the drawn shape does at the coordinates that are held. */
+static void lay_down(const strut_scene *scene, const uint8_t *held, const double *drawn,
+                     double *x) {
+  double sine = 0, cosine = 0, centre[2][2] = {{0}}, n = (double)scene->node_count;
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (size_t c = 0; c < 2; c++)
+      centre[0][c] += x[2 * i + c] / n, centre[1][c] += drawn[2 * i + c] / n;
+  for (size_t i = 0; i < scene->node_count; i++) {
+    double a[2] = {x[2 * i] - centre[0][0], x[2 * i + 1] - centre[0][1]};
+    double b[2] = {drawn[2 * i] - centre[1][0], drawn[2 * i + 1] - centre[1][1]};
+    cosine += a[0] * b[0] + a[1] * b[1], sine += a[0] * b[1] - a[1] * b[0];
+  }
+  double size = hypot(sine, cosine), shift[2] = {0}, count[2] = {0};
+  if (!(size > 0)) return;
+  for (size_t i = 0; i < scene->node_count; i++) {
+    double a[2] = {x[2 * i] - centre[0][0], x[2 * i + 1] - centre[0][1]};
+    x[2 * i] = centre[1][0] + (cosine * a[0] - sine * a[1]) / size;
+    x[2 * i + 1] = centre[1][1] + (sine * a[0] + cosine * a[1]) / size;
+    for (size_t c = 0; c < 2; c++)
+      if (held[2 * i + c]) shift[c] += drawn[2 * i + c] - x[2 * i + c], count[c] += 1;
+  }
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    if (count[i % 2] > 0) x[i] += shift[i % 2] / count[i % 2];
+}
+
+/* Unknowns of Gauss and Newton: free coordinates in units of size, densities in units of `unit`. */
+typedef struct joint {
+  strut_former *f;
+  const int32_t *row_of; /* (2 nodes) */
+  int32_t n;
+  double unit; /* [N/m] */
+  double *x, *q;
+  const double *x_given, *q_given;
+  gsl_matrix *slope; /* (n + members, n): the transpose of the derivative */
+  gsl_vector *force, *step;
+} joint;
+
+/* Net forces [unit size] and their derivatives. The largest force. */
+static double evaluate(joint *p) {
+  const strut_scene *scene = p->f->scene;
+  double size = p->f->size, most = 0;
+  gsl_matrix_set_zero(p->slope);
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    if (p->row_of[i] >= 0)
+      gsl_vector_set(p->force, (size_t)p->row_of[i], p->f->potential->force[i] / (p->unit * size));
+  for (size_t j = 0; j < scene->member_count; j++)
+    for (size_t c = 0; c < 2; c++) {
+      size_t at[2] = {2 * (size_t)scene->members[j].node[0] + c,
+                      2 * (size_t)scene->members[j].node[1] + c};
+      double d = (p->x[at[1]] - p->x[at[0]]) / size, q = p->q[j] / p->unit;
+      for (int e = 0; e < 2; e++) {
+        int32_t row = p->row_of[at[e]], other = p->row_of[at[1 - e]];
+        if (row < 0) continue;
+        *gsl_vector_ptr(p->force, (size_t)row) += e ? -q * d : q * d;
+        *gsl_matrix_ptr(p->slope, (size_t)p->n + j, (size_t)row) += e ? -d : d;
+        *gsl_matrix_ptr(p->slope, (size_t)row, (size_t)row) -= q;
+        if (other >= 0) *gsl_matrix_ptr(p->slope, (size_t)other, (size_t)row) += q;
+      }
+    }
+  for (int32_t i = 0; i < p->n; i++) most = fmax(most, fabs(gsl_vector_get(p->force, (size_t)i)));
+  return most;
+}
+
+/* Away from what was given, in the unknowns' units. */
+static void deviation(const joint *p, gsl_vector *out) {
+  const strut_scene *scene = p->f->scene;
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    if (p->row_of[i] >= 0)
+      gsl_vector_set(out, (size_t)p->row_of[i], (p->x[i] - p->x_given[i]) / p->f->size);
+  for (size_t j = 0; j < scene->member_count; j++)
+    gsl_vector_set(out, (size_t)p->n + j, (p->q[j] - p->q_given[j]) / p->unit);
+}
+
+/* One step: onto the linearised equilibria, at first to the one nearest to what was given. */
+static bool improve(joint *p, bool nearest) {
+  const strut_scene *scene = p->f->scene;
+  gsl_vector *away = gsl_vector_alloc(p->step->size);
+  if (!away) return false;
+  deviation(p, away);
+  gsl_vector_scale(p->force, -1.0);
+  if (nearest) gsl_blas_dgemv(CblasTrans, 1.0, p->slope, away, 1.0, p->force);
+  bool good = shortest(p->slope, p->force, p->step);
+  if (nearest) gsl_vector_sub(p->step, away);
+  gsl_vector_free(away);
+  for (size_t i = 0; i < 2 * scene->node_count && good; i++)
+    if (p->row_of[i] >= 0) p->x[i] += p->f->size * gsl_vector_get(p->step, (size_t)p->row_of[i]);
+  for (size_t j = 0; j < scene->member_count && good; j++)
+    p->q[j] += p->unit * gsl_vector_get(p->step, (size_t)p->n + j);
+  return good;
+}
+
+static strut_status not_found(const joint *p, strut_error *error) {
+  uint8_t *marked = strut_allocate(p->f->scene->node_count, 1);
+  char names[200];
+  if (!marked) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (size_t i = 0; i < 2 * p->f->scene->node_count; i++)
+    if (p->row_of[i] >= 0 && fabs(gsl_vector_get(p->force, (size_t)p->row_of[i])) > EXACT)
+      marked[i / 2] = 1;
+  strut_form_name_nodes(p->f, marked, names, sizeof names);
+  strut_release(marked);
+  return strut_fail(
+      error, STRUT_NOT_SETTLED,
+      "no shape and densities near the given ones are in equilibrium: forces are left "
+      "at %s; check supports, loads and densities there",
+      names);
+}
+
+static strut_status solve(joint *p, strut_error *error) {
+  double left = evaluate(p);
+  for (int k = 0; k < STEPS; k++) {
+    double before = left;
+    if (!improve(p, k < NEAREST_STEPS)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    left = evaluate(p);
+    if (!isfinite(left)) break;
+    if (left <= STILL || (k > NEAREST_STEPS && left <= EXACT && left >= before)) break;
+  }
+  return left <= EXACT ? STRUT_OK : not_found(p, error);
+}
+
+strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool standing, double *x,
+                                double *q, strut_error *error) {
+  size_t coordinates = 2 * f->scene->node_count, members = f->scene->member_count;
+  double *x_given = strut_arena_allocate(&f->arena, coordinates, sizeof *x_given);
+  double *q_given = strut_arena_allocate(&f->arena, members, sizeof *q_given);
+  int32_t *row_of = strut_arena_allocate(&f->arena, coordinates, sizeof *row_of);
+  joint p = {.f = f, .row_of = row_of, .x = x, .q = q, .x_given = x_given, .q_given = q_given};
+  if (!x_given || !q_given || !row_of) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (coordinates > MOST_COORDINATES)
+    return strut_fail(error, STRUT_SINGULAR,
+                      "the densities alone determine no shape, and to adjust them the structure is "
+                      "too large: %zu coordinates, at most %d",
+                      coordinates, MOST_COORDINATES);
+  memcpy(x_given, x, coordinates * sizeof *x);
+  if (standing && !take_turns(f, x_given, x, q))
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (standing) lay_down(f->scene, held, x_given, x);
+  for (size_t i = 0; i < coordinates; i++) row_of[i] = held[i] ? -1 : p.n++;
+  for (size_t i = 0; i < coordinates; i++)
+    if (held[i]) x[i] = f->scene->nodes[i / 2].position[i % 2];
+  memcpy(x_given, x, coordinates * sizeof *x);
+  memcpy(q_given, q, members * sizeof *q);
+  for (size_t j = 0; j < members; j++) p.unit = fmax(p.unit, fabs(q[j]));
+  p.slope = gsl_matrix_alloc((size_t)p.n + members, (size_t)p.n);
+  p.force = gsl_vector_alloc((size_t)p.n);
+  p.step = gsl_vector_alloc((size_t)p.n + members);
+  strut_status status = p.slope && p.force && p.step && p.unit > 0
+                            ? solve(&p, error)
+                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  gsl_matrix_free(p.slope);
+  gsl_vector_free(p.force);
+  gsl_vector_free(p.step);
+  return status;
+}

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Forces that hold the drawn shape: unknown are the members' forces, tension p and compression m
+ * apart, the ground's pushes, the largest magnitude z, and what is missing at each coordinate.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/statics/form/parts.h"
+#include "engine/statics/linear_program.h"
+
+enum { PASSES = 6 };
+
+static const double SUNK = 1e-15;   /* of the size: deeper is another pass */
+static const double SHARE = 0.01;   /* of weight or stiffness: least tension where none is asked */
+static const double MISSING = 1e-8; /* of the forces: what rounding may leave */
+static const double SLACKEN = 1e-9; /* of z, so that its least value stays within reach */
+
+/* Columns of the programme: tensions, compressions, pushes, z, missing up, missing down. */
+typedef struct columns {
+  int32_t members, contacts, n;
+  int32_t pull, push, ground, most, up, down, count;
+} columns;
+
+typedef struct prestress {
+  strut_former *f;
+  columns at;
+  strut_linear_program program;
+  double scale; /* [N] of one in the programme */
+  double least; /* tension of a cable [N] */
+  double *x;
+} prestress;
+
+static double length_of(const strut_former *f, int32_t j) {
+  const strut_member *m = &f->scene->members[j];
+  const double *a = f->scene->nodes[m->node[0]].start, *b = f->scene->nodes[m->node[1]].start;
+  return hypot(b[0] - a[0], b[1] - a[1]);
+}
+
+static bool can_carry(const strut_member *m) { return m->stiffness > 0 || m->axial_stiffness > 0; }
+
+static double least_tension(const strut_former *f) {
+  double least = HUGE_VAL;
+  if (f->options->least_tension > 0 || f->options->least_density > 0)
+    return f->options->least_tension;
+  if (f->potential->force_scale > 0) return SHARE * f->potential->force_scale;
+  for (int32_t j = 0; j < f->model->members.count; j++) {
+    strut_rest rest;
+    if (f->scene->members[j].kind != STRUT_CABLE) continue;
+    if (!strut_member_rest(f->scene, (size_t)j, &rest) || !(rest.stiffness > 0)) continue;
+    least = fmin(least, SHARE * rest.stiffness * rest.drawn_length);
+  }
+  return isfinite(least) ? least : 0.0;
+}
+
+static columns lay_out(const strut_former *f) {
+  columns at = {.members = f->model->members.count,
+                .contacts = f->model->contacts.count,
+                .n = f->potential->n};
+  at.pull = 0, at.push = at.members, at.ground = 2 * at.members;
+  at.most = at.ground + at.contacts, at.up = at.most + 1;
+  at.down = at.up + at.n, at.count = at.down + at.n;
+  return at;
+}
+
+/* Net force on each free coordinate = 0; then p + m <= z for each member. */
+static void fill_rows(prestress *p) {
+  const strut_former *f = p->f;
+  const columns *at = &p->at;
+  const int32_t *row_of = f->potential->row_of;
+  for (int32_t j = 0; j < at->members; j++) {
+    const strut_member *m = &f->scene->members[j];
+    const double *a = f->scene->nodes[m->node[0]].start;
+    const double *b = f->scene->nodes[m->node[1]].start;
+    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    for (int c = 0; c < 2 && length > 0; c++) {
+      double u = (b[c] - a[c]) / length;
+      int32_t row[2] = {row_of[2 * m->node[0] + c], row_of[2 * m->node[1] + c]};
+      for (int end = 0; end < 2; end++) {
+        if (row[end] < 0) continue;
+        strut_linear_program_add(&p->program, row[end], at->pull + j, end ? -u : u);
+        strut_linear_program_add(&p->program, row[end], at->push + j, end ? u : -u);
+      }
+    }
+    strut_linear_program_add(&p->program, at->n + j, at->pull + j, 1);
+    strut_linear_program_add(&p->program, at->n + j, at->push + j, 1);
+    strut_linear_program_add(&p->program, at->n + j, at->most, -1);
+    p->program.row_low[at->n + j] = -HUGE_VAL;
+  }
+  const strut_contact_table *c = &f->model->contacts;
+  for (int32_t i = 0; i < at->contacts; i++)
+    for (int k = 0; k < 2; k++) {
+      int32_t row = row_of[c->at[i] + (uint32_t)k];
+      if (row >= 0) strut_linear_program_add(&p->program, row, at->ground + i, c->normal[k]);
+    }
+  for (int32_t i = 0; i < at->n; i++) {
+    double force = f->potential->force[f->potential->coordinate[i]] / p->scale;
+    strut_linear_program_add(&p->program, i, at->up + i, 1);
+    strut_linear_program_add(&p->program, i, at->down + i, -1);
+    p->program.row_low[i] = p->program.row_high[i] = -force;
+  }
+}
+
+static void fill_bounds(prestress *p) {
+  const columns *at = &p->at;
+  for (int32_t j = 0; j < at->members; j++) {
+    const strut_member *m = &p->f->scene->members[j];
+    bool cable = m->kind == STRUT_CABLE, carries = can_carry(m);
+    double least = fmax(p->least, p->f->options->least_density * length_of(p->f, j));
+    p->program.low[at->pull + j] = cable && carries ? least / p->scale : 0;
+    if (!carries) p->program.high[at->pull + j] = 0;
+    if (cable || !carries) p->program.high[at->push + j] = 0;
+  }
+  for (int32_t i = 0; i < at->contacts; i++)
+    if (!strut_form_touches(p->f, i)) p->program.high[at->ground + i] = 0;
+}
+
+static void set_costs(prestress *p, int32_t from, int32_t to, double cost) {
+  for (int32_t j = from; j < to; j++) p->program.cost[j] = cost;
+}
+
+static strut_status solve(prestress *p, double *sum, strut_error *error) {
+  strut_program_end end;
+  strut_status status = strut_linear_program_solve(&p->program, p->x, sum, &end);
+  if (status) return strut_fail(error, status, "out of memory");
+  if (end == STRUT_PROGRAM_OPTIMAL) return STRUT_OK;
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "the linear programme for the members' forces could not be solved");
+}
+
+static bool has_cables(const strut_former *f) {
+  for (size_t j = 0; j < f->scene->member_count; j++)
+    if (f->scene->members[j].kind == STRUT_CABLE) return true;
+  return false;
+}
+
+/* Which nodes lack a force, and how much at the worst of them. */
+static strut_status cannot_hold(const prestress *p, strut_error *error) {
+  const strut_former *f = p->f;
+  const columns *at = &p->at;
+  uint8_t *marked = strut_allocate(f->scene->node_count, 1);
+  char names[200];
+  double worst = 0;
+  if (!marked) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (int32_t i = 0; i < at->n; i++) {
+    double missing = fmax(p->x[at->up + i], p->x[at->down + i]);
+    if (missing > MISSING) marked[f->potential->coordinate[i] / 2] = 1;
+    worst = fmax(worst, missing);
+  }
+  strut_form_name_nodes(f, marked, names, sizeof names);
+  strut_release(marked);
+  char cables[80] = "";
+  if (f->options->least_density > 0)
+    snprintf(cables, sizeof cables, " with every cable at %.4g N/m or more",
+             f->options->least_density);
+  if (p->least > 0)
+    snprintf(cables, sizeof cables, " with every cable at %.4g N or more", p->least);
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "no forces%s hold the drawn shape: at %s up to %.4g N are missing; change the "
+                    "shape, add members or supports",
+                    has_cables(f) ? cables : "", names, worst * p->scale);
+}
+
+/* First whether any forces hold the shape, then which. */
+static strut_status find_forces(prestress *p, strut_error *error) {
+  const columns *at = &p->at;
+  double sum = 0;
+  set_costs(p, at->up, at->count, 1);
+  strut_status status = solve(p, &sum, error);
+  if (status) return status;
+  if (sum > MISSING * (1 + (double)at->n)) return cannot_hold(p, error);
+  set_costs(p, at->up, at->count, 0);
+  for (int32_t j = at->up; j < at->count; j++) p->program.high[j] = 0;
+  if (p->f->options->objective == STRUT_FORM_LARGEST) {
+    p->program.cost[at->most] = 1;
+    status = solve(p, &sum, error);
+    if (status) return status;
+    p->program.cost[at->most] = 0;
+    p->program.high[at->most] = sum * (1 + SLACKEN) + 1e-12;
+  }
+  set_costs(p, at->pull, at->ground, 1);
+  return solve(p, &sum, error);
+}
+
+/* From forces that hold the shape to those whose cables have the least squares of densities. */
+static bool spread(prestress *p) {
+  const strut_former *f = p->f;
+  const columns *at = &p->at;
+  const double faint = 1e-5; /* bars and contacts decide only what cables leave open */
+  int32_t count = at->members + at->contacts;
+  strut_arena arena = {0};
+  double *matrix = strut_arena_allocate(&arena, (size_t)at->n * (size_t)count, sizeof *matrix);
+  double *weight = strut_arena_allocate(&arena, (size_t)count, sizeof *weight);
+  double *low = strut_arena_allocate(&arena, (size_t)count, sizeof *low);
+  double *x = strut_arena_allocate(&arena, (size_t)count, sizeof *x);
+  bool good = matrix && weight && low && x;
+  for (size_t k = 0; k < p->program.entry_count && good; k++) {
+    int32_t row = p->program.entry_row[k], column = p->program.entry_column[k];
+    if (row >= at->n) continue;
+    if (column < at->members) matrix[row * count + column] = p->program.entry[k];
+    if (column >= at->ground && column < at->most)
+      matrix[row * count + at->members + column - at->ground] = p->program.entry[k];
+  }
+  for (int32_t j = 0; j < at->members && good; j++) {
+    const strut_member *m = &f->scene->members[j];
+    double length = length_of(f, j);
+    bool cable = m->kind == STRUT_CABLE;
+    weight[j] = (cable ? 1.0 : faint) * f->size / (length > 0 ? length : f->size);
+    low[j] = cable ? p->program.low[at->pull + j] : -HUGE_VAL;
+    x[j] = p->x[at->pull + j] - p->x[at->push + j];
+    if (!can_carry(m))
+      for (int32_t i = 0; i < at->n; i++) matrix[i * count + j] = 0;
+  }
+  for (int32_t i = 0; i < at->contacts && good; i++) {
+    weight[at->members + i] = faint;
+    x[at->members + i] = p->x[at->ground + i];
+    for (int32_t k = 0; k < at->n && !strut_form_touches(f, i); k++)
+      matrix[k * count + at->members + i] = 0;
+  }
+  good = good && strut_bounded_squares(at->n, count, matrix, weight, low, x);
+  for (int32_t j = 0; j < count && good; j++) {
+    if (j >= at->members) p->x[at->ground + j - at->members] = x[j];
+    if (j < at->members) p->x[at->pull + j] = x[j], p->x[at->push + j] = 0;
+  }
+  strut_arena_free(&arena);
+  return good;
+}
+
+/* Nodes on the ground go as deep into it as they are pushed. How far they went. */
+static double sink(prestress *p) {
+  const strut_contact_table *c = &p->f->model->contacts;
+  double moved = 0;
+  for (int32_t i = 0; i < p->at.contacts; i++) {
+    strut_node *node = &p->f->scene->nodes[c->entry[i].node];
+    double push = p->scale * p->x[p->at.ground + i];
+    double sinks = push / c->entry[i].stiffness - strut_form_depth(p->f, i);
+    for (int k = 0; k < 2 && push > 0; k++) {
+      double start = node->position[k] - sinks * c->normal[k];
+      if (node->fixed[k]) continue;
+      moved = fmax(moved, fabs(start - node->start[k]));
+      node->start[k] = start;
+    }
+  }
+  return moved;
+}
+
+static strut_status set_forces(prestress *p, strut_error *error) {
+  const columns *at = &p->at;
+  strut_status status = STRUT_OK;
+  for (int32_t j = 0; j < at->members && status == STRUT_OK; j++)
+    status = strut_form_set_force(p->f, (size_t)j,
+                                  p->scale * (p->x[at->pull + j] - p->x[at->push + j]), error);
+  return status;
+}
+
+/* Forces for the shape as it starts. */
+static strut_status pass(prestress *p, strut_error *error) {
+  const columns *at = &p->at;
+  size_t entries = 11 * (size_t)at->members + 2 * (size_t)at->contacts + 2 * (size_t)at->n;
+  strut_arena arena = {0};
+  strut_status status = STRUT_NO_MEMORY;
+  if (strut_linear_program_create(&p->program, at->n + at->members, at->count, entries, &arena)) {
+    fill_rows(p);
+    fill_bounds(p);
+    status = find_forces(p, error);
+    if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES && !spread(p))
+      status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  } else {
+    strut_fail(error, status, "out of memory");
+  }
+  strut_arena_free(&arena);
+  return status;
+}
+
+strut_status strut_form_prestress(strut_former *f, strut_error *error) {
+  prestress p = {.f = f, .at = lay_out(f), .least = least_tension(f)};
+  p.scale = fmax(f->potential->force_scale, fmax(p.least, f->options->least_density * f->size));
+  if (!(p.scale > 0)) p.scale = 1.0;
+  f->form->least_tension = p.least;
+  p.x = strut_arena_allocate(&f->arena, (size_t)p.at.count, sizeof *p.x);
+  if (!p.x) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (size_t i = 0; i < f->scene->node_count; i++)
+    memcpy(f->scene->nodes[i].start, f->scene->nodes[i].position, sizeof f->scene->nodes[i].start);
+  strut_status status = STRUT_OK;
+  for (int k = 0; k < PASSES && status == STRUT_OK; k++) { /* sinking turns members a little */
+    status = pass(&p, error);
+    if (status == STRUT_OK && sink(&p) <= SUNK * f->size) break;
+  }
+  return status == STRUT_OK ? set_forces(&p, error) : status;
+}

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All modes of a small structure, by GSL's dense eigensolvers. */
+#include <float.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/modes/parts.h"
+
+/*
+ * Two ways, each right where the other is not: K x = z M x has errors of the last bit of the
+ * largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of them
+ * is small the first will do; where some coordinates have no mass there is only the second, which
+ * condenses them.
+ */
+typedef struct dense {
+  strut_modes_work *work;
+  size_t n, massive;
+  size_t *row; /* (massive) coordinates with mass */
+  gsl_matrix *a, *b, *vector;
+  gsl_vector *value;
+} dense;
+
+static void fill(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
+  const strut_sparse *a = v->shape->pattern;
+  for (int32_t j = 0; j < v->n; j++)
+    for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
+      size_t r = (size_t)a->row[at], c = (size_t)j;
+      gsl_matrix_set(k, r, c, v->k[at].hi);
+      gsl_matrix_set(k, c, r, v->k[at].hi);
+      gsl_matrix_set(m, r, c, v->m[at]);
+      gsl_matrix_set(m, c, r, v->m[at]);
+    }
+}
+
+/* Vectors of unit length to such of x'Mx = 1, into the set. */
+static void take(dense *d) {
+  strut_eigen_set *set = &d->work->set;
+  double *product = (double *)d->work->v->work;
+  for (size_t i = 0; i < d->n; i++) {
+    double *x = set->vector + i * d->n, square = 0.0;
+    set->value[i] = gsl_vector_get(d->value, i);
+    for (size_t r = 0; r < d->n; r++) x[r] = gsl_matrix_get(d->vector, r, i);
+    strut_vibration_multiply(d->work->v, d->work->v->m, x, product);
+    for (size_t r = 0; r < d->n; r++) square += x[r] * product[r];
+    for (size_t r = 0; r < d->n; r++) x[r] /= sqrt(square);
+  }
+}
+
+static bool solve_directly(dense *d) {
+  gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(d->n);
+  if (!w) return false;
+  gsl_matrix_set_zero(d->a);
+  gsl_matrix_set_zero(d->b);
+  fill(d->work->v, d->a, d->b);
+  bool good = gsl_eigen_gensymmv(d->a, d->b, d->value, d->vector, w) == 0 &&
+              gsl_eigen_gensymmv_sort(d->value, d->vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
+  if (good) take(d);
+  gsl_eigen_gensymmv_free(w);
+  return good;
+}
+
+static int32_t count_below(strut_modes_work *work, double z) {
+  strut_modes_factorise(&work->solver, -z);
+  return work->solver.negative;
+}
+
+/* A shift well below the smallest eigenvalue, by size, that is above 1e-20 of the largest. */
+static double find_soft(strut_modes_work *work) {
+  double z = 1e-20 * work->v->largest;
+  int32_t inside = count_below(work, z) - count_below(work, -z);
+  while (z < 1e-3 * work->v->largest &&
+         count_below(work, 100 * z) - count_below(work, -100 * z) == inside)
+    z *= 100;
+  return 1e-2 * z;
+}
+
+/* M = L L' of the coordinates with mass, into b. */
+static bool split_mass(dense *d) {
+  const strut_vibration *v = d->work->v;
+  const strut_sparse *p = v->shape->pattern;
+  gsl_matrix_view m = gsl_matrix_submatrix(d->b, 0, 0, d->massive, d->massive);
+  gsl_matrix_set_zero(d->b);
+  size_t *place = d->row + d->massive; /* where a coordinate stands among them */
+  for (size_t i = 0; i < d->massive; i++) place[d->row[i]] = i;
+  for (int32_t j = 0; j < v->n; j++)
+    for (int32_t at = p->start[j]; at < p->start[j + 1]; at++) {
+      if (!(v->m[at] > 0)) continue;
+      size_t r = place[p->row[at]], c = place[j];
+      gsl_matrix_set(&m.matrix, r, c, v->m[at]);
+      gsl_matrix_set(&m.matrix, c, r, v->m[at]);
+    }
+  return gsl_linalg_cholesky_decomp1(&m.matrix) == 0;
+}
+
+/* x (n, massive) = (K + soft M)^-1 L in d->vector, and L' x in d->a. */
+static void invert(dense *d) {
+  strut_dd *y = d->work->v->work;
+  for (size_t c = 0; c < d->massive; c++) {
+    for (size_t r = 0; r < d->n; r++) y[r] = dd_of(0.0);
+    for (size_t r = c; r < d->massive; r++) y[d->row[r]] = dd_of(gsl_matrix_get(d->b, r, c));
+    strut_modes_solve(&d->work->solver, y);
+    for (size_t r = 0; r < d->n; r++) gsl_matrix_set(d->vector, r, c, dd_double(y[r]));
+  }
+  for (size_t r = 0; r < d->massive; r++)
+    for (size_t c = 0; c < d->massive; c++) {
+      double sum = 0.0;
+      for (size_t i = r; i < d->massive; i++)
+        sum += gsl_matrix_get(d->b, i, r) * gsl_matrix_get(d->vector, d->row[i], c);
+      gsl_matrix_set(d->a, r, c, sum);
+    }
+}
+
+/* The i-th of the inverse's eigenpairs, t = 1 / (z + soft), into the set. */
+static void take_inverse(dense *d, const gsl_matrix *small, size_t from, size_t i) {
+  double t = gsl_vector_get(d->value, from);
+  double *x = d->work->set.vector + i * d->n;
+  d->work->set.value[i] = 1.0 / t - d->work->soft;
+  memset(x, 0, d->n * sizeof *x);
+  for (size_t c = 0; c < d->massive; c++) {
+    double z = gsl_matrix_get(small, c, from) / t;
+    for (size_t r = 0; r < d->n; r++) x[r] += gsl_matrix_get(d->vector, r, c) * z;
+  }
+}
+
+/*
+ * Ascending eigenvalues are 1/t: first the negative t from 0 down, then the positive from the
+ * largest.
+ * A negative one within the rounding of the largest is a huge eigenvalue.
+ */
+static void sort_inverse(const dense *d, double top, size_t *order) {
+  double least = 1e-12 * top;
+  for (size_t i = 0; i < d->massive; i++) {
+    size_t rank = 0;
+    double t = gsl_vector_get(d->value, i);
+    for (size_t k = 0; k < d->massive; k++) {
+      double s = gsl_vector_get(d->value, k);
+      bool before = (s < -least) != (t < -least) ? s < -least : s > t;
+      rank += before || (s == t && k < i);
+    }
+    order[rank] = i;
+  }
+}
+
+/*
+ * Where the direct way begins to be the better one: its errors, relative, are those of the largest
+ * over the eigenvalue, the inverse's the other way round. Equal eigenvalues are not torn apart, for
+ * the two ways choose different vectors among theirs.
+ */
+static size_t find_cut(const dense *d, double top, const size_t *order) {
+  const double *value = d->work->set.value;
+  for (size_t i = 1; i < d->massive; i++) {
+    double inverse = top / fabs(gsl_vector_get(d->value, order[i]));
+    double direct = d->work->v->largest / fmax(fabs(value[i]), DBL_MIN);
+    if (direct <= inverse && value[i] - value[i - 1] > 1e-3 * fabs(value[i])) return i;
+  }
+  return d->massive;
+}
+
+static void merge(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
+  double top = 0.0;
+  for (size_t k = 0; k < d->massive; k++) top = fmax(top, fabs(gsl_vector_get(d->value, k)));
+  sort_inverse(d, top, order);
+  size_t cut = alone ? d->massive : find_cut(d, top, order);
+  for (size_t i = 0; i < cut; i++) take_inverse(d, small, order[i], i);
+}
+
+static bool solve_inverse(dense *d, bool alone) {
+  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(d->massive);
+  gsl_matrix *small = gsl_matrix_alloc(d->massive, d->massive);
+  size_t *order = strut_arena_allocate(d->work->arena, d->massive, sizeof *order);
+  bool good = w && small && order && split_mass(d);
+  if (good) {
+    strut_modes_factorise(&d->work->solver, d->work->soft);
+    invert(d);
+    gsl_matrix_view a = gsl_matrix_submatrix(d->a, 0, 0, d->massive, d->massive);
+    gsl_vector_view value = gsl_vector_subvector(d->value, 0, d->massive);
+    good = gsl_eigen_symmv(&a.matrix, &value.vector, small, w) == 0;
+    if (good) merge(d, small, order, alone);
+  }
+  gsl_eigen_symmv_free(w);
+  gsl_matrix_free(small);
+  return good;
+}
+
+static bool allocate(dense *d) {
+  strut_eigen_set *set = &d->work->set;
+  const strut_vibration *v = d->work->v;
+  d->n = (size_t)v->n, d->massive = (size_t)v->massive;
+  d->row = strut_arena_allocate(d->work->arena, d->massive + d->n, sizeof *d->row);
+  set->n = v->n, set->count = v->massive;
+  set->value = strut_arena_allocate(d->work->arena, d->n, sizeof *set->value);
+  set->vector = strut_arena_allocate(d->work->arena, d->n * d->n, sizeof *set->vector);
+  d->a = gsl_matrix_calloc(d->n, d->n);
+  d->b = gsl_matrix_calloc(d->n, d->n);
+  d->vector = gsl_matrix_calloc(d->n, d->n);
+  d->value = gsl_vector_calloc(d->n);
+  if (!d->row || !set->value || !set->vector || !d->a || !d->b || !d->vector || !d->value)
+    return false;
+  for (size_t i = 0, count = 0; i < d->n; i++)
+    if (v->mass[i] > 0) d->row[count++] = i;
+  return true;
+}
+
+strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
+  dense d = {.work = work};
+  bool good = allocate(&d);
+  if (good) {
+    bool all = d.massive == d.n;
+    work->soft = find_soft(work);
+    if (all) good = solve_directly(&d);
+    if (good && (!all || work->soft < 1e-10 * work->v->largest)) good = solve_inverse(&d, !all);
+  }
+  gsl_matrix_free(d.a);
+  gsl_matrix_free(d.b);
+  gsl_matrix_free(d.vector);
+  gsl_vector_free(d.value);
+  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory for all modes");
+}

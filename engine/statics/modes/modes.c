@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/modes/modes.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/modes/parts.h"
+
+static const double TURN = 6.283185307179586476925;
+static const double ENOUGH = 1e-8;   /* relative error of an eigenvalue that is worth printing */
+static const double LARGEST = 1e150; /* eigenvalue; products of two of them are numbers */
+
+const char *strut_mode_kind_name(strut_mode_kind kind) {
+  static const char *const names[] = {"rigid-body", "mechanism", "elastic", "unstable"};
+  return names[kind];
+}
+
+/* Nodes that touch, held along the ground: only where that is one coordinate. */
+static strut_status hold_stuck(const strut_model *model, const strut_stand *stand, uint8_t *held,
+                               strut_error *error) {
+  const double *tangent = model->contacts.tangent;
+  if (stand->closed_count && tangent[0] != 0 && tangent[1] != 0)
+    return strut_fail(error, STRUT_USAGE,
+                      "--stuck needs a level ground; make this one level and turn gravity instead");
+  for (int32_t i = 0; i < stand->closed_count; i++)
+    held[2 * stand->closed[i] + (tangent[0] != 0 ? 0 : 1)] = 1;
+  return STRUT_OK;
+}
+
+static strut_status check_problem(strut_modes_work *work, strut_error *error) {
+  const strut_vibration *v = work->v;
+  if (v->n == 0 || v->massive == 0)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      v->n == 0
+                          ? "no node is free to move, so that there are no modes"
+                          : "no free node has mass, so that there are no modes: give nodes or "
+                            "members a mass");
+  if (!isfinite(v->largest) || v->largest > LARGEST)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "stiffnesses are so large beside the masses that frequencies cannot be "
+                      "computed; check their units");
+  if (v->massive == v->n) return STRUT_OK;
+  strut_modes_factorise(&work->solver, 1e-20 * v->largest);
+  int32_t weakest = work->solver.weakest;
+  if (work->solver.loss > 1e-26 || v->mass[weakest] > 0) return STRUT_OK;
+  return strut_fail(error, STRUT_SINGULAR,
+                    "node '%s' has no mass and can move without stiffness, so that it has no "
+                    "frequency: give it a mass or hold it",
+                    v->model->scene->nodes[v->shape->coordinate[weakest] / 2].name);
+}
+
+static double product_with(const strut_modes_work *work, const double *x, const double *y) {
+  double *product = (double *)work->v->work, sum = 0.0;
+  strut_vibration_multiply(work->v, work->v->m, x, product);
+  for (int32_t i = 0; i < work->v->n; i++) sum += y[i] * product[i];
+  return sum;
+}
+
+/* Takes from x its shares in the first `count` of the vectors; returns what is left, squared. */
+static double take_out(const strut_modes_work *work, const double *vectors, int32_t count,
+                       double *x) {
+  size_t n = (size_t)work->v->n;
+  for (int pass = 0; pass < 2; pass++)
+    for (int32_t k = 0; k < count; k++) {
+      const double *y = vectors + (size_t)k * n;
+      double share = product_with(work, x, y);
+      for (size_t i = 0; i < n; i++) x[i] -= share * y[i];
+    }
+  return product_with(work, x, x);
+}
+
+/*
+ * The motions without stiffness, rearranged: first the rigid ones among them, then the rest.
+ * Returns how many are rigid, or -1 when memory is out.
+ */
+static int32_t sort_zeros(strut_modes_work *work, double *zero, int32_t count) {
+  size_t n = (size_t)work->v->n;
+  strut_arena scratch = {0};
+  double *basis = strut_arena_allocate(&scratch, (size_t)count * n, sizeof *basis);
+  double *x = strut_arena_allocate(&scratch, n, sizeof *x);
+  int32_t rigid = 0, found = 0;
+  if (!basis || !x) {
+    strut_arena_free(&scratch);
+    return -1;
+  }
+  for (int32_t r = 0; r < work->rigid_count && found < count; r++) {
+    memcpy(x, work->rigid + (size_t)r * n, n * sizeof *x);
+    if (take_out(work, zero, count, x) > 1e-8) continue;
+    memcpy(basis + (size_t)found++ * n, work->rigid + (size_t)r * n, n * sizeof *x);
+  }
+  rigid = found;
+  for (; found < count; found++) { /* of the rest always the one that adds most */
+    double most = -1.0, *next = basis + (size_t)found * n;
+    for (int32_t k = 0; k < count; k++) {
+      memcpy(x, zero + (size_t)k * n, n * sizeof *x);
+      double left = take_out(work, basis, found, x);
+      if (left > most) most = left, memcpy(next, x, n * sizeof *x);
+    }
+    for (size_t i = 0; i < n && most > 0; i++) next[i] /= sqrt(most);
+  }
+  memcpy(zero, basis, (size_t)count * n * sizeof *zero);
+  strut_arena_free(&scratch);
+  return rigid;
+}
+
+static strut_mode_kind *find_kinds(strut_modes_work *work, strut_error *error) {
+  strut_eigen_set *set = &work->set;
+  strut_mode_kind *kind = strut_arena_allocate(work->arena, (size_t)set->count, sizeof *kind);
+  int32_t first = -1, zeros = 0;
+  for (int32_t i = 0; i < set->count && kind; i++) {
+    double nothing = 4.0 * set->noise[i] + 1e-22 * work->v->largest;
+    kind[i] = set->value[i] < 0 ? STRUT_MODE_UNSTABLE : STRUT_MODE_ELASTIC;
+    if (!(fabs(set->value[i]) <= nothing)) continue;
+    if (first < 0) first = i;
+    zeros = i - first + 1;
+  }
+  int32_t rigid = 0;
+  if (kind && zeros > 0)
+    rigid = sort_zeros(work, set->vector + (size_t)first * (size_t)set->n, zeros);
+  if (!kind || rigid < 0) {
+    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return NULL;
+  }
+  for (int32_t i = first; i < first + zeros; i++) {
+    kind[i] = i - first < rigid ? STRUT_MODE_RIGID : STRUT_MODE_MECHANISM;
+    set->error[i] = fabs(set->value[i]);
+    set->value[i] = 0.0;
+  }
+  return kind;
+}
+
+static double condition_of(const strut_modes_work *work, bool dense) {
+  const strut_eigen_set *set = &work->set;
+  double top = dense ? set->value[set->count - 1] : work->v->largest, low = HUGE_VAL;
+  for (int32_t i = 0; i < set->count; i++)
+    if (set->value[i] != 0) low = fmin(low, fabs(set->value[i]));
+  return top / low;
+}
+
+static strut_status check_errors(const strut_modes_work *work, const strut_modes *modes,
+                                 strut_error *error) {
+  const strut_eigen_set *set = &work->set;
+  for (size_t i = 0; i < modes->count; i++) {
+    double value = set->value[i], wrong = (set->error[i] + set->noise[i]) / fabs(value);
+    if (value == 0 || wrong <= ENOUGH) continue;
+    return strut_fail(error, STRUT_SINGULAR,
+                      "mode %zu, of about %.6g Hz, cannot be had to 1e-8 but only to %.1g: the "
+                      "stiffnesses differ "
+                      "so much (condition about %.1g) that %s; bring them closer together, or ask "
+                      "for fewer modes "
+                      "with --count",
+                      i + 1, sqrt(fabs(value)) / TURN, wrong, modes->condition,
+                      set->noise[i] > set->error[i]
+                          ? "the last bits of rest lengths and positions decide"
+                          : "rounding decides");
+  }
+  return STRUT_OK;
+}
+
+static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind kind,
+                              strut_mode *mode) {
+  const strut_eigen_set *set = &work->set;
+  const strut_vibration *v = work->v;
+  const double *x = set->vector + (size_t)i * (size_t)v->n;
+  double value = set->value[i], largest = 0.0;
+  double beside = value != 0 ? fabs(value) : v->largest > 0 ? v->largest : 1.0;
+  mode->shape = strut_arena_allocate(work->arena, (size_t)v->model->length, sizeof(double));
+  if (!mode->shape) return STRUT_NO_MEMORY;
+  mode->kind = kind;
+  mode->eigenvalue = value;
+  mode->angular_frequency = value > 0 ? sqrt(value) : 0.0;
+  mode->damping_ratio = value > 0 ? 0.0 : (double)NAN;
+  mode->residual = value != 0 ? set->residual[i] : set->error[i] / beside;
+  mode->error = (set->error[i] + set->noise[i]) / beside;
+  if (value != 0) mode->error = fmax(mode->error, DBL_EPSILON); /* it is handed out as a double */
+  for (int32_t k = 0; k < v->n; k++)
+    if (fabs(x[k]) > fabs(largest) * (1 + 1e-9)) largest = x[k];
+  for (int32_t k = 0; k < v->n; k++) mode->shape[v->shape->coordinate[k]] = x[k] / largest;
+  strut_modes_describe(work, x, mode);
+  return STRUT_OK;
+}
+
+static strut_status report(strut_modes_work *work, int32_t wanted, strut_modes *modes,
+                           strut_error *error) {
+  strut_eigen_set *set = &work->set;
+  size_t found = (size_t)set->count;
+  strut_mode_kind *kind = find_kinds(work, error);
+  if (!kind) return STRUT_NO_MEMORY;
+  modes->list = strut_arena_allocate(work->arena, found, sizeof *modes->list);
+  if (!modes->list) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  modes->condition = condition_of(work, modes->dense);
+  modes->count = found < (size_t)wanted ? found : (size_t)wanted;
+  for (size_t i = 0; i < found; i++)
+    if (fill_mode(work, (int32_t)i, kind[i], &modes->list[i]))
+      return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  modes->damped_exactly =
+      modes->dense && set->count <= STRUT_DAMPED_MODES && work->v->massive == work->v->n;
+  strut_status status = strut_modes_damping(work, modes->damped_exactly, modes->list, error);
+  return status ? status : check_errors(work, modes, error);
+}
+
+static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *modes,
+                          strut_error *error) {
+  const strut_vibration *v = work->v;
+  strut_status status = strut_modes_solver_create(v, &work->solver, error);
+  if (status == STRUT_OK) status = check_problem(work, error);
+  if (status != STRUT_OK) return status;
+  if (modes->at_rest) status = strut_modes_settle(work, error);
+  if (status != STRUT_OK) return status;
+  modes->coordinates = v->n;
+  status = modes->dense ? strut_modes_dense(work, error) : strut_modes_sparse(work, wanted, error);
+  if (status != STRUT_OK) return status;
+  size_t count = (size_t)work->set.count;
+  work->set.noise = strut_arena_allocate(work->arena, count, sizeof(double));
+  work->set.error = strut_arena_allocate(work->arena, count, sizeof(double));
+  work->set.residual = strut_arena_allocate(work->arena, count, sizeof(double));
+  if (!work->set.noise || !work->set.error || !work->set.residual)
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  status = strut_modes_noise(work, modes->at_rest, error);
+  if (status == STRUT_OK) status = strut_modes_rigid(work, error);
+  if (status == STRUT_OK) status = strut_modes_refine(work, error);
+  return status ? status : report(work, wanted, modes, error);
+}
+
+/* The lowest so many that are wanted: of a dense problem all unless asked otherwise. */
+static int32_t wanted_of(const strut_modes_options *options, bool dense) {
+  if (options->count > 0) return options->count;
+  return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
+}
+
+strut_status strut_modes_find(const strut_model *model, const strut_modes_options *options,
+                              strut_modes *modes, strut_error *error) {
+  strut_stand stand = {0};
+  *modes = (strut_modes){0};
+  strut_modes_work work = {.arena = &modes->arena};
+  strut_status status = strut_modes_shape(model, options->at, &modes->arena, &stand, error);
+  if (status != STRUT_OK) return status;
+  modes->at = stand.name;
+  modes->at_rest = stand.at_rest;
+  modes->closed = stand.closed;
+  modes->closed_count = stand.closed_count;
+  uint8_t *held = strut_arena_allocate(&modes->arena, (size_t)model->length, sizeof *held);
+  if (!held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (options->stuck) status = hold_stuck(model, &stand, held, error);
+  if (status == STRUT_OK)
+    status = strut_vibration_create(model, stand.q, stand.closed, stand.closed_count, held, &work.v,
+                                    error);
+  if (status == STRUT_OK) {
+    modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
+    status = solve(&work, wanted_of(options, modes->dense), modes, error);
+  }
+  strut_modes_solver_free(&work.solver);
+  strut_vibration_free(work.v);
+  return status;
+}
+
+void strut_modes_free(strut_modes *modes) {
+  strut_arena_free(&modes->arena);
+  *modes = (strut_modes){0};
+}

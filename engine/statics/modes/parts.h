@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the files of the room `modes` share: the problem on its way from matrices to named modes.
+ */
+#ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
+#define STRUT_ENGINE_STATICS_MODES_PARTS_H
+
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/solver.h"
+#include "engine/statics/equilibria/stand.h"
+#include "engine/statics/modes/vibration.h"
+
+/** Eigenvalues ascending and vectors (n each), x'Mx = 1. */
+typedef struct strut_eigen_set {
+  int32_t n, count;
+  double *value;    /* (count) */
+  double *vector;   /* (count, n) */
+  double *noise;    /* (count) stiffness that the last bits make in that motion, over x'Mx */
+  double *error;    /* (count) of the method, absolute [1/s^2] */
+  double *residual; /* (count) */
+} strut_eigen_set;
+
+typedef struct strut_modes_work {
+  strut_vibration *v;
+  strut_modes_solver solver;
+  strut_eigen_set set;
+  double soft; /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
+  int32_t rigid_count;
+  double *rigid; /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
+  strut_arena *arena;
+} strut_modes_work;
+
+/** The shape of that name, as strut_stand_find. */
+strut_status strut_modes_shape(const strut_model *model, const char *name, strut_arena *arena,
+                               strut_stand *stand, strut_error *error);
+
+/** All modes of a dense problem, or the lowest ones of a sparse one, into work->set. */
+strut_status strut_modes_dense(strut_modes_work *work, strut_error *error);
+strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error);
+
+/** The shape to twice a double's precision, from one that is at rest as far as doubles tell. */
+strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);
+/** What the last bits of rest lengths, or of a shape that is not at rest, do to the eigenvalues. */
+strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error);
+/** Improves the eigenpairs and estimates their errors. */
+strut_status strut_modes_refine(strut_modes_work *work, strut_error *error);
+
+/** The rigid motions that supports and closed contacts leave. */
+strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error);
+
+/** Damping of the modes into the list; `exactly`: the set holds all modes. */
+strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
+                                 strut_error *error);
+
+/** What a mode looks like, in words. */
+void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode);
+
+#endif

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/modes/vibration.h"
+
+#include <string.h>
+
+enum { MEMBER_ENTRIES = 10, CONTACT_ENTRIES = 3 };
+
+static void place_member(strut_vibration *v, int32_t j) {
+  const strut_member_table *t = &v->model->members;
+  strut_vibration_member *m = &v->member[j];
+  uint32_t a = t->from[j], b = t->to[j];
+  strut_dd dx = dd_sub(v->q[b], v->q[a]), dy = dd_sub(v->q[b + 1], v->q[a + 1]);
+  strut_dd length = dd_sqrt(dd_add(dd_mul(dx, dx), dd_mul(dy, dy)));
+  bool any = length.hi > 0;
+  m->length = length.hi;
+  m->stretch = dd_sub(length, dd_of(t->rest[j]));
+  m->taut = dd_double(m->stretch) > t->slack[j];
+  m->ux = any ? dd_div(dx, length) : dd_of(0.0);
+  m->uy = any ? dd_div(dy, length) : dd_of(0.0);
+  /* of zero length and zero rest length: an isotropic spring */
+  if (any)
+    m->across = dd_div(dd_scale(m->stretch, t->stiffness[j]), length);
+  else
+    m->across = dd_of(t->rest[j] > 0 ? 0.0 : t->stiffness[j]);
+}
+
+/* B at both ends, -B between them: entry (i, j) of the member's 4 x 4 block. */
+static bool negative_entry(int i, int j) { return i / 2 != j / 2; }
+
+static void add_member(strut_vibration *v, int32_t j) {
+  const strut_vibration_member *m = &v->member[j];
+  if (!m->taut) return;
+  strut_dd along = dd_sub(dd_of(v->model->members.stiffness[j]), m->across);
+  strut_dd block[3] = {dd_add(m->across, dd_mul(along, dd_mul(m->ux, m->ux))),
+                       dd_mul(along, dd_mul(m->ux, m->uy)),
+                       dd_add(m->across, dd_mul(along, dd_mul(m->uy, m->uy)))};
+  double k = v->model->members.damping[j], x = m->ux.hi, y = m->uy.hi;
+  double damper[3] = {k * x * x, k * x * y, k * y * y};
+  const int32_t *place = v->shape->place + MEMBER_ENTRIES * j;
+  for (int r = 0; r < 4; r++)
+    for (int c = 0; c <= r; c++, place++) {
+      if (*place < 0) continue;
+      int which = r % 2 + c % 2;
+      bool minus = negative_entry(r, c);
+      v->k[*place] = dd_add(v->k[*place], minus ? dd_negative(block[which]) : block[which]);
+      v->d[*place] += minus ? -damper[which] : damper[which];
+    }
+}
+
+static void add_contact(strut_vibration *v, int32_t i) {
+  const strut_contact_table *c = &v->model->contacts;
+  if (!v->closed[i]) return;
+  const int32_t *place = v->shape->place + MEMBER_ENTRIES * v->model->members.count;
+  place += CONTACT_ENTRIES * i;
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b <= a; b++, place++) {
+      if (*place < 0) continue;
+      strut_dd nn = dd_product(c->normal[a], c->normal[b]);
+      v->k[*place] = dd_add(v->k[*place], dd_scale(nn, c->entry[i].stiffness));
+      v->d[*place] += c->entry[i].damping * nn.hi;
+    }
+}
+
+static void add_masses(strut_vibration *v) {
+  const strut_model *model = v->model;
+  const strut_member_table *t = &model->members;
+  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
+  const int32_t *place = v->shape->place;
+  for (int32_t j = 0; j < t->count; j++)
+    for (int r = 0; r < 4; r++)
+      for (int c = 0; c <= r; c++, place++) {
+        if (*place < 0 || r % 2 != c % 2 || !(t->mass[j] > 0)) continue;
+        if (!negative_entry(r, c))
+          v->m[*place] += consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
+        else if (consistent)
+          v->m[*place] += t->mass[j] / 6.0;
+      }
+  const strut_sparse *a = v->shape->pattern;
+  for (int32_t i = 0; i < v->n; i++)
+    v->m[a->start[i]] += model->point_mass[v->shape->coordinate[i] / 2];
+  for (int32_t j = 0; j < v->n; j++)
+    for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
+      v->mass[j] += v->m[at];
+      if (a->row[at] != j) v->mass[a->row[at]] += v->m[at];
+    }
+  for (int32_t i = 0; i < v->n; i++) v->massive += v->mass[i] > 0;
+}
+
+/* x'Kx over x'Mx is at most that of the worst member or node: M >= half of its diagonal. */
+static void bound_spectrum(strut_vibration *v) {
+  const strut_sparse *a = v->shape->pattern;
+  double *sum = (double *)v->work;
+  memset(sum, 0, (size_t)v->n * sizeof *sum);
+  for (int32_t j = 0; j < v->n; j++)
+    for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
+      sum[j] += fabs(v->k[at].hi);
+      if (a->row[at] != j) sum[a->row[at]] += fabs(v->k[at].hi);
+    }
+  v->largest = 0.0;
+  for (int32_t i = 0; i < v->n; i++) {
+    double bound = v->mass[i] > 0 ? 2.0 * sum[i] / v->m[a->start[i]] : 0.0;
+    if (!(bound <= v->largest)) v->largest = bound; /* what is no number shows */
+  }
+}
+
+void strut_vibration_update(strut_vibration *v) {
+  const strut_sparse *a = v->shape->pattern;
+  memset(v->k, 0, (size_t)a->start[v->n] * sizeof *v->k);
+  memset(v->d, 0, (size_t)a->start[v->n] * sizeof *v->d);
+  for (int32_t j = 0; j < v->model->members.count; j++) {
+    place_member(v, j);
+    add_member(v, j);
+  }
+  for (int32_t i = 0; i < v->model->contacts.count; i++) add_contact(v, i);
+  bound_spectrum(v);
+}
+
+static bool allocate(strut_vibration *v) {
+  const strut_model *model = v->model;
+  size_t n = (size_t)v->n, entries = (size_t)v->shape->pattern->start[n];
+  v->q = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->q);
+  v->member = strut_arena_allocate(&v->arena, (size_t)model->members.count, sizeof *v->member);
+  v->closed = strut_arena_allocate(&v->arena, (size_t)model->contacts.count, sizeof *v->closed);
+  v->k = strut_arena_allocate(&v->arena, entries, sizeof *v->k);
+  v->m = strut_arena_allocate(&v->arena, entries, sizeof *v->m);
+  v->d = strut_arena_allocate(&v->arena, entries, sizeof *v->d);
+  v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
+  v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
+  return v->q && v->member && v->closed && v->k && v->m && v->d && v->mass && v->work;
+}
+
+strut_status strut_vibration_create(const strut_model *model, const double *q,
+                                    const int32_t *closed, int32_t closed_count,
+                                    const uint8_t *held, strut_vibration **vibration,
+                                    strut_error *error) {
+  strut_vibration *v = *vibration = strut_allocate(1, sizeof *v);
+  if (!v) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  v->model = model;
+  strut_status status = strut_potential_create(model, held, true, &v->shape, error);
+  if (status == STRUT_OK) v->n = v->shape->n;
+  if (status == STRUT_OK && !allocate(v))
+    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status != STRUT_OK) {
+    strut_vibration_free(v);
+    *vibration = NULL;
+    return status;
+  }
+  for (int32_t i = 0; i < model->length; i++) v->q[i] = dd_of(q[i]);
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    for (int32_t k = 0; k < closed_count; k++)
+      if (model->contacts.entry[i].node == closed[k]) v->closed[i] = 1;
+  add_masses(v);
+  strut_vibration_update(v);
+  return STRUT_OK;
+}
+
+void strut_vibration_free(strut_vibration *vibration) {
+  if (!vibration) return;
+  strut_potential_free(vibration->shape);
+  strut_arena_free(&vibration->arena);
+  strut_release(vibration);
+}
+
+static void add_to(strut_dd *force, int32_t row, strut_dd value) {
+  if (row >= 0) force[row] = dd_add(force[row], value);
+}
+
+void strut_vibration_force(const strut_vibration *v, strut_dd *force) {
+  const strut_model *model = v->model;
+  const strut_member_table *t = &model->members;
+  const int32_t *row_of = v->shape->row_of;
+  for (int32_t i = 0; i < v->n; i++) force[i] = dd_of(v->shape->force[v->shape->coordinate[i]]);
+  for (int32_t j = 0; j < t->count; j++) {
+    const strut_vibration_member *m = &v->member[j];
+    if (!m->taut) continue;
+    strut_dd pull = dd_scale(m->stretch, t->stiffness[j]);
+    strut_dd x = dd_mul(pull, m->ux), y = dd_mul(pull, m->uy);
+    add_to(force, row_of[t->from[j]], x);
+    add_to(force, row_of[t->from[j] + 1], y);
+    add_to(force, row_of[t->to[j]], dd_negative(x));
+    add_to(force, row_of[t->to[j] + 1], dd_negative(y));
+  }
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t i = 0; i < c->count; i++) {
+    if (!v->closed[i]) continue;
+    uint32_t at = c->at[i];
+    strut_dd gap = dd_add(dd_scale(v->q[at], c->normal[0]),
+                          dd_scale(dd_sub(v->q[at + 1], dd_of(c->height)), c->normal[1]));
+    strut_dd push = dd_scale(gap, -c->entry[i].stiffness);
+    add_to(force, row_of[at], dd_scale(push, c->normal[0]));
+    add_to(force, row_of[at + 1], dd_scale(push, c->normal[1]));
+  }
+}
+
+void strut_vibration_stiffness(const strut_vibration *v, const strut_dd *x, strut_dd *y) {
+  const strut_sparse *a = v->shape->pattern;
+  for (int32_t i = 0; i < v->n; i++) y[i] = dd_of(0.0);
+  for (int32_t j = 0; j < v->n; j++) {
+    strut_dd sum = dd_mul(v->k[a->start[j]], x[j]);
+    for (int32_t at = a->start[j] + 1; at < a->start[j + 1]; at++) {
+      y[a->row[at]] = dd_add(y[a->row[at]], dd_mul(v->k[at], x[j]));
+      sum = dd_add(sum, dd_mul(v->k[at], x[a->row[at]]));
+    }
+    y[j] = dd_add(y[j], sum);
+  }
+}
+
+void strut_vibration_mass(const strut_vibration *v, const strut_dd *x, strut_dd *y) {
+  const strut_sparse *a = v->shape->pattern;
+  for (int32_t i = 0; i < v->n; i++) y[i] = dd_of(0.0);
+  for (int32_t j = 0; j < v->n; j++) {
+    strut_dd sum = dd_scale(x[j], v->m[a->start[j]]);
+    for (int32_t at = a->start[j] + 1; at < a->start[j + 1]; at++) {
+      if (!(v->m[at] > 0)) continue;
+      y[a->row[at]] = dd_add(y[a->row[at]], dd_scale(x[j], v->m[at]));
+      sum = dd_add(sum, dd_scale(x[a->row[at]], v->m[at]));
+    }
+    y[j] = dd_add(y[j], sum);
+  }
+}
+
+void strut_vibration_multiply(const strut_vibration *v, const double *matrix, const double *x,
+                              double *y) {
+  strut_sparse a = *v->shape->pattern;
+  a.value = (double *)matrix; /* only read */
+  strut_sparse_multiply(&a, x, y);
+}
+
+strut_spread strut_vibration_spread(const strut_vibration *v, int32_t j, const double *x) {
+  const strut_member_table *t = &v->model->members;
+  const int32_t *row_of = v->shape->row_of;
+  double d[2];
+  for (uint32_t c = 0; c < 2; c++) {
+    int32_t a = row_of[t->from[j] + c], b = row_of[t->to[j] + c];
+    d[c] = (b >= 0 ? x[b] : 0.0) - (a >= 0 ? x[a] : 0.0);
+  }
+  double ux = v->member[j].ux.hi, uy = v->member[j].uy.hi;
+  return (strut_spread){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a mode looks like, in words made from its figures. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/statics/modes/parts.h"
+
+enum { MOST_NODES = 3, MOST_MEMBERS = 3 };
+
+static const double MOVES = 0.5;  /* share of the largest amplitude from which a node is named */
+static const double COUNTS = 0.1; /* share of the energy from which a member is named */
+
+static void say(strut_mode *mode, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void say(strut_mode *mode, const char *format, ...) {
+  size_t used = strlen(mode->description), room = sizeof mode->description - used;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(mode->description + used, room, format, arguments);
+  va_end(arguments);
+}
+
+static void motion_of(const strut_vibration *v, const double *x, int32_t node, double d[2]) {
+  for (int c = 0; c < 2; c++) {
+    int32_t row = v->shape->row_of[2 * node + c];
+    d[c] = row >= 0 ? x[row] : 0.0;
+  }
+}
+
+static int32_t largest_node(const strut_vibration *v, const double *x, double d[2]) {
+  double most = -1.0, here[2];
+  d[0] = d[1] = 0.0;
+  int32_t node = 0;
+  for (int32_t i = 0; i < v->model->node_count; i++) {
+    motion_of(v, x, i, here);
+    if (hypot(here[0], here[1]) <= most * (1 + 1e-9)) continue; /* of equal ones the first */
+    most = hypot(here[0], here[1]), node = i, d[0] = here[0], d[1] = here[1];
+  }
+  return node;
+}
+
+static const char *direction(const double d[2]) {
+  double size = hypot(d[0], d[1]);
+  if (fabs(d[0]) > 0.95 * size) return " along x";
+  if (fabs(d[1]) > 0.95 * size) return " along y";
+  return "";
+}
+
+/* Where the cosine with the leading motion lies: 1 with it, -1 against it, 0 across. */
+static int side_of(const double lead[2], const double d[2]) {
+  double cosine = (lead[0] * d[0] + lead[1] * d[1]) / (hypot(lead[0], lead[1]) * hypot(d[0], d[1]));
+  return cosine > 0.5 ? 1 : cosine < -0.5 ? -1 : 0;
+}
+
+/* Names the nodes of one side, the leading one first; returns how many there are. */
+static int name_side(const strut_vibration *v, const double *x, int32_t leader,
+                     const double lead[2], int side, const char *before, strut_mode *mode) {
+  int count = 0;
+  double least = MOVES * hypot(lead[0], lead[1]), d[2];
+  for (int32_t k = -1; k < v->model->node_count; k++) {
+    int32_t i = k < 0 ? leader : k;
+    if (k == leader || (k < 0 && side != 1)) continue;
+    motion_of(v, x, i, d);
+    if (hypot(d[0], d[1]) < least || side_of(lead, d) != side) continue;
+    if (count < MOST_NODES)
+      say(mode, "%s%s", count ? ", " : before, v->model->scene->nodes[i].name);
+    count++;
+  }
+  if (count > MOST_NODES) say(mode, " and %d more", count - MOST_NODES);
+  return count;
+}
+
+static void say_nodes(const strut_vibration *v, const double *x, strut_mode *mode) {
+  double lead[2];
+  int32_t leader = largest_node(v, x, lead);
+  int count = name_side(v, x, leader, lead, 1, "", mode);
+  say(mode, count == 1 ? " moves%s" : " move%s", direction(lead));
+  name_side(v, x, leader, lead, -1, " against ", mode);
+  name_side(v, x, leader, lead, 0, ", across them ", mode);
+}
+
+/* Energies of half a stiffness each: stretch of the members, closed contacts. */
+typedef struct energies {
+  double members, ground, all;
+} energies;
+
+static double stretch_energy(const strut_vibration *v, int32_t j, const double *x) {
+  double e = v->member[j].taut ? strut_vibration_spread(v, j, x).along : 0.0;
+  return v->model->members.stiffness[j] * e * e;
+}
+
+static energies energies_of(const strut_vibration *v, const double *x) {
+  energies e = {0};
+  const strut_contact_table *c = &v->model->contacts;
+  for (int32_t j = 0; j < v->model->members.count; j++) e.members += stretch_energy(v, j, x);
+  for (int32_t i = 0; i < c->count; i++) {
+    double d[2];
+    if (!v->closed[i]) continue;
+    motion_of(v, x, c->entry[i].node, d);
+    double depth = d[0] * c->normal[0] + d[1] * c->normal[1];
+    e.ground += c->entry[i].stiffness * depth * depth;
+  }
+  e.all = e.members + e.ground;
+  return e;
+}
+
+static void say_members(const strut_vibration *v, const double *x, const energies *e,
+                        strut_mode *mode) {
+  int32_t named[MOST_MEMBERS];
+  int count = 0;
+  for (; count < MOST_MEMBERS; count++) {
+    double most = COUNTS * e->all;
+    named[count] = -1;
+    for (int32_t j = 0; j < v->model->members.count; j++) {
+      double energy = stretch_energy(v, j, x);
+      bool known = false;
+      for (int k = 0; k < count; k++) known = known || named[k] == j;
+      if (!known && energy > most) most = energy * (1 + 1e-9), named[count] = j;
+    }
+    if (named[count] < 0) break;
+    double share = 100.0 * stretch_energy(v, named[count], x) / e->all;
+    say(mode, "%s%s %.0f %%", count ? ", " : "; ", v->model->scene->members[named[count]].name,
+        share);
+  }
+  if (e->ground > 0.05 * e->all)
+    say(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
+  if (count) say(mode, " of the energy");
+}
+
+static void say_rigid(const strut_vibration *v, const double *x, strut_mode *mode) {
+  double first[2], d[2];
+  largest_node(v, x, first);
+  bool shift = true;
+  for (int32_t i = 0; i < v->model->node_count; i++) {
+    motion_of(v, x, i, d);
+    shift = shift && hypot(d[0] - first[0], d[1] - first[1]) < 1e-6 * hypot(first[0], first[1]);
+  }
+  const char *way = direction(first);
+  if (shift)
+    say(mode, "the whole moves%s", *way ? way : " freely");
+  else
+    say(mode, "the whole turns freely");
+}
+
+void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
+  const strut_vibration *v = work->v;
+  mode->description[0] = '\0';
+  if (mode->kind == STRUT_MODE_RIGID) {
+    say_rigid(v, x, mode);
+    return;
+  }
+  say_nodes(v, x, mode);
+  if (mode->kind == STRUT_MODE_MECHANISM) {
+    say(mode, "; nothing resists");
+    return;
+  }
+  energies e = energies_of(v, x);
+  double mass = 0.0, *product = (double *)v->work;
+  strut_vibration_multiply(v, v->m, x, product);
+  for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
+  double stiffness = mode->eigenvalue * mass;
+  if (e.all < 0.5 * fabs(stiffness)) {
+    say(mode, "; %.0f %% of the stiffness is that of forces turning",
+        fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
+    if (e.all < 0.01 * fabs(stiffness)) return;
+  }
+  say_members(v, x, &e, mode);
+}

@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/rigidity/mechanisms.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/rigidity/finite_motion.h"
+#include "engine/statics/rigid_motions.h"
+#include "engine/statics/rigidity/stress_matrix.h"
+#include "engine/statics/symmetric.h"
+
+/* Forms and parts of vectors this small beside the largest are rounding. */
+static const double ROUNDING = 1e-8;
+
+/* With more motions or states than these, forms are not compared. */
+enum { MOST_MOTIONS = 40, MOST_STATES = 200 };
+
+typedef struct sorter {
+  const strut_model *model;
+  const strut_equilibrium_matrix *a;
+  const double *q;
+  const strut_self_stress *states;
+  strut_arena *arena;
+  strut_arena scratch;
+  size_t rows, members, n; /* n: motions that are not rigid-body */
+  double *motion;          /* (3 + n, rows): rigid-body ones, then the others */
+  double *inner;           /* where the others begin */
+  double *density;         /* (members) scratch */
+  double *forms;           /* (states, n, n) of the states of self-stress; NULL: not compared */
+  double *scale;           /* (states) largest densities of theirs */
+  double *form, *value, *vector, *turned; /* (n, n), (n), (n, n), (n, rows) scratch */
+} sorter;
+
+const char *strut_motion_kind_name(strut_motion_kind kind) {
+  static const char *const names[] = {"rigid-body", "infinitesimal", "finite", "undecided"};
+  return names[kind];
+}
+
+static double dot(const double *x, const double *y, size_t n) {
+  double sum = 0.0;
+  for (size_t i = 0; i < n; i++) sum += x[i] * y[i];
+  return sum;
+}
+
+static void remove_direction(double *x, const double *unit, size_t n) {
+  double sum = dot(x, unit, n);
+  for (size_t c = 0; c < n; c++) x[c] -= sum * unit[c];
+}
+
+/* What the null space has beside the rigid motions: of its vectors those with most left first. */
+static void collect(sorter *s, const double *space, size_t count, size_t rigid) {
+  double *rest = s->turned;
+  memcpy(rest, space, count * s->rows * sizeof *rest);
+  for (size_t i = 0; i < count; i++)
+    for (size_t r = 0; r < rigid; r++)
+      remove_direction(rest + i * s->rows, s->motion + r * s->rows, s->rows);
+  for (size_t k = 0; k < s->n; k++) {
+    double best = -1.0, *chosen = s->inner + k * s->rows;
+    for (size_t i = 0; i < count; i++) {
+      double left = dot(rest + i * s->rows, rest + i * s->rows, s->rows);
+      if (left <= best * 1.0001) continue;
+      best = left;
+      memcpy(chosen, rest + i * s->rows, s->rows * sizeof *rest);
+    }
+    for (size_t r = 0; r < rigid + k; r++) /* again: once leaves rounding */
+      remove_direction(chosen, s->motion + r * s->rows, s->rows);
+    double norm = sqrt(dot(chosen, chosen, s->rows));
+    for (size_t c = 0; c < s->rows; c++) chosen[c] /= norm;
+    for (size_t i = 0; i < count; i++) remove_direction(rest + i * s->rows, chosen, s->rows);
+  }
+}
+
+/* Fills in the densities of member forces and returns the largest. */
+static double set_density(sorter *s, const double *force) {
+  double largest = 0.0;
+  for (size_t j = 0; j < s->members; j++) {
+    s->density[j] = s->a->length[j] > 0 ? force[j] / s->a->length[j] : 0.0;
+    largest = fmax(largest, fabs(s->density[j]));
+  }
+  return largest;
+}
+
+/* The form of member forces on the inner motions; returns the largest density, its scale. */
+static double form_of(sorter *s, const double *force, double *form) {
+  double scale = set_density(s, force);
+  strut_stress_form_on(s->model, s->a, s->density, s->inner, (int32_t)s->n, form);
+  return scale;
+}
+
+/* Replaces the inner motions by the combinations that diagonalise a form, which it overwrites. */
+static bool rotate(sorter *s, double *form) {
+  if (!strut_symmetric_eigen(form, s->n, s->value, s->vector)) return false;
+  memset(s->turned, 0, s->n * s->rows * sizeof *s->turned);
+  for (size_t i = 0; i < s->n; i++)
+    for (size_t k = 0; k < s->n; k++)
+      for (size_t c = 0; c < s->rows; c++)
+        s->turned[i * s->rows + c] += s->vector[i * s->n + k] * s->inner[k * s->rows + c];
+  memcpy(s->inner, s->turned, s->n * s->rows * sizeof *s->turned);
+  return true;
+}
+
+static bool compare_states(sorter *s) {
+  size_t square = s->n * s->n, count = (size_t)s->states->count;
+  if (!s->states->force || count > MOST_STATES || s->n > MOST_MOTIONS) return true;
+  s->forms = strut_arena_allocate(&s->scratch, count * square + 1, sizeof *s->forms);
+  s->scale = strut_arena_allocate(&s->scratch, count + 1, sizeof *s->scale);
+  if (!s->forms || !s->scale) return false;
+  for (size_t i = 0; i < count; i++)
+    s->scale[i] = form_of(s, s->states->force + i * s->members, s->forms + i * square);
+  return true;
+}
+
+/* A state of self-stress that is positive on all inner motions, with cables pulled if it can. */
+static strut_status find_stiffener(sorter *s, strut_mechanisms *m) {
+  double *force = strut_arena_allocate(s->arena, s->members + 1, sizeof *force);
+  if (!force) return STRUT_NO_MEMORY;
+  for (int cables = 1; cables >= 0 && s->forms; cables--) {
+    strut_stress_wish wish = {.cables = cables, .motions = (int32_t)s->n, .forms = s->forms,
+                              .scale = s->scale};
+    bool found = false;
+    strut_status status =
+        strut_self_stress_combine(s->model, s->states, &wish, force, &found);
+    if (status != STRUT_OK) return status;
+    if (!found) continue;
+    m->stiffener = force;
+    m->stiffener_pulls = cables;
+    return STRUT_OK;
+  }
+  return STRUT_OK;
+}
+
+/* Motions that no state of self-stress says anything about come first: sum of squared forms. */
+static bool separate(sorter *s, size_t *silent) {
+  size_t n = s->n, count = s->forms ? (size_t)s->states->count : 0;
+  memset(s->form, 0, n * n * sizeof *s->form);
+  for (size_t i = 0; i < count; i++) {
+    const double *f = s->forms + i * n * n;
+    double size = s->scale[i];
+    for (size_t r = 0; r < n && size > 0; r++)
+      for (size_t c = 0; c < n; c++)
+        s->form[r * n + c] += dot(f + r * n, f + c * n, n) / (size * size);
+  }
+  if (!rotate(s, s->form)) return false;
+  *silent = 0;
+  while (*silent < n && s->value[*silent] <= ROUNDING * ROUNDING) (*silent)++;
+  return true;
+}
+
+/* The rigid-body motions over the same rows as A; returns how many, or -1: out of memory. */
+static int32_t rigid_motions(const sorter *s, double *motion) {
+  strut_potential *rows = NULL;
+  if (strut_potential_create(s->model, NULL, false, &rows, NULL) != STRUT_OK) return -1;
+  int32_t count = strut_rigid_motions(rows, s->q, motion);
+  strut_potential_free(rows);
+  return count;
+}
+
+static strut_status follow(sorter *s, strut_mechanism *m) {
+  strut_walk walk;
+  strut_status status = strut_finite_motion_walk(s->model, s->q, m->motion, &walk);
+  m->moved = walk.moved, m->strain = walk.strain;
+  if (walk.arrived) m->kind = STRUT_MOTION_FINITE;
+  return status;
+}
+
+/* Of two motions one state of self-stress stiffens some combinations and drives others: between
+   them lie two that it leaves alone, which may be the ways of a linkage that lies flat. */
+static strut_status try_between(sorter *s, strut_mechanism *two) {
+  double *x = s->inner + (s->n - 2) * s->rows, *y = x + s->rows;
+  double scale = set_density(s, s->states->force);
+  double a = strut_stress_form(s->model, s->a, s->density, x, x);
+  double b = strut_stress_form(s->model, s->a, s->density, x, y);
+  double c = strut_stress_form(s->model, s->a, s->density, y, y), root = b * b - a * c;
+  if (!(root > ROUNDING * scale * scale)) return STRUT_OK;
+  double *way = strut_arena_allocate(s->arena, 2 * s->rows, sizeof *way);
+  if (!way) return STRUT_NO_MEMORY;
+  for (int k = 0; k < 2; k++) { /* a u^2 + 2 b u v + c v^2 = 0, without cancellation */
+    double t = b + (b >= 0 ? sqrt(root) : -sqrt(root));
+    double u = k == 0 ? -t : c, v = k == 0 ? a : -t, norm = hypot(u, v);
+    for (size_t i = 0; i < s->rows; i++)
+      way[(size_t)k * s->rows + i] = (u * x[i] + v * y[i]) / norm;
+    two[k].motion = way + (size_t)k * s->rows;
+    strut_status status = follow(s, &two[k]);
+    if (status != STRUT_OK) return status;
+  }
+  return STRUT_OK;
+}
+
+/* Nothing stiffens them all: those without any form are walked along. */
+static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
+  size_t silent = 0;
+  if (!separate(s, &silent)) return STRUT_NO_MEMORY;
+  bool told = s->states->count == 0 || s->forms; /* else silence says nothing */
+  for (size_t i = 0; i < s->n; i++) {
+    list[i].kind = STRUT_MOTION_UNDECIDED;
+    if (told && i >= silent) continue;
+    /* without self-stress members are independent, and every mechanism is a finite one */
+    if (s->states->count == 0) list[i].kind = STRUT_MOTION_FINITE;
+    if (i >= MOST_MOTIONS) continue;
+    strut_status status = follow(s, &list[i]);
+    if (status != STRUT_OK) return status;
+  }
+  bool pair = told && s->states->count == 1 && s->n - silent == 2;
+  return pair ? try_between(s, list + silent) : STRUT_OK;
+}
+
+static strut_mechanism blank(strut_motion_kind kind, const double *motion) {
+  const double none = (double)NAN;
+  return (strut_mechanism){.kind = kind, .motion = motion, .stiffness = none,
+                           .stress_form = none, .moved = none, .strain = none};
+}
+
+static strut_status judge(sorter *s, const double *force, strut_mechanisms *m,
+                          strut_mechanism *list) {
+  for (size_t i = 0; i < s->n; i++)
+    list[i] = blank(STRUT_MOTION_UNDECIDED, s->inner + i * s->rows);
+  if (force && s->n <= MOST_MOTIONS) {
+    double size = form_of(s, force, s->form);
+    if (!rotate(s, s->form)) return STRUT_NO_MEMORY;
+    m->by_forces = s->value[0] > ROUNDING * size;
+  }
+  if (!compare_states(s)) return STRUT_NO_MEMORY;
+  strut_status status = find_stiffener(s, m);
+  if (status != STRUT_OK) return status;
+  if (m->stiffener && !force) { /* its own principal motions are the ones to show */
+    form_of(s, m->stiffener, s->form);
+    if (!rotate(s, s->form)) return STRUT_NO_MEMORY;
+  }
+  if (m->by_forces || m->stiffener) {
+    for (size_t i = 0; i < s->n; i++) list[i].kind = STRUT_MOTION_INFINITESIMAL;
+    return STRUT_OK;
+  }
+  return try_to_walk(s, list);
+}
+
+static double form_along(sorter *s, const double *force, const double *motion) {
+  set_density(s, force);
+  return strut_stress_form(s->model, s->a, s->density, motion, motion);
+}
+
+static void measure_and_count(sorter *s, const double *force, strut_mechanisms *m) {
+  int32_t *count[] = {&m->rigid_body, &m->infinitesimal, &m->finite, &m->undecided};
+  for (int32_t i = 0; i < m->count; i++) {
+    strut_mechanism *mode = &m->list[i];
+    ++*count[mode->kind];
+    if (mode->kind == STRUT_MOTION_RIGID_BODY) continue;
+    if (force) mode->stiffness = form_along(s, force, mode->motion);
+    if (m->stiffener) mode->stress_form = form_along(s, m->stiffener, mode->motion);
+  }
+}
+
+/* Too many to list: the counts that need no list. */
+static strut_status only_count(sorter *s, strut_mechanisms *m) {
+  double *rigid = strut_arena_allocate(&s->scratch, 3 * s->rows + 1, sizeof *rigid);
+  if (!rigid) return STRUT_NO_MEMORY;
+  m->rigid_body = rigid_motions(s, rigid);
+  int32_t others = m->count - m->rigid_body;
+  if (m->rigid_body < 0) return STRUT_NO_MEMORY;
+  if (s->states->count == 0)
+    m->finite = others;
+  else
+    m->undecided = others;
+  return STRUT_OK;
+}
+
+static bool set_up(sorter *s, size_t count) {
+  size_t square = count * count + 1, room = (count + 3) * s->rows + 1;
+  s->motion = strut_arena_allocate(s->arena, room, sizeof(double));
+  s->turned = strut_arena_allocate(&s->scratch, room, sizeof(double));
+  s->density = strut_arena_allocate(&s->scratch, s->members + 1, sizeof(double));
+  s->form = strut_arena_allocate(&s->scratch, square, sizeof(double));
+  s->value = strut_arena_allocate(&s->scratch, count + 1, sizeof(double));
+  s->vector = strut_arena_allocate(&s->scratch, square, sizeof(double));
+  return s->motion && s->turned && s->density && s->form && s->value && s->vector;
+}
+
+static strut_status sort(sorter *s, const strut_null_spaces *spaces, const double *force,
+                         strut_mechanisms *m) {
+  size_t count = (size_t)m->count;
+  m->list = strut_arena_allocate(s->arena, count, sizeof *m->list);
+  if (!m->list || !set_up(s, count)) return STRUT_NO_MEMORY;
+  int32_t found = rigid_motions(s, s->motion);
+  if (found < 0) return STRUT_NO_MEMORY;
+  size_t rigid = (size_t)found < count ? (size_t)found : count;
+  s->n = count - rigid;
+  s->inner = s->motion + rigid * s->rows;
+  for (size_t i = 0; i < rigid; i++)
+    m->list[i] = blank(STRUT_MOTION_RIGID_BODY, s->motion + i * s->rows);
+  collect(s, spaces->motion, count, rigid);
+  strut_status status = s->n > 0 ? judge(s, force, m, m->list + rigid) : STRUT_OK;
+  if (status == STRUT_OK) measure_and_count(s, force, m);
+  return status;
+}
+
+strut_status strut_mechanisms_find(const strut_model *model, const strut_equilibrium_matrix *a,
+                                   const double *q, const strut_null_spaces *spaces,
+                                   const strut_self_stress *states, const double *force,
+                                   strut_arena *arena, strut_mechanisms *mechanisms) {
+  *mechanisms = (strut_mechanisms){.count = spaces->motions};
+  if (spaces->motions == 0) return STRUT_OK;
+  sorter s = {.model = model, .a = a, .q = q, .states = states, .arena = arena};
+  s.rows = (size_t)a->rows, s.members = (size_t)a->columns;
+  strut_status status = spaces->motion ? sort(&s, spaces, force, mechanisms)
+                                       : only_count(&s, mechanisms);
+  strut_arena_free(&s.scratch);
+  return status;
+}

@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The search in its order: known shapes, random ones, folds of what was found; then saddles. */
+#include "engine/statics/search/critical.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/search/merge.h"
+#include "engine/statics/search/search_batch.h"
+#include "engine/statics/search/starts.h"
+
+/*
+ * All searches of one command together may take so many Hessians apart, each times what it costs;
+ * and by what share of that each part of a search must be over.
+ */
+static const double MOST_WORK = 6e9;
+static const double KNOWN_BY = 0.2, RANDOM_BY = 0.4, FOLDS_BY = 0.5, CLIMBS_BY = 0.9;
+
+enum { LEAST_RANDOM = 256, PER_MINIMUM = 32, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
+
+typedef struct search {
+  const strut_potential *potential;
+  const strut_critical_effort *effort;
+  strut_critical_set *set;
+  strut_gathering all;
+  strut_batch *batch;
+  strut_task task[STRUT_BATCH];
+  size_t tasks;
+  int64_t random, room; /* random starts made; how many points `hits` has room for */
+  int64_t *hits;        /* of them, on each point; of strut_allocate */
+  int64_t climbs_left;
+  double cost, spent, budget; /* of one Hessian, so far, and at most */
+  size_t batch_size;          /* tasks before the work done is looked at again */
+  size_t climbed, paired; /* points up to which modes and pairs were climbed */
+  strut_error *error;
+} search;
+
+static bool is_minimum(const strut_critical_point *point) {
+  return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
+}
+
+static bool keep_hits(search *s) {
+  if ((int64_t)s->all.count <= s->room) return true;
+  int64_t room = 2 * (int64_t)s->all.count + 16;
+  int64_t *larger = strut_reallocate(s->hits, (size_t)room, sizeof *larger);
+  if (!larger) return false;
+  memset(larger + s->room, 0, (size_t)(room - s->room) * sizeof *larger);
+  s->hits = larger, s->room = room;
+  return true;
+}
+
+/* Reads one result into the points. */
+static strut_status read_result(search *s, const strut_task *task,
+                                const strut_task_result *result) {
+  bool start = task->kind <= STRUT_TASK_RANDOM, down = task->kind == STRUT_TASK_DOWN, fresh;
+  int32_t index;
+  if (start) s->set->starts++;
+  if (!start && !down) s->set->saddle_starts++;
+  if (start && result->end == STRUT_DESCENT_RUNAWAY) s->set->runaway++;
+  if (start && result->end == STRUT_DESCENT_EXHAUSTED) s->set->exhausted++;
+  if (result->end != STRUT_DESCENT_REACHED) return STRUT_OK;
+  strut_status status = strut_gathering_add(&s->all, result->q, &index, &fresh, s->error);
+  if (status) return status;
+  if (!keep_hits(s)) return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+  if (task->kind == STRUT_TASK_RANDOM) s->hits[index]++;
+  if (!down) return STRUT_OK;
+  s->all.points[index].found--;
+  if (is_minimum(&s->all.points[index]))
+    s->all.points[task->from].down[task->side > 0 ? 0 : 1] = index;
+  return STRUT_OK;
+}
+
+static strut_status run(search *s) {
+  const strut_task_result *result = strut_batch_run(s->batch, s->task, s->tasks);
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < s->tasks && !status; i++) {
+    s->spent += s->cost * (double)result[i].looks;
+    status = read_result(s, &s->task[i], &result[i]);
+  }
+  s->tasks = 0;
+  return status;
+}
+
+/* Puts a task into the batch, which is worked off when full. */
+static strut_status add(search *s, strut_task task) {
+  s->task[s->tasks++] = task;
+  return s->tasks == s->batch_size ? run(s) : STRUT_OK;
+}
+
+/* Is it time to end a part of the search? Then it is cut short. */
+static bool over(search *s, double share) {
+  if (s->spent <= share * s->budget) return false;
+  s->set->cut_short = true;
+  return true;
+}
+
+static void set_budget(search *s) {
+  double n = s->potential->n, descent, size;
+  s->cost = n * n * (n + 30.0);
+  s->budget = MOST_WORK / (s->effort->searches > 1 ? s->effort->searches : 1);
+  descent = 60.0 * s->cost + 1.0;
+  size = 0.05 * s->budget / descent;
+  s->batch_size = size < 4.0 ? 4 : size > STRUT_BATCH ? STRUT_BATCH : (size_t)size;
+}
+
+/* How many descents or climbs a structure of this size may have: their cost grows with its cube. */
+static int64_t affordable(int32_t n, double budget, int64_t least, int64_t most) {
+  double count = budget / ((double)n * n * n + 1.0);
+  return count < (double)least ? least : count > (double)most ? most : (int64_t)count;
+}
+
+/* The model's own shape, its folds, and what the caller knows. */
+static strut_status known_starts(search *s) {
+  const double *own = s->potential->model->start;
+  strut_status status = add(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
+  for (size_t i = 0; i < s->effort->extra_count && !status; i++)
+    status = add(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = s->effort->extra[i]});
+  int64_t most = affordable(s->potential->n, 4e6, 4, 256), folds = strut_fold_count(s->potential);
+  if (s->potential->n > STRUT_DENSE_STATICS) folds = 0;
+  if (folds > most) folds = most;
+  for (int64_t i = 0; i < folds && !status && !over(s, KNOWN_BY); i++)
+    status = add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
+  return status ? status : run(s);
+}
+
+/* Minima that random starts have met just once, and all that they have met. */
+static int64_t met_once(const search *s, int64_t *distinct) {
+  int64_t once = 0;
+  *distinct = 0;
+  for (size_t i = 0; i < s->all.count; i++) {
+    if (!is_minimum(&s->all.points[i])) continue;
+    *distinct += s->hits[i] > 0;
+    once += s->hits[i] == 1;
+  }
+  return once;
+}
+
+static bool enough(search *s, int64_t most) {
+  int64_t distinct, once = met_once(s, &distinct), least = PER_MINIMUM * distinct;
+  if (least < LEAST_RANDOM) least = LEAST_RANDOM;
+  if (s->random >= least && 150 * once <= s->random) return true;
+  if (s->random >= most) s->set->cut_short = true;
+  return s->random >= most || over(s, RANDOM_BY);
+}
+
+static strut_status random_starts(search *s) {
+  int32_t n = s->potential->n;
+  int64_t wanted = s->effort->starts, most = affordable(n, 1.5e7, 4, 4000);
+  strut_status status = STRUT_OK;
+  if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
+  double before = s->spent;
+  int64_t size = (int64_t)s->batch_size;
+  while (!status && (wanted > 0 ? s->random < wanted : !enough(s, most))) {
+    int64_t left = (wanted > 0 ? wanted : most) - s->random;
+    for (int64_t i = 0; i < left && i < size && !status; i++)
+      status = add(s, (strut_task){.kind = STRUT_TASK_RANDOM, .number = s->random++});
+    if (!status) status = run(s);
+  }
+  if (wanted > 0) s->budget += s->spent - before; /* as it was asked for */
+  return status;
+}
+
+/* Folds of the minima found: a shape that random starts seldom meet often lies next to one. */
+static strut_status folded_minima(search *s) {
+  int32_t n = s->potential->n;
+  int64_t folds = strut_fold_count(s->potential), left = s->random / 2;
+  strut_status status = STRUT_OK;
+  if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
+  for (int64_t fold = 0; fold < folds && left > 0 && !status; fold++)
+    for (size_t i = 0; i < s->all.count && left > 0 && !status && !over(s, FOLDS_BY); i++, left--)
+      status =
+          add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
+  return status ? status : run(s);
+}
+
+static strut_status climb_from(search *s, strut_task task) {
+  if (s->climbs_left-- <= 0) s->set->cut_short = true;
+  return s->climbs_left >= 0 && !over(s, CLIMBS_BY) ? add(s, task) : STRUT_OK;
+}
+
+/* Along the softest modes of every minimum not yet climbed from. */
+static strut_status climb_modes(search *s) {
+  strut_status status = STRUT_OK;
+  size_t end = s->all.count;
+  for (; s->climbed < end && !status; s->climbed++) {
+    const strut_critical_point *point = &s->all.points[s->climbed];
+    int64_t modes = s->potential->n < MODES_CLIMBED ? s->potential->n : MODES_CLIMBED;
+    const double *q = point->q;
+    if (!is_minimum(point)) continue;
+    for (int64_t k = 0; k < 2 * modes && !status; k++)
+      status = climb_from(
+          s,
+          (strut_task){
+              .kind = STRUT_TASK_CLIMB_MODE, .q = q, .number = k / 2, .side = k % 2 ? -1.0 : 1.0});
+  }
+  return status ? status : run(s);
+}
+
+/* Between every two minima, in all different placements of the second; copies of one included. */
+static strut_status climb_pairs(search *s) {
+  strut_status status = STRUT_OK;
+  size_t end = s->all.count;
+  for (; s->paired < end && !status; s->paired++) {
+    if (!is_minimum(&s->all.points[s->paired])) continue;
+    for (size_t i = 0; i <= s->paired && !status; i++) {
+      if (!is_minimum(&s->all.points[i])) continue;
+      const double *a = s->all.points[i].q, *b;
+      for (int32_t k = i == s->paired; k < 3 && !status; k++) {
+        b = strut_gathering_placement(&s->all, (int32_t)s->paired, k);
+        if (!b) break;
+        status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
+        if (!status)
+          status = climb_from(
+              s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b, .side = 1.0});
+      }
+    }
+  }
+  return status ? status : run(s);
+}
+
+/* Down both sides of every saddle with one unstable direction, from point `begin` on. */
+static strut_status go_down(search *s, size_t begin) {
+  strut_status status = STRUT_OK;
+  size_t end = s->all.count;
+  for (size_t i = begin; i < end && !status && !over(s, 1.0); i++) {
+    const strut_critical_point *point = &s->all.points[i];
+    const double *q = point->q, *direction = point->softest;
+    if (is_minimum(point) || point->negative != 1) continue;
+    for (int k = 0; k < 2 && !status; k++)
+      status = add(s, (strut_task){.kind = STRUT_TASK_DOWN,
+                                   .q = q,
+                                   .other = direction,
+                                   .side = k ? -1.0 : 1.0,
+                                   .from = (int32_t)i});
+  }
+  return status ? status : run(s);
+}
+
+/* Even numbers start from a minimum shaken, each in its turn, odd ones anywhere. */
+static strut_task random_climb(const search *s, int64_t number) {
+  strut_task task = {.kind = STRUT_TASK_CLIMB_RANDOM, .number = number};
+  int64_t minima = 0, wanted;
+  for (size_t i = 0; i < s->all.count; i++) minima += is_minimum(&s->all.points[i]);
+  if (number % 2 || minima == 0) return task;
+  wanted = number / 2 % minima;
+  for (size_t i = 0; i < s->all.count && !task.q; i++)
+    if (is_minimum(&s->all.points[i]) && wanted-- == 0) task.q = s->all.points[i].q;
+  return task;
+}
+
+static strut_status climb_hints(search *s) {
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < s->effort->hint_count && !status; i++)
+    status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = s->effort->hint[i]});
+  return status ? status : run(s);
+}
+
+static int64_t passes(const search *s) {
+  int64_t count = 0;
+  for (size_t i = 0; i < s->all.count; i++)
+    count += !is_minimum(&s->all.points[i]) && s->all.points[i].negative == 1;
+  return count;
+}
+
+/* Until a whole batch of them has found no new way from one minimum to another. */
+static strut_status random_climbs(search *s) {
+  strut_status status = STRUT_OK;
+  int64_t number = 0;
+  for (int turn = 0; turn < RANDOM_CLIMBS && !status; turn++) {
+    int64_t before = passes(s);
+    for (int i = 0; i < STRUT_BATCH && !status; i++, number++)
+      status = climb_from(s, random_climb(s, number));
+    if (!status) status = run(s);
+    if (passes(s) == before) break;
+  }
+  return status;
+}
+
+static strut_status find_saddles(search *s) {
+  int32_t n = s->potential->n;
+  strut_status status = STRUT_OK;
+  size_t gone = 0;
+  if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
+  s->climbs_left = affordable(n, 4e6, 4, 2000);
+  for (int turn = 0; turn < ROUNDS && !status; turn++) {
+    status = turn == 0 ? climb_hints(s) : STRUT_OK;
+    if (!status) status = climb_modes(s);
+    if (!status) status = climb_pairs(s);
+    if (!status && turn == 0) status = random_climbs(s);
+    while (!status &&
+           gone < s->all.count) { /* what lies below may be new, and a saddle's end too */
+      size_t begin = gone;
+      gone = s->all.count;
+      status = go_down(s, begin);
+    }
+    if (s->climbed == s->all.count) break;
+  }
+  return status;
+}
+
+static int rank(const strut_critical_point *point) {
+  return is_minimum(point) ? 0 : point->label == STRUT_SADDLE ? 1 : 2;
+}
+
+static bool comes_before(const strut_critical_point *a, const strut_critical_point *b) {
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a->potential < b->potential;
+}
+
+/* Into the set, minima first, by energy; the saddles' ends are numbered anew. */
+static strut_status hand_over(search *s) {
+  size_t count = s->all.count;
+  strut_arena scratch = {0};
+  int32_t *order = strut_arena_allocate(&scratch, count, sizeof *order);
+  int32_t *place = strut_arena_allocate(&scratch, count, sizeof *place);
+  s->set->points = strut_arena_allocate(&s->set->arena, count, sizeof *s->set->points);
+  bool good = order && place && s->set->points;
+  for (size_t i = 0; i < count && good; i++) {
+    size_t k = i;
+    for (; k > 0 && comes_before(&s->all.points[i], &s->all.points[order[k - 1]]); k--)
+      order[k] = order[k - 1];
+    order[k] = (int32_t)i;
+  }
+  for (size_t i = 0; i < count && good; i++) place[order[i]] = (int32_t)i;
+  for (size_t i = 0; i < count && good; i++) {
+    strut_critical_point *point = &s->set->points[i];
+    *point = s->all.points[order[i]];
+    for (int k = 0; k < 2; k++)
+      if (point->down[k] >= 0) point->down[k] = place[point->down[k]];
+  }
+  if (good) strut_number_shapes(&s->all, s->set->points, count);
+  s->set->count = good ? count : 0;
+  strut_arena_free(&scratch);
+  return good ? STRUT_OK : strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+}
+
+strut_status strut_critical_search(const strut_potential *potential,
+                                   const strut_critical_effort *effort, strut_critical_set *set,
+                                   strut_error *error) {
+  search s = {.potential = potential, .effort = effort, .set = set, .error = error};
+  bool climbs = effort->saddles && potential->n <= STRUT_DENSE_STATICS;
+  int64_t distinct;
+  *set = (strut_critical_set){0};
+  set_budget(&s);
+  strut_gathering_start(&s.all, potential, &set->arena);
+  strut_status status = strut_batch_create(potential, effort->seed, climbs, &s.batch, error);
+  if (!status) status = known_starts(&s);
+  if (!status) status = random_starts(&s);
+  if (!status) status = folded_minima(&s);
+  if (!status && s.random > 0) {
+    set->missed = (double)met_once(&s, &distinct) / (double)s.random;
+    set->missed_one = s.random > 3 ? 3.0 / (double)s.random : 1.0;
+  }
+  if (!status && s.random == 0) set->missed = set->missed_one = 1.0;
+  if (!status) status = find_saddles(&s);
+  if (!status) status = hand_over(&s);
+  strut_batch_free(s.batch);
+  strut_gathering_free(&s.all);
+  strut_release(s.hits);
+  if (status) strut_critical_free(set);
+  return status;
+}
+
+void strut_critical_free(strut_critical_set *set) {
+  strut_arena_free(&set->arena);
+  *set = (strut_critical_set){0};
+}

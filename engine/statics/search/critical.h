@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * All stationary points of one potential that many starts find, merged, judged and connected.
+ */
+#ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
+#define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
+
+#include "engine/statics/minimise.h"
+
+typedef enum strut_stability {
+  STRUT_STABLE,  /* all eigenvalues positive, those of free rigid-body motions apart */
+  STRUT_FLOPPY,  /* none negative, but a motion that is not a rigid one meets no stiffness */
+  STRUT_SADDLE,  /* some negative */
+  STRUT_MAXIMUM  /* all negative */
+} strut_stability;
+
+/** "stable", "floppy", "saddle", "maximum". */
+STRUT_API const char *strut_stability_name(strut_stability stability);
+
+typedef struct strut_critical_point {
+  double *q;            /* (length) of the first placement found */
+  double potential;     /* [J] */
+  double residual;      /* largest entry of g [N] */
+  strut_stability label;
+  int32_t negative;     /* eigenvalues of the Hessian below zero */
+  int32_t zero;         /* motions without stiffness, rigid ones included */
+  int32_t rigid;        /* rigid-body motions that the supports leave free */
+  int32_t eigenvalue_count;
+  double *eigenvalues;  /* ascending [N/m]; all of them where dense, else the lowest */
+  double *softest;      /* (length) unit vector of the lowest that is no rigid-body motion */
+  int64_t found;        /* starts that ended here */
+  int32_t placements;   /* congruent copies merged into it: mirror images, turned, shifted */
+  int32_t shape;        /* points of one number are mirror images of each other, not merged */
+  int32_t down[2];      /* of a saddle with one negative: minima downhill either way, or -1 */
+} strut_critical_point;
+
+typedef struct strut_critical_set {
+  size_t count;
+  strut_critical_point *points; /* minima by energy, then saddles by energy, then maxima */
+  int64_t starts;               /* tried for minima */
+  int64_t saddle_starts;        /* tried for saddles */
+  int64_t exhausted, runaway;   /* starts that ended nowhere */
+  double missed;      /* estimated chance that a further start would find a new minimum (Good-Turing) */
+  bool cut_short;     /* the structure is too large for as many starts and climbs as it asks for */
+  double missed_one;  /* upper 95 % bound on the share of starts of a minimum never seen: 3/starts-like */
+  strut_arena arena;
+} strut_critical_set;
+
+typedef struct strut_critical_effort {
+  int64_t starts;  /* random starts for minima; 0: until `missed` is small, within reason */
+  uint64_t seed;
+  int32_t searches; /* how many searches share one search's work, on supports in turn; 0: 1 */
+  bool saddles;    /* look for saddles too, and where they lead down to */
+  size_t extra_count;           /* starts that the caller knows of, tried first */
+  const double *const *extra;   /* (extra_count) each (length) */
+  size_t hint_count;            /* shapes close to a saddle with one negative eigenvalue */
+  const double *const *hint;    /* (hint_count) each (length) */
+} strut_critical_effort;
+
+/**
+ * Starts: the model's own, mirror images member by member, `extra`, then random ones, each from a
+ * generator of its own, so that threads change no bit. Merged are points that a rigid motion of the
+ * whole, mirrored or not, carries onto each other, if scene and supports fix at most three
+ * coordinates (then only placements differ); else only equal points. Above STRUT_DENSE_STATICS
+ * coordinates only the model's own start and `extra` are tried unless `starts` says otherwise. Below,
+ * the work is bounded, counted in Hessians taken apart, to some ten seconds of one core in all: what
+ * ends early for that is cut_short.
+ */
+STRUT_API strut_status strut_critical_search(const strut_potential *potential,
+                                             const strut_critical_effort *effort,
+                                             strut_critical_set *set, strut_error *error);
+STRUT_API void strut_critical_free(strut_critical_set *set);
+
+/**
+ * Judges one stationary point q: label, eigenvalues, zero modes. Point's arrays in the arena.
+ */
+STRUT_API strut_status strut_critical_judge(const strut_potential *potential, const double *q,
+                                            strut_arena *arena, strut_critical_point *point,
+                                            strut_error *error);
+
+/**
+ * Largest distance between corresponding nodes after the best rigid motion carries b onto a, mirror
+ * images allowed if `mirror`; *mirrored says whether one was used (may be NULL) [m].
+ */
+STRUT_API double strut_shape_distance(const strut_model *model, const double *a, const double *b,
+                                      bool mirror, bool *mirrored);
+
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/search/merge.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rounding may set copies of one point apart by so many times what separates points elsewhere. */
+static const double MOST_BLUR = 1000.0;
+
+struct strut_placement {
+  const double *q;
+  strut_placement *next;
+};
+
+/* What rigid motions of the whole change nothing: no support, no load, no ground is in their way. */
+static void see_motions(strut_gathering *g) {
+  const strut_potential *p = g->potential;
+  const strut_model *model = p->model;
+  int32_t fixed[2] = {0, 0}, first = -1;
+  bool at_one_node = true, loaded = p->force_scale > 0;
+  for (int32_t at = 0; at < 2 * model->node_count; at++) {
+    if (p->row_of[at] >= 0) continue;
+    fixed[at % 2]++;
+    at_one_node = at_one_node && (first < 0 || first == at / 2);
+    first = at / 2;
+  }
+  bool grounded = p->ground && model->contacts.count > 0;
+  double net[2] = {0.0, 0.0};
+  for (int32_t at = 0; at < 2 * model->node_count; at++) net[at % 2] += p->force[at];
+  g->congruent = fixed[0] + fixed[1] <= 3;
+  g->shifts[0] = fixed[0] == 0 && net[0] == 0 && !(grounded && model->contacts.normal[0] != 0);
+  g->shifts[1] = fixed[1] == 0 && net[1] == 0 && !grounded;
+  g->turns = at_one_node && !loaded && !grounded;
+}
+
+void strut_gathering_start(strut_gathering *g, const strut_potential *potential,
+                           strut_arena *arena) {
+  const strut_model *model = potential->model;
+  double size = model->size > 0 ? model->size : 1.0, stiffest = 0.0;
+  *g = (strut_gathering){.potential = potential, .arena = arena};
+  for (int32_t j = 0; j < model->members.count; j++)
+    stiffest = fmax(stiffest, model->members.stiffness[j]);
+  g->near = 1e-6 * size;
+  g->flat = 1e-15 * stiffest * size * size + 1e-12 * potential->force_scale * size;
+  see_motions(g);
+}
+
+void strut_gathering_free(strut_gathering *g) {
+  strut_release(g->points);
+  strut_release(g->placement);
+  g->points = NULL, g->placement = NULL, g->count = g->room = 0;
+}
+
+/* The largest distance between two placements, motions apart that change nothing. */
+static double place_distance(const strut_gathering *g, const double *a, const double *b) {
+  const strut_model *model = g->potential->model;
+  double mean[2] = {0.0, 0.0}, largest = 0.0;
+  if (g->turns) return strut_shape_distance(model, a, b, false, NULL);
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    if (g->shifts[at % 2]) mean[at % 2] += (a[at] - b[at]) / model->node_count;
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    largest = fmax(largest, fabs(a[at] - b[at] - mean[at % 2]));
+  return largest;
+}
+
+static bool same_energy(const strut_gathering *g, double a, double b) {
+  return fabs(a - b) <= g->flat + 1e-9 * fmin(fabs(a), fabs(b));
+}
+
+static bool same_point(const strut_gathering *g, const double *q, const double *known,
+                       double near) {
+  if (place_distance(g, q, known) <= near) return true;
+  return g->congruent && strut_shape_distance(g->potential->model, q, known, true, NULL) <= near;
+}
+
+/*
+ * Close to a fork the softest direction is so soft that a point is known there only to the rounding
+ * of the forces over that stiffness: each of two copies to no more than strut_minimise allows.
+ */
+static double blur(const strut_gathering *g, const strut_critical_point *point) {
+  const strut_potential *p = g->potential;
+  double soft = 0.0, last = 0.0;
+  for (int32_t skip = 0; skip <= point->zero; skip++) { /* the next larger one, in magnitude */
+    soft = HUGE_VAL;
+    for (int32_t i = 0; i < point->eigenvalue_count; i++) {
+      double size = fabs(point->eigenvalues[i]);
+      if (size < soft && (skip == 0 || size > last)) soft = size;
+    }
+    last = soft;
+  }
+  double far = 16.0 * sqrt((double)p->n) * strut_potential_rounding(p, point->q) / soft;
+  return fmin(far, MOST_BLUR * g->near);
+}
+
+static int32_t find(const strut_gathering *g, const double *q, double energy) {
+  for (size_t i = 0; i < g->count; i++)
+    if (same_energy(g, energy, g->points[i].potential) &&
+        same_point(g, q, g->points[i].q, g->near))
+      return (int32_t)i;
+  for (size_t i = 0; i < g->count; i++) {
+    const strut_critical_point *known = &g->points[i];
+    if (fabs(energy - known->potential) > g->flat + 1e-12 * fabs(energy)) continue;
+    double near = blur(g, known);
+    if (near > g->near && same_point(g, q, known->q, near)) return (int32_t)i;
+  }
+  return -1;
+}
+
+int32_t strut_gathering_find(const strut_gathering *g, const double *q) {
+  return find(g, q, strut_potential_value(g->potential, q));
+}
+
+static bool remember_placement(strut_gathering *g, int32_t index, const double *q) {
+  strut_placement **end = &g->placement[index];
+  double near = fmax(g->near, blur(g, &g->points[index]));
+  for (; *end; end = &(*end)->next)
+    if (place_distance(g, q, (*end)->q) <= near) return true;
+  size_t length = (size_t)g->potential->model->length;
+  double *copy = strut_arena_allocate(g->arena, length, sizeof *copy);
+  *end = strut_arena_allocate(g->arena, 1, sizeof **end);
+  if (!copy || !*end) {
+    *end = NULL;
+    return false;
+  }
+  memcpy(copy, q, length * sizeof *q);
+  (*end)->q = copy;
+  return true;
+}
+
+static bool make_room(strut_gathering *g) {
+  if (g->count < g->room) return true;
+  size_t room = g->room ? 2 * g->room : 16;
+  strut_critical_point *points = strut_reallocate(g->points, room, sizeof *points);
+  if (!points) return false;
+  g->points = points;
+  strut_placement **placement = strut_reallocate(g->placement, room, sizeof *placement);
+  if (!placement) return false;
+  g->placement = placement;
+  g->room = room;
+  return true;
+}
+
+static bool is_minimum(const strut_critical_point *point) {
+  return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
+}
+
+/* One of a continuum: some motion that is no rigid one meets no stiffness. */
+static bool is_degenerate(const strut_critical_point *point) { return point->zero > point->rigid; }
+
+/* A continuum counts as one point: all of one energy, its ends included. */
+static int32_t find_degenerate(const strut_gathering *g, const strut_critical_point *point) {
+  for (size_t i = 0; i < g->count; i++)
+    if ((is_degenerate(point) || is_degenerate(&g->points[i])) &&
+        is_minimum(point) == is_minimum(&g->points[i]) &&
+        same_energy(g, point->potential, g->points[i].potential))
+      return (int32_t)i;
+  return -1;
+}
+
+static int32_t count_placements(const strut_gathering *g, int32_t index) {
+  int32_t count = 0;
+  for (const strut_placement *at = g->placement[index]; at; at = at->next) count++;
+  return count;
+}
+
+/* An end of a continuum was found first: a point amid it says more. */
+static void make_degenerate(strut_critical_point *known, const strut_critical_point *point) {
+  if (is_degenerate(known)) return;
+  strut_critical_point before = *known;
+  *known = *point;
+  known->found = before.found, known->placements = 1;
+  known->down[0] = before.down[0], known->down[1] = before.down[1];
+}
+
+strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *index, bool *fresh,
+                                 strut_error *error) {
+  strut_critical_point point;
+  *index = strut_gathering_find(g, q);
+  *fresh = *index < 0;
+  if (*fresh) {
+    strut_status status = strut_critical_judge(g->potential, q, g->arena, &point, error);
+    if (status) return status;
+    *index = find_degenerate(g, &point);
+    *fresh = *index < 0;
+    if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
+  }
+  if (*fresh) {
+    if (!make_room(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    *index = (int32_t)g->count++;
+    g->placement[*index] = NULL;
+    g->points[*index] = point;
+    g->points[*index].found = 0;
+  }
+  strut_critical_point *known = &g->points[*index];
+  known->found++;
+  if (is_degenerate(known) && !*fresh) return STRUT_OK;
+  if (!remember_placement(g, *index, q)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  known->placements = count_placements(g, *index);
+  return STRUT_OK;
+}
+
+const double *strut_gathering_placement(const strut_gathering *g, int32_t index, int32_t k) {
+  const strut_placement *at = g->placement[index];
+  while (at && k-- > 0) at = at->next;
+  return at ? at->q : NULL;
+}
+
+void strut_number_shapes(const strut_gathering *like, strut_critical_point *points, size_t count) {
+  const strut_model *model = like->potential->model;
+  int32_t next = 0;
+  for (size_t i = 0; i < count; i++) {
+    points[i].shape = -1;
+    for (size_t k = 0; k < i && points[i].shape < 0; k++)
+      if (same_energy(like, points[i].potential, points[k].potential) &&
+          strut_shape_distance(model, points[i].q, points[k].q, true, NULL) <= like->near)
+        points[i].shape = points[k].shape;
+    if (points[i].shape < 0) points[i].shape = next++;
+  }
+}

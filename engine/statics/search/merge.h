@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Stationary points put together: which are one and the same, which are copies of one shape.
+ */
+#ifndef STRUT_ENGINE_STATICS_SEARCH_MERGE_H
+#define STRUT_ENGINE_STATICS_SEARCH_MERGE_H
+
+#include "engine/statics/search/critical.h"
+
+typedef struct strut_placement strut_placement;
+
+typedef struct strut_gathering {
+  const strut_potential *potential;
+  strut_arena *arena;           /* of the points; the caller's */
+  bool congruent;               /* copies of one shape are one point */
+  bool shifts[2], turns;        /* rigid motions that no support, load or ground forbids */
+  double near;                  /* two shapes are one within this [m] */
+  double flat;                  /* two energies may differ by this anyway [J] */
+  size_t count, room;
+  strut_critical_point *points; /* of strut_allocate */
+  strut_placement **placement;  /* (count) their different placements; of strut_allocate */
+} strut_gathering;
+
+void strut_gathering_start(strut_gathering *gathering, const strut_potential *potential,
+                           strut_arena *arena);
+void strut_gathering_free(strut_gathering *gathering);
+
+/** Which point q is, or -1. */
+int32_t strut_gathering_find(const strut_gathering *gathering, const double *q);
+/** Finds or judges and adds q; *index is its point, whose `found` has grown by one. */
+strut_status strut_gathering_add(strut_gathering *gathering, const double *q, int32_t *index,
+                                 bool *fresh, strut_error *error);
+/** The k-th different placement of a point (length), or NULL. */
+const double *strut_gathering_placement(const strut_gathering *gathering, int32_t index, int32_t k);
+
+/** Numbers the shapes: points of one number are mirror images of each other. */
+void strut_number_shapes(const strut_gathering *like, strut_critical_point *points, size_t count);
+
+#endif

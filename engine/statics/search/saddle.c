@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/search/saddle.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/spectrum.h"
+#include "engine/statics/trust_step.h"
+
+enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
+
+struct strut_climber {
+  const strut_potential *potential;
+  strut_spectrum_room *spectra;
+  strut_spectrum now;
+  double size;
+  int64_t looks;
+  double *g, *part, *value, *x; /* (n) */
+  double *step, *follow;        /* (n) */
+  double *straight, *g_trial;   /* (n) the step before it was bent, and the gradient at its end */
+  uint8_t *idle;                /* (n) */
+  double *trial, *begin;        /* (length) */
+  strut_arena arena;
+};
+
+strut_climber *strut_climber_create(const strut_potential *p) {
+  strut_climber *c = strut_allocate(1, sizeof *c);
+  size_t n = (size_t)p->n;
+  if (!c) return NULL;
+  c->potential = p;
+  c->size = p->model->size > 0 ? p->model->size : 1.0;
+  c->spectra = strut_spectrum_create(p);
+  double **line[] = {&c->g,    &c->part,   &c->value,    &c->x,
+                     &c->step, &c->follow, &c->straight, &c->g_trial};
+  bool good = c->spectra != NULL;
+  for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
+    good = good && (*line[i] = strut_arena_allocate(&c->arena, n, sizeof(double)));
+  c->idle = strut_arena_allocate(&c->arena, n, sizeof *c->idle);
+  c->trial = strut_arena_allocate(&c->arena, (size_t)p->model->length, sizeof *c->trial);
+  c->begin = strut_arena_allocate(&c->arena, (size_t)p->model->length, sizeof *c->begin);
+  if (good && c->idle && c->trial && c->begin) return c;
+  strut_climber_free(c);
+  return NULL;
+}
+
+void strut_climber_free(strut_climber *c) {
+  if (!c) return;
+  strut_spectrum_free(c->spectra);
+  strut_arena_free(&c->arena);
+  strut_release(c);
+}
+
+int64_t strut_climber_looks(const strut_climber *c) { return c->looks; }
+
+static double dot(const double *a, const double *b, int32_t n) {
+  double sum = 0.0;
+  for (int32_t i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Shares of the gradient, and which modes have neither stiffness nor force. */
+static void look(strut_climber *c, double still) {
+  int32_t n = c->now.n;
+  for (int32_t i = 0; i < n; i++) {
+    c->part[i] = dot(c->now.vector + (size_t)i * (size_t)n, c->g, n);
+    c->value[i] = c->now.value[i];
+    c->idle[i] = fabs(c->value[i]) <= 4.0 * c->now.noise[i] && fabs(c->part[i]) <= still;
+  }
+}
+
+/* The mode that leans most on the direction followed so far becomes that direction. */
+static int32_t mode_to_follow(strut_climber *c) {
+  int32_t n = c->now.n, best = -1;
+  double largest = 0.0;
+  for (int32_t i = 0; i < n; i++) {
+    double lean = c->idle[i] ? 0.0 : dot(c->now.vector + (size_t)i * (size_t)n, c->follow, n);
+    if (fabs(lean) > fabs(largest)) largest = lean, best = i;
+  }
+  for (int32_t i = 0; best >= 0 && i < n; i++)
+    c->follow[i] = (largest < 0 ? -1.0 : 1.0) * c->now.vector[(size_t)best * (size_t)n + (size_t)i];
+  return best;
+}
+
+/* Upside down along the modes that are followed; false where there are too few. */
+static bool turn_over(strut_climber *c, int32_t index, bool following) {
+  if (following) {
+    int32_t mode = mode_to_follow(c);
+    if (mode < 0) return false;
+    c->value[mode] = -c->value[mode], c->part[mode] = -c->part[mode];
+    return true;
+  }
+  int32_t left = index;
+  for (int32_t i = 0; i < c->now.n && left > 0; i++) {
+    if (c->idle[i]) continue;
+    c->value[i] = -c->value[i], c->part[i] = -c->part[i];
+    left--;
+  }
+  return left == 0;
+}
+
+/* The step from its shares, and the energy that the true quadratic changes by. */
+static double assemble(strut_climber *c, double *length) {
+  int32_t n = c->now.n;
+  double change = 0.0, square = 0.0;
+  memset(c->step, 0, (size_t)n * sizeof *c->step);
+  for (int32_t i = 0; i < n; i++) {
+    const double *mode = c->now.vector + (size_t)i * (size_t)n;
+    if (c->x[i] == 0.0) continue;
+    square += c->x[i] * c->x[i];
+    change += c->x[i] * (dot(mode, c->g, n) + 0.5 * c->now.value[i] * c->x[i]);
+    for (int32_t k = 0; k < n; k++) c->step[k] += c->x[i] * mode[k];
+  }
+  *length = sqrt(square);
+  return change;
+}
+
+static bool take_apart(strut_climber *c, const double *q, bool careful) {
+  c->looks++;
+  return strut_spectrum_compute(c->spectra, q, 0.0, careful, &c->now);
+}
+
+static void move(strut_climber *c, const double *q) {
+  const strut_potential *p = c->potential;
+  memcpy(c->trial, q, (size_t)p->model->length * sizeof *q);
+  for (int32_t i = 0; i < p->n; i++) c->trial[p->coordinate[i]] += c->step[i];
+}
+
+/* Brings modes much stiffer than mu, the followed ones apart, into balance at the step's end. */
+static bool straighten(strut_climber *c, double mu, double scale) {
+  int32_t n = c->now.n;
+  double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
+  bool any = false;
+  strut_potential_gradient(c->potential, c->trial, c->g_trial);
+  for (int32_t i = 0; i < n; i++) {
+    const double *mode = c->now.vector + (size_t)i * (size_t)n;
+    if (!(c->value[i] > stiff && c->now.value[i] > stiff)) continue;
+    double far = dot(mode, c->g_trial, n) / c->now.value[i];
+    for (int32_t k = 0; k < n; k++) c->step[k] -= far * mode[k];
+    any = true;
+  }
+  return any;
+}
+
+/*
+ * The way bends with every stiff bar that turns: as in a descent, without which a climb beside very
+ * stiff bars gets nowhere. Lowers `there` as long as that makes the quadratic truer.
+ */
+static double bend(strut_climber *c, const double *q, double mu, double scale, double there,
+                   double wanted) {
+  size_t bytes = (size_t)c->now.n * sizeof *c->step;
+  for (int i = 0; i < MOST_BENDS && !(there < wanted); i++) {
+    memcpy(c->straight, c->step, bytes);
+    if (!straighten(c, mu, scale)) break;
+    move(c, q);
+    double lower = strut_potential_value(c->potential, c->trial);
+    if (lower < there) {
+      there = lower;
+      continue;
+    }
+    memcpy(c->step, c->straight, bytes);
+    move(c, q);
+    break;
+  }
+  return there;
+}
+
+/* One step of the climb; the radius follows how true the quadratic was. */
+static bool climb_once(strut_climber *c, double *q, double *radius) {
+  const strut_potential *p = c->potential;
+  strut_quadratic image = {c->now.n, c->value, c->part, c->idle, 0.0, 4.0 * c->now.noise[0]};
+  for (int32_t i = 0; i < c->now.n; i++) image.scale = fmax(image.scale, fabs(c->value[i]));
+  double here = strut_potential_value(p, q);
+  for (int tries = 0; tries < 30; tries++) {
+    double length, ratio = 1.0;
+    double mu = strut_trust_step(&image, *radius, c->x);
+    double change = assemble(c, &length);
+    if (!(length > 0)) return false;
+    move(c, q);
+    double there = strut_potential_value(p, c->trial);
+    there = bend(c, q, mu, image.scale, there, here + change + 0.3 * fabs(change));
+    if (fabs(change) > 1e-9 * (fabs(here) + fabs(there))) ratio = (there - here) / change;
+    bool good = ratio > 0.0 && ratio < 2.0;
+    if (good && fabs(ratio - 1.0) < 0.3 && length > 0.99 * *radius)
+      *radius = fmin(1.6 * *radius, 0.2 * c->size);
+    if (fabs(ratio - 1.0) > 0.7) *radius = 0.4 * length;
+    if (good || length < 1e-4 * c->size) {
+      memcpy(q, c->trial, (size_t)p->model->length * sizeof *q);
+      return true;
+    }
+  }
+  return false;
+}
+
+static double look_at(strut_climber *c, const double *q) {
+  double largest = 0.0;
+  strut_potential_gradient(c->potential, q, c->g);
+  for (int32_t i = 0; i < c->potential->n; i++) largest = fmax(largest, fabs(c->g[i]));
+  return largest;
+}
+
+/* Newton steps as long as they become shorter. */
+static void polish(strut_climber *c, double *q) {
+  double earlier = HUGE_VAL, length;
+  for (int i = 0; i < MOST_POLISH; i++) {
+    look_at(c, q);
+    if (!take_apart(c, q, false)) return;
+    look(c, HUGE_VAL);
+    for (int32_t k = 0; k < c->now.n; k++) c->x[k] = c->idle[k] ? 0.0 : -c->part[k] / c->value[k];
+    assemble(c, &length);
+    if (!(length < 0.9 * earlier) || length > 1e-3 * c->size) return;
+    move(c, q);
+    memcpy(q, c->trial, (size_t)c->potential->model->length * sizeof *q);
+    if (length <= 4.0 * DBL_EPSILON * c->size) return;
+    earlier = length;
+  }
+}
+
+/* A member with a rest length that has shrunk to a point pushes nowhere: no gradient is defined. */
+static bool has_collapsed(const strut_climber *c, const double *q) {
+  const strut_member_table *t = &c->potential->model->members;
+  for (int32_t j = 0; j < t->count; j++) {
+    const double *a = q + t->from[j], *b = q + t->to[j];
+    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    if (t->slack[j] != 0.0 && t->rest[j] > 0 && t->stiffness[j] > 0 && length < 1e-7 * t->rest[j])
+      return true;
+  }
+  return false;
+}
+
+/* Upwards there is often no end: bars that only stretch, bodies that only rise. */
+static bool has_left(const strut_climber *c, const double *q) {
+  const strut_potential *p = c->potential;
+  for (int32_t i = 0; i < p->n; i++)
+    if (!(fabs(q[p->coordinate[i]] - c->begin[p->coordinate[i]]) < 3.0 * c->size)) return true;
+  return false;
+}
+
+bool strut_climb(strut_climber *c, int32_t index, const double *direction, double *q) {
+  const strut_potential *p = c->potential;
+  double radius = 0.03 * c->size, root = sqrt((double)p->n);
+  memcpy(c->begin, q, (size_t)p->model->length * sizeof *q);
+  if (direction) memcpy(c->follow, direction, (size_t)p->n * sizeof *direction);
+  for (int i = 0; i < MOST_STEPS; i++) {
+    double residual = look_at(c, q), allowed = 8.0 * strut_potential_rounding(p, q);
+    if (residual <= allowed) {
+      polish(c, q);
+      return look_at(c, q) <= 8.0 * strut_potential_rounding(p, q) && !has_collapsed(c, q);
+    }
+    if (!take_apart(c, q, false)) return false;
+    look(c, root * allowed);
+    if (has_left(c, q) || !turn_over(c, index, direction != NULL) || !climb_once(c, q, &radius))
+      return false;
+  }
+  return false;
+}
+
+bool strut_climb_away(strut_climber *c, int32_t mode, double far, double *q, double *direction) {
+  int32_t n = c->potential->n, left = mode;
+  look_at(c, q);
+  if (!take_apart(c, q, true)) return false;
+  look(c, HUGE_VAL);
+  for (int32_t i = 0; i < n; i++) {
+    if (c->idle[i] || left-- > 0) continue;
+    for (int32_t k = 0; k < n; k++)
+      direction[k] = (far < 0 ? -1.0 : 1.0) * c->now.vector[(size_t)i * (size_t)n + (size_t)k];
+    for (int32_t k = 0; k < n; k++) c->step[k] = fabs(far) * direction[k];
+    move(c, q);
+    memcpy(q, c->trial, (size_t)c->potential->model->length * sizeof *q);
+    return true;
+  }
+  return false;
+}

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/search/search_batch.h"
+
+#include <math.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "engine/statics/descent_parts.h"
+#include "engine/statics/search/saddle.h"
+#include "engine/statics/search/starts.h"
+
+/* Climbs draw from numbers of their own. */
+static const uint64_t CLIMBS = 0x5ad1e5u;
+
+typedef struct worker {
+  strut_minimiser *minimiser;
+  strut_climber *climber;
+  double *direction; /* (n) */
+} worker;
+
+struct strut_batch {
+  const strut_potential *potential;
+  uint64_t seed;
+  int worker_count;
+  worker *workers;
+  strut_task_result result[STRUT_BATCH];
+  strut_arena arena;
+};
+
+static int threads(void) {
+#ifdef _OPENMP
+  int most = omp_in_parallel() ? 1 : omp_get_max_threads();
+  return most < STRUT_BATCH ? most : STRUT_BATCH;
+#else
+  return 1;
+#endif
+}
+
+static int this_thread(void) {
+#ifdef _OPENMP
+  return omp_get_thread_num();
+#else
+  return 0;
+#endif
+}
+
+strut_status strut_batch_create(const strut_potential *potential, uint64_t seed, bool climbs,
+                                strut_batch **batch, strut_error *error) {
+  strut_batch *b = *batch = strut_allocate(1, sizeof *b);
+  size_t length = (size_t)potential->model->length;
+  if (!b) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  b->potential = potential;
+  b->seed = seed;
+  b->worker_count = threads();
+  b->workers = strut_arena_allocate(&b->arena, (size_t)b->worker_count, sizeof *b->workers);
+  bool good = b->workers != NULL;
+  for (int i = 0; i < STRUT_BATCH && good; i++)
+    good = (b->result[i].q = strut_arena_allocate(&b->arena, length, sizeof(double)));
+  for (int i = 0; i < b->worker_count && good; i++) {
+    worker *w = &b->workers[i];
+    w->direction = strut_arena_allocate(&b->arena, (size_t)potential->n, sizeof *w->direction);
+    good = w->direction && strut_minimiser_create(potential, &w->minimiser, NULL) == STRUT_OK;
+    if (good && climbs) good = (w->climber = strut_climber_create(potential));
+  }
+  if (good) return STRUT_OK;
+  strut_batch_free(b);
+  *batch = NULL;
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+}
+
+void strut_batch_free(strut_batch *batch) {
+  if (!batch) return;
+  for (int i = 0; batch->workers && i < batch->worker_count; i++) {
+    strut_minimiser_free(batch->workers[i].minimiser);
+    strut_climber_free(batch->workers[i].climber);
+  }
+  strut_arena_free(&batch->arena);
+  strut_release(batch);
+}
+
+/* How far b may be slid along x, where nothing holds that, to lie over a. */
+static double slide_over(const strut_potential *p, const double *a, const double *b) {
+  double sum = 0.0;
+  int32_t nodes = p->model->node_count;
+  for (int32_t i = 0; i < nodes; i++) {
+    if (p->row_of[2 * i] < 0 || p->force[2 * i] != 0.0) return 0.0;
+    sum += a[2 * i] - b[2 * i];
+  }
+  if (p->ground && p->model->contacts.count && p->model->contacts.normal[0] != 0.0) return 0.0;
+  return nodes ? sum / nodes : 0.0;
+}
+
+/* The highest of seven places on the straight way from a to b. */
+static void highest_between(const strut_potential *p, const double *a, const double *b, double *q) {
+  size_t length = (size_t)p->model->length;
+  double highest = -HUGE_VAL, best = 0.5, slide = slide_over(p, a, b);
+  for (int k = 1; k <= 8; k++) { /* the eighth time for good */
+    double t = k < 8 ? k / 8.0 : best;
+    for (size_t i = 0; i < length; i++)
+      q[i] = a[i] + t * (b[i] + (i % 2 ? 0.0 : slide) - a[i]);
+    double value = strut_potential_value(p, q);
+    if (k < 8 && value > highest) highest = value, best = t;
+  }
+}
+
+static bool climb(const strut_batch *b, worker *w, const strut_task *task, double *q) {
+  const strut_potential *p = b->potential;
+  double far = 0.02 * (p->model->size > 0 ? p->model->size : 1.0);
+  size_t bytes = (size_t)p->model->length * sizeof *q;
+  if (task->kind == STRUT_TASK_CLIMB_MODE) {
+    memcpy(q, task->q, bytes);
+    return strut_climb_away(w->climber, (int32_t)task->number, task->side * far, q, w->direction) &&
+           strut_climb(w->climber, 1, w->direction, q);
+  }
+  int32_t index = 1;
+  if (task->kind == STRUT_TASK_CLIMB_PAIR) {
+    highest_between(p, task->q, task->other, q);
+  } else if (task->kind == STRUT_TASK_CLIMB_SHAPE) {
+    memcpy(q, task->q, bytes);
+  } else if (task->q) {
+    memcpy(q, task->q, bytes);
+    strut_shake(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
+  } else {
+    strut_random_shape(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
+    index = 1 + (int32_t)(task->number / 2 % (p->n < 4 ? p->n : 4));
+  }
+  return index <= p->n && strut_climb(w->climber, index, NULL, q);
+}
+
+static strut_descent_end descend(const strut_batch *b, worker *w, const strut_task *task,
+                                 double *q) {
+  const strut_potential *p = b->potential;
+  if (task->kind == STRUT_TASK_RANDOM)
+    strut_random_shape(p, b->seed, (uint64_t)task->number, q);
+  else
+    memcpy(q, task->q, (size_t)p->model->length * sizeof *q);
+  if (task->kind == STRUT_TASK_FOLD) strut_fold(p, task->number, q);
+  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(w->minimiser, q, 0.0).end;
+  return strut_descend_along(w->minimiser, task->other, task->side, q) ? STRUT_DESCENT_REACHED
+                                                                       : STRUT_DESCENT_EXHAUSTED;
+}
+
+static int64_t looks_of(const worker *w) {
+  return strut_minimiser_looks(w->minimiser) + (w->climber ? strut_climber_looks(w->climber) : 0);
+}
+
+static void work(strut_batch *b, const strut_task *task, strut_task_result *result) {
+  worker *w = &b->workers[this_thread()];
+  bool up = task->kind >= STRUT_TASK_CLIMB_MODE && task->kind <= STRUT_TASK_CLIMB_RANDOM;
+  int64_t before = looks_of(w);
+  if (up)
+    result->end = climb(b, w, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
+  else
+    result->end = descend(b, w, task, result->q);
+  result->looks = looks_of(w) - before;
+}
+
+const strut_task_result *strut_batch_run(strut_batch *batch, const strut_task *task, size_t count) {
+  int tasks = (int)count;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic) num_threads(batch->worker_count)
+#endif
+  for (int i = 0; i < tasks; i++) work(batch, &task[i], &batch->result[i]);
+  return batch->result;
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Descents and climbs side by side: each task by itself, results read in the tasks' order.
+ *
+ * A task depends on nothing but its own description, so the number of threads changes no bit.
+ */
+#ifndef STRUT_ENGINE_STATICS_SEARCH_SEARCH_BATCH_H
+#define STRUT_ENGINE_STATICS_SEARCH_SEARCH_BATCH_H
+
+#include "engine/statics/minimise.h"
+
+/** Tasks are worked off, and their results read, in groups of this many. */
+enum { STRUT_BATCH = 64 };
+
+typedef enum strut_task_kind {
+  STRUT_TASK_SHAPE,       /* down from q */
+  STRUT_TASK_FOLD,        /* down from fold `number` of q */
+  STRUT_TASK_RANDOM,      /* down from random shape `number` */
+  STRUT_TASK_CLIMB_MODE,  /* up from the minimum q along mode `number`, `side` +-1 */
+  STRUT_TASK_CLIMB_SHAPE, /* up from q itself, which is close to a saddle */
+  STRUT_TASK_CLIMB_PAIR,  /* up from the highest place on the straight way from q to other */
+  STRUT_TASK_CLIMB_RANDOM, /* up from random shape `number`, or from q shaken if not NULL */
+  STRUT_TASK_DOWN         /* down from the saddle q along `other`, `side` +-1 */
+} strut_task_kind;
+
+typedef struct strut_task {
+  strut_task_kind kind;
+  int64_t number;
+  double side;
+  const double *q, *other; /* (length) */
+  int32_t from;            /* the point it belongs to, for whoever reads the result */
+} strut_task;
+
+typedef struct strut_task_result {
+  strut_descent_end end;
+  double *q;     /* (length) where it ended */
+  int64_t looks; /* Hessians taken apart on the way */
+} strut_task_result;
+
+typedef struct strut_batch strut_batch;
+/** climbs: will there be any? Only below STRUT_DENSE_STATICS coordinates. */
+strut_status strut_batch_create(const strut_potential *potential, uint64_t seed, bool climbs,
+                                strut_batch **batch, strut_error *error);
+void strut_batch_free(strut_batch *batch);
+
+/** Works off up to STRUT_BATCH tasks; the results are valid until the next call. */
+const strut_task_result *strut_batch_run(strut_batch *batch, const strut_task *task, size_t count);
+
+#endif
