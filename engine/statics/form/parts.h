@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The ways of form finding, each in a file of its own, and what they share. For form*.c.
+ * The ways of form finding, each in a file of its own, and what they share. For the files of this folder.
  */
 #ifndef STRUT_ENGINE_STATICS_FORM_PARTS_H
 #define STRUT_ENGINE_STATICS_FORM_PARTS_H
@@ -26,6 +26,8 @@ bool strut_form_touches(const strut_former *former, int32_t contact);
 /** Gives member j the rest length with which it carries `force` at the length it starts with. */
 strut_status strut_form_set_force(strut_former *former, size_t member, double force,
                                   strut_error *error);
+/** Says that energies and forces are no numbers any more; returns the status. */
+strut_status strut_form_out_of_range(strut_error *error);
 /** A list such as "n1, n4 and n5" of the nodes marked (node_count), for sentences. */
 void strut_form_name_nodes(const strut_former *former, const uint8_t *marked, char *text,
                            size_t size);
