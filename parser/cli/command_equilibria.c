@@ -124,7 +124,9 @@ static strut_status search(const strut_arguments *arguments, strut_scene *scene)
 
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  strut_status status = strut_try_output(arguments);
+  if (status != STRUT_OK) return status;
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   status = search(arguments, &scene);
   strut_scene_free(&scene);

@@ -62,6 +62,8 @@ static strut_status run(const strut_arguments *arguments) {
   strut_status status = strut_option_integer(&strut_command_modes, arguments, STRUT_OPTION_COUNT, 1,
                                              MOST_MODES, &count);
   if (status != STRUT_OK) return status;
+  status = strut_try_output(arguments);
+  if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   strut_modes_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT),

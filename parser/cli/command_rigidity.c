@@ -57,7 +57,9 @@ static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  strut_status status = strut_try_output(arguments);
+  if (status != STRUT_OK) return status;
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = look(arguments, model, &error);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/output/results.h"
 #include "engine/statics/equilibria/stand.h"
 #include "parser/cli/streams.h"
 #include "parser/read_scene.h"
@@ -51,5 +52,15 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
     strut_complain(&error);
     strut_scene_free(scene);
   }
+  return status;
+}
+
+strut_status strut_try_output(const strut_arguments *arguments) {
+  strut_results results = {0};
+  strut_error error = {0};
+  if (!arguments->output) return STRUT_OK;
+  strut_status status = strut_results_begin(&results, arguments->output, &error);
+  if (status != STRUT_OK) strut_complain(&error);
+  strut_results_abandon(&results);
   return status;
 }

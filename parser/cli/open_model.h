@@ -20,4 +20,7 @@ typedef enum strut_open_purpose {
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_scene *scene);
 
+/** Finds out, before anything is computed, whether files can go where -o wants them; leaves no trace. */
+strut_status strut_try_output(const strut_arguments *arguments);
+
 #endif
