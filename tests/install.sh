@@ -7,10 +7,12 @@
 set -eu
 
 packages="gcc libc6-dev make cmake pkg-config
-  libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev"
+  libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev
+  libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
 case ${1:-} in
   '') ;;
-  tests) packages="$packages g++ clang libcmocka-dev locales jq" ;;
+  tests) packages="$packages g++ clang libcmocka-dev locales jq
+  python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
 esac
 

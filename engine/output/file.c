@@ -66,20 +66,17 @@ static void forget(strut_file *file) {
   *file = (strut_file){0};
 }
 
-strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
-                             strut_error *error) {
-  size_t room = strlen(directory) + strlen(name) + 2;
-  *file = (strut_file){0};
-  file->path = strut_allocate(room, 1);
-  file->part = strut_allocate(room + NUMBER_ROOM, 1);
+/* Opens for writing what file->path names, an owned text or NULL where memory was out. */
+static strut_status open_beside(strut_file *file, strut_error *error) {
+  size_t room = file->path ? strlen(file->path) + NUMBER_ROOM : 1;
+  file->part = strut_allocate(room, 1);
   if (!file->path || !file->part) {
     forget(file);
     return no_memory(error);
   }
-  snprintf(file->path, room, "%s/%s", directory, name);
   int descriptor = -1, code = EISDIR;
   if (!is_directory(file->path)) {
-    descriptor = create_beside(file->path, file->part, room + NUMBER_ROOM);
+    descriptor = create_beside(file->path, file->part, room);
     code = errno;
   }
   if (descriptor >= 0) {
@@ -96,12 +93,28 @@ strut_status strut_file_open(strut_file *file, const char *directory, const char
   return status;
 }
 
+strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
+                             strut_error *error) {
+  size_t room = strlen(directory) + strlen(name) + 2;
+  *file = (strut_file){.path = strut_allocate(room, 1)};
+  if (file->path) snprintf(file->path, room, "%s/%s", directory, name);
+  return open_beside(file, error);
+}
+
+strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error) {
+  size_t room = strlen(path) + 1;
+  *file = (strut_file){.path = strut_allocate(room, 1)};
+  if (file->path) memcpy(file->path, path, room);
+  return open_beside(file, error);
+}
+
 /* Makes a rename durable. Some file systems cannot synchronise a directory: no trouble. */
 static int synchronise_parent(const char *path) {
   const char *slash = strrchr(path, '/');
-  char *parent = strut_allocate((size_t)(slash - path) + 2, 1);
+  size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
+  char *parent = strut_allocate(length + 1, 1);
   if (!parent) return ENOMEM;
-  memcpy(parent, path, (size_t)(slash - path) + (slash == path));
+  memcpy(parent, slash ? path : ".", length);
   int code = 0, descriptor = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0) {
     if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP) {
@@ -155,17 +168,25 @@ void strut_file_remove(const char *directory, const char *name) {
   close(descriptor);
 }
 
+/* Writes a whole text into an open file and completes it. */
+static strut_status write_and_commit(strut_file *file, const char *text, strut_error *error) {
+  size_t length = strlen(text);
+  errno = 0;
+  if (fwrite(text, 1, length, file->stream) == length) return strut_file_commit(file, error);
+  strut_status status = strut_file_trouble(file, error);
+  strut_file_abandon(file);
+  return status;
+}
+
 strut_status strut_file_write_text(const char *directory, const char *name, const char *text,
                                    strut_error *error) {
   strut_file file;
   strut_status status = strut_file_open(&file, directory, name, error);
-  if (status != STRUT_OK) return status;
-  size_t length = strlen(text);
-  errno = 0;
-  if (fwrite(text, 1, length, file.stream) != length) {
-    status = strut_file_trouble(&file, error);
-    strut_file_abandon(&file);
-    return status;
-  }
-  return strut_file_commit(&file, error);
+  return status == STRUT_OK ? write_and_commit(&file, text, error) : status;
+}
+
+strut_status strut_file_write_path(const char *path, const char *text, strut_error *error) {
+  strut_file file;
+  strut_status status = strut_file_open_path(&file, path, error);
+  return status == STRUT_OK ? write_and_commit(&file, text, error) : status;
 }

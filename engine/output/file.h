@@ -21,6 +21,9 @@ STRUT_API strut_status strut_directory_create(const char *directory, strut_error
 /** Opens directory/name for writing under a temporary name beside it. */
 STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
                                        strut_error *error);
+/** The same for a path of any kind, such as the argument of an option; its folder exists. */
+STRUT_API strut_status strut_file_open_path(strut_file *file, const char *path,
+                                            strut_error *error);
 /** Flushes, synchronises and renames; on failure nothing of it is left. */
 STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
 /** Closes and removes what was written. Does nothing on a committed or zeroed file. */
@@ -32,5 +35,8 @@ STRUT_API void strut_file_remove(const char *directory, const char *name);
 /** Writes a whole text as a file. */
 STRUT_API strut_status strut_file_write_text(const char *directory, const char *name,
                                              const char *text, strut_error *error);
+/** The same for a path. */
+STRUT_API strut_status strut_file_write_path(const char *path, const char *text,
+                                             strut_error *error);
 
 #endif

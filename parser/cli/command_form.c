@@ -48,19 +48,6 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
   return status;
 }
 
-/* FILE as the user gave it: its directory must be there, its content appears whole or not at all. */
-static strut_status write_file(const char *path, const char *text, strut_error *error) {
-  const char *slash = strrchr(path, '/');
-  if (!slash) return strut_file_write_text(".", path, text, error);
-  strut_arena arena = {0};
-  size_t length = slash == path ? 1 : (size_t)(slash - path);
-  const char *directory = strut_arena_text(&arena, path, length);
-  strut_status status = directory ? strut_file_write_text(directory, slash + 1, text, error)
-                                  : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_arena_free(&arena);
-  return status;
-}
-
 /* What is printed: with -o what the form holds, unless nobody wants to know; else the model. */
 static char *text_for(const strut_arguments *arguments, const strut_scene *scene,
                       const strut_form *form) {
@@ -77,7 +64,7 @@ static strut_status show(const strut_arguments *arguments, const strut_scene *sc
   strut_status status = STRUT_OK;
   if ((arguments->output && !model) || (!silent && !text)) status = strut_complain_of_memory();
   if (status == STRUT_OK && model) {
-    status = write_file(arguments->output, model, &error);
+    status = strut_file_write_path(arguments->output, model, &error);
     if (status != STRUT_OK) strut_complain(&error);
   }
   if (status == STRUT_OK && text) status = strut_print(text);

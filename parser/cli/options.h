@@ -40,6 +40,25 @@ typedef enum strut_option_id {
   STRUT_OPTION_LEAST_TENSION,
   STRUT_OPTION_LEAST_DENSITY,
   STRUT_OPTION_OBJECTIVE,
+  STRUT_OPTION_PLOT,    /* FILE.svg|pdf|png: see plot_options.h */
+  STRUT_OPTION_WIDTH,   /* of a figure: column, page or a length */
+  STRUT_OPTION_DRAW,    /* which figure of a run */
+  STRUT_OPTION_SCALE,   /* X,Y: how much motion is exaggerated */
+  STRUT_OPTION_TIMES,   /* of snapshots */
+  STRUT_OPTION_ANIMATE, /* FILE.mp4|gif|webm */
+  STRUT_OPTION_SPEED,
+  STRUT_OPTION_FPS,
+  STRUT_OPTION_FORMAT,
+  STRUT_OPTION_KIND,    /* of a diagram from a table */
+  STRUT_OPTION_X,
+  STRUT_OPTION_Y,
+  STRUT_OPTION_BY,
+  STRUT_OPTION_PANELS,
+  STRUT_OPTION_BAND,
+  STRUT_OPTION_LABEL,
+  STRUT_OPTION_DOUBT,
+  STRUT_OPTION_TITLE,
+  STRUT_OPTION_EQUILIBRIA,
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A page to draw on: SVG, PDF or PNG, whichever its file's name ends with; or pixels in memory.
+ *
+ * The only room that sees Cairo and Pango. Lengths are points, 1/72 inch; x runs right and y down
+ * from the upper left corner. Drawing never fails: whatever went wrong is told on commit. The same
+ * drawing gives the same bytes; there is no date in them.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
+#define STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/base/status.h"
+
+typedef struct strut_canvas strut_canvas;
+
+/** Each from 0 to 1; alpha 0 is nothing at all. */
+typedef struct strut_colour {
+  double red, green, blue, alpha;
+} strut_colour;
+
+/** A rectangle [pt]; x, y is its upper left corner. */
+typedef struct strut_box {
+  double x, y, width, height;
+} strut_box;
+
+/** How a line is drawn. Zero dash lengths: solid. */
+typedef struct strut_pen {
+  strut_colour colour;
+  double width;    /* [pt] */
+  double dash[4];  /* ink, gap, ink, gap [pt]; 0 from the first unused one on */
+  bool butt;       /* ends where its last point is; else ends are round */
+} strut_pen;
+
+typedef enum strut_hatch {
+  STRUT_HATCH_NONE,
+  STRUT_HATCH_RISING,  /* from lower left to upper right */
+  STRUT_HATCH_FALLING,
+  STRUT_HATCH_CROSSED,
+  STRUT_HATCH_LEVEL,
+  STRUT_HATCH_DOTS
+} strut_hatch;
+
+/** How an area is filled: a colour, and over it lines of another. */
+typedef struct strut_fill {
+  strut_colour colour;
+  strut_hatch hatch;
+  strut_colour hatch_colour;
+} strut_fill;
+
+/** How a text is set. Its size is the font's [pt]; 0 stands for 8. */
+typedef struct strut_font {
+  double size;
+  bool bold, italic;
+  strut_colour colour; /* alpha 0: black */
+  strut_colour halo;   /* drawn around the letters, to be read over lines; alpha 0: none */
+  double across;       /* of the text's width, what lies left of x: 0 left, 0.5 centred, 1 right */
+  double down;         /* of its height, what lies above y: 0 top, 0.5 middle, 1 bottom */
+  bool upwards;        /* turned by a quarter, read from below; across and down turn with it */
+  double width;        /* breaks lines at this width [pt]; 0: never */
+} strut_font;
+
+/** STRUT_OK if a picture of that name can be made, else STRUT_USAGE with the endings there are. */
+STRUT_API strut_status strut_canvas_check_name(const char *path, strut_error *error);
+/** A page that becomes the file `path`; `title` goes into what PDF knows of itself. */
+STRUT_API strut_status strut_canvas_open(const char *path, double width, double height,
+                                         const char *title, strut_canvas **canvas,
+                                         strut_error *error);
+/** A page of width by height pixels, white, on which `scale` pixels are a point. */
+STRUT_API strut_status strut_canvas_open_pixels(int width, int height, double scale,
+                                                strut_canvas **canvas, strut_error *error);
+/** (height, *stride) bytes of such a page as it is now: blue, green, red, unused. Owned by it. */
+STRUT_API const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride);
+/** Makes the file appear. */
+STRUT_API strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error);
+/** NULL is allowed; a page that was not committed leaves no file. */
+STRUT_API void strut_canvas_free(strut_canvas *canvas);
+
+/** Its size [pt]. */
+STRUT_API strut_box strut_canvas_box(const strut_canvas *canvas);
+/** Covers all of it with one colour. */
+STRUT_API void strut_canvas_clear(strut_canvas *canvas, strut_colour colour);
+/** Nothing is drawn outside the box until strut_canvas_unclip. They nest. */
+STRUT_API void strut_canvas_clip(strut_canvas *canvas, strut_box box);
+STRUT_API void strut_canvas_unclip(strut_canvas *canvas);
+
+/** A line through (count) points. */
+STRUT_API void strut_draw_line(strut_canvas *canvas, const double (*points)[2], size_t count,
+                               strut_pen pen);
+STRUT_API void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
+                                  strut_pen pen);
+/** A closed outline through (count) points; a fill or a pen may be NULL. */
+STRUT_API void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
+                                  const strut_fill *fill, const strut_pen *pen);
+STRUT_API void strut_draw_box(strut_canvas *canvas, strut_box box, const strut_fill *fill,
+                              const strut_pen *pen);
+STRUT_API void strut_draw_circle(strut_canvas *canvas, double x, double y, double radius,
+                                 const strut_fill *fill, const strut_pen *pen);
+/** An arrow from the first to the second point, its head as long as `head` [pt] or the arrow. */
+STRUT_API void strut_draw_arrow(strut_canvas *canvas, double x1, double y1, double x2, double y2,
+                                double head, strut_pen pen);
+/** A text at x, y. Any text is allowed: letters of any script, either direction, no markup. */
+STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
+                               strut_font font);
+/** Width and height that it takes [pt], not turned. */
+STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_font font,
+                               double *width, double *height);
+
+#endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Maps over two quantities: a category or a number at every point of a grid, doubt hatched.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_DRAW_MAP_H
+#define STRUT_ENGINE_OUTPUT_DRAW_MAP_H
+
+#include "engine/output/draw/axes.h"
+
+typedef struct strut_map {
+  const char *title; /* may be NULL */
+  strut_axis x, y;
+  size_t columns, rows;
+  const double *xs, *ys;     /* (columns), (rows) ascending; cells reach half way to the next */
+  const int *category;       /* (rows, columns) index into names, -1: no answer; or NULL */
+  size_t category_count;
+  const char *const *names;  /* (category_count) */
+  const double *value;       /* (rows, columns) where category is NULL; NAN: no answer */
+  const char *value_name, *value_unit;
+  const bool *doubtful;      /* (rows, columns) drawn hatched; or NULL */
+  const char *doubt;         /* what the hatching means, for the legend */
+} strut_map;
+
+/** Draws it in a box with a legend or a scale of colours beside it. STRUT_NO_MEMORY. */
+STRUT_API strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map *map);
+
+#endif

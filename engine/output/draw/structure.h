@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Structures drawn true to scale: members, nodes, supports, ground, forces, and what moves.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
+#define STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
+
+#include "engine/model/model.h"
+#include "engine/output/draw/canvas.h"
+
+/** A window onto the plane: the same scale in x and y, centred in its box. */
+typedef struct strut_window {
+  strut_box box;         /* on the page [pt] */
+  double scale;          /* [pt/m] */
+  double left, top;      /* the plane's x and y at the box's upper left corner [m] */
+} strut_window;
+
+/** Smallest and largest x and y [m]. Starts as strut_bounds_none(). */
+typedef struct strut_bounds {
+  double low[2], high[2];
+} strut_bounds;
+
+STRUT_API strut_bounds strut_bounds_none(void);
+/** Widens the bounds by all nodes of a shape q (model->length). */
+STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q);
+/** The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows. */
+STRUT_API strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
+/** Where a point of the plane [m] is on the page [pt]. */
+STRUT_API void strut_window_point(const strut_window *window, const double position[2],
+                                  double point[2]);
+
+typedef enum strut_colouring {
+  STRUT_COLOUR_KIND,  /* bars dark, springs and cables by kind */
+  STRUT_COLOUR_FORCE, /* strut_palette_signed(value / limit) */
+  STRUT_COLOUR_ONE    /* all in `colour` */
+} strut_colouring;
+
+/** How a structure is drawn; zero-initialised it is drawn by kinds, thick and opaque. */
+typedef struct strut_structure_style {
+  strut_colouring colouring;
+  const double *values; /* (member_count) force [N] or strain; for STRUT_COLOUR_FORCE */
+  double limit;         /* largest |value| of the colour scale */
+  const double *slack_forces; /* (member_count) [N]: a cable with 0 is drawn slack; NULL: by length */
+  strut_colour colour;  /* for STRUT_COLOUR_ONE */
+  double opacity;       /* 0 stands for 1 */
+  double thinness;      /* widths are divided by 1 + thinness */
+  bool node_names, member_names, no_nodes, no_supports;
+} strut_structure_style;
+
+/** Members, nodes and supports of the shape q (model->length). Widths adapt to how many there are. */
+STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
+                                    const strut_model *model, const double *q,
+                                    const strut_structure_style *style);
+/** The ground's line and body across the window; nothing where the scene has none. */
+STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
+                                 const strut_model *model);
+/**
+ * Forces of the ground on its contacts as arrows: (contacts, 2) normal and friction [N];
+ * `longest` is the length [pt] of an arrow of `limit` [N].
+ */
+STRUT_API void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
+                                         const strut_model *model, const double *q,
+                                         const double (*force)[2], double limit, double longest);
+/** A way of one point through (count) positions [m], dark to bright. */
+STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window,
+                                const double (*positions)[2], size_t count, double width);
+/** A rod of known length with its name, such as "20 mm", in a lower corner of the window's box. */
+STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
+
+/** The scale of colours beside a drawing, from -limit to limit or 0 to limit, named and in its unit. */
+typedef struct strut_colour_scale {
+  const char *name, *unit;
+  double low, high; /* [unit]; ticks are chosen */
+  bool sequence;    /* strut_palette_sequence instead of strut_palette_signed */
+} strut_colour_scale;
+STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
+                                       const strut_colour_scale *scale);
+
+#endif

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The page: one HTML file that shows a run or a model, without a network, in any browser.
+ *
+ * What the program writes is data; what the page does with them is in page.html, page.css and
+ * page/.js beside this header, and in Debian's dygraphs, all put into the library at build time. The
+ * data are one JSON object in <script type="application/json" id="strut-data">, in which '<' is
+ * written as an escape, so that no name can end it:
+ *
+ *   strut, name, description, source: texts
+ *   nodes: [{name, fixed: [bool, bool]}], members: [{name, from, to, kind: bar|spring|cable}]
+ *   contacts: [node index, ...]
+ *   ground: null or {height, slope [rad], belt_speed}
+ *   start: [x, y, x, y, ...] [m] of all nodes at t = 0; size: largest extent [m]
+ *   motion: null or {
+ *     frames, recorded, every: as in strut_trajectory, status: completed|diverged|interrupted,
+ *     track: node index or null for the centre of mass (as the scene measures)
+ *     time, position, length, force, contact, energy: null or a block (position is always there);
+ *     energy_names: [text, ...]; weights: [kg, ...] of the nodes, for the centre of mass }
+ *   equilibria: null or [{name, label, fate, verdict, energy [J], stands: bool,
+ *     position: [x, y, ...], force: [N, ...] of members, contacts: [node index, ...],
+ *     normal: [N, ...], lowest: smallest eigenvalue [N/m]}]
+ *   equilibria_remark: text; equilibria_left_out: how many are not listed for size
+ *   barriers: [{from, to, height [J]}]  indices into equilibria; only if both are listed
+ *   summary: [{label, value}]           rows of text, ready to show
+ *   yaml: text of the scene
+ *   study: null
+ *
+ * A block is {columns, quantum, bytes}: integers n of `frames` rows, (frames, columns), a value being
+ * n * quantum. Column after column, the first number as it is, the second as its difference to the
+ * first, from then on the second difference; each as zigzag (2 n, or -2 n - 1 where n < 0) in
+ * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay
+ * below 2^53.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_H
+#define STRUT_ENGINE_OUTPUT_PAGE_PAGE_H
+
+#include "engine/model/model.h"
+#include "engine/output/trajectory.h"
+#include "engine/statics/equilibria/equilibria.h"
+
+/** What a page shows. Nothing is owned. */
+typedef struct strut_page {
+  const strut_model *model;
+  const strut_trajectory *motion;     /* NULL: nothing moves */
+  const strut_equilibria *equilibria; /* NULL: none are shown */
+  const char *summary;                /* the text of summary.json, or NULL */
+  const char *yaml;                   /* the scene as text */
+  size_t most_bytes;                  /* of the data, about; 0: 4 million. Frames are left out
+                                         evenly until they fit */
+} strut_page;
+
+/** The whole file in a block of strut_allocate, or NULL with the error filled. */
+STRUT_API char *strut_page_html(const strut_page *page, strut_error *error);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A recorded motion in memory: taken while a run records, or read back from its directory.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_TRAJECTORY_H
+#define STRUT_ENGINE_OUTPUT_TRAJECTORY_H
+
+#include "engine/run/recorder.h"
+
+/** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */
+typedef struct strut_trajectory {
+  size_t frames, node_count, member_count, contact_count;
+  size_t every;          /* frames are every so many-th of the recorded samples; 1: all */
+  size_t recorded;       /* samples that there were */
+  double *time;          /* (frames) */
+  double *position;      /* (frames, nodes, 2); NULL only where positions were not recorded */
+  double *velocity;      /* (frames, nodes, 2) */
+  double *length;        /* (frames, members) */
+  double *force;         /* (frames, members) tension positive */
+  double *contact;       /* (frames, contacts, 2) normal, friction */
+  int32_t *contact_node; /* (contacts) index of the node in the scene */
+  double *energy;        /* (frames, STRUT_ENERGIES) in the recorder's order */
+  strut_status status;   /* of the run: STRUT_OK, STRUT_DIVERGED or STRUT_INTERRUPTED */
+  strut_arena arena;
+} strut_trajectory;
+enum { STRUT_ENERGIES = 10 };
+
+/** As many doubles as a trajectory holds at most unless told otherwise: half a gigabyte. */
+#define STRUT_TRAJECTORY_ROOM ((size_t)1 << 26)
+
+/**
+ * A sink that fills `trajectory`: with all samples, or evenly with every second, fourth ... of them
+ * once more than `room` doubles would be needed. `channels` are those it asks for, whatever the
+ * scene records into files. It is ready when the run has ended. NULL when memory is out.
+ */
+STRUT_API strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scene *scene,
+                                            unsigned channels, size_t room);
+/** Frees the sink, not the trajectory. */
+STRUT_API void strut_trajectory_sink_free(strut_sink *sink);
+/**
+ * Reads directory/trajectory.h5 of a run of `scene`. STRUT_FILE_TROUBLE where it is not there, cannot
+ * be read or is of another scene (other nodes or members), with what to do; STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_trajectory_read(const char *directory, const strut_scene *scene,
+                                             size_t room, strut_trajectory *trajectory,
+                                             strut_error *error);
+STRUT_API void strut_trajectory_free(strut_trajectory *trajectory);
+
+#endif
