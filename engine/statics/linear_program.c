@@ -5,6 +5,10 @@
 #include <glpk.h>
 #include <math.h>
 
+/* Tried in turn: GLPK's own choice has been seen to call a programme infeasible that is not. */
+enum { SCALINGS = 3 };
+static const int scalings[SCALINGS] = {GLP_SF_AUTO, GLP_SF_EQ, 0};
+
 static const double TOLERANCE = 1e-10; /* of bounds and of reduced costs */
 
 bool strut_linear_program_create(strut_linear_program *p, int32_t rows, int32_t columns,
@@ -68,6 +72,21 @@ static strut_program_end end_of(int code, int status) {
   return STRUT_PROGRAM_FAILED;
 }
 
+/* From scratch: its code, with the answer in the problem. */
+static int run_simplex(glp_prob *problem, int scaling) {
+  glp_smcp how;
+  glp_init_smcp(&how);
+  how.msg_lev = GLP_MSG_OFF;
+  how.tol_bnd = how.tol_dj = TOLERANCE;
+  if (scaling) {
+    glp_scale_prob(problem, scaling);
+  } else {
+    glp_unscale_prob(problem);
+  }
+  glp_adv_basis(problem, 0);
+  return glp_simplex(problem, &how);
+}
+
 strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
                                         strut_program_end *end) {
   glp_term_out(GLP_OFF);
@@ -84,14 +103,11 @@ strut_status strut_linear_program_solve(const strut_linear_program *p, double *x
   }
   bool loaded = load_entries(p, problem);
   if (loaded) {
-    glp_smcp how;
-    glp_init_smcp(&how);
-    how.msg_lev = GLP_MSG_OFF;
-    how.tol_bnd = how.tol_dj = TOLERANCE;
-    glp_scale_prob(problem, GLP_SF_AUTO);
-    glp_adv_basis(problem, 0);
-    int code = glp_simplex(problem, &how);
-    *end = end_of(code, glp_get_status(problem));
+    *end = STRUT_PROGRAM_FAILED;
+    for (int i = 0; i < SCALINGS && *end != STRUT_PROGRAM_OPTIMAL; i++) {
+      int code = run_simplex(problem, scalings[i]);
+      *end = end_of(code, glp_get_status(problem));
+    }
     *sum = glp_get_obj_val(problem);
     for (int32_t j = 0; j < p->columns; j++) x[j] = glp_get_col_prim(problem, j + 1);
   }

@@ -34,6 +34,12 @@ strut_status strut_canvas_check_name(const char *path, strut_error *error) {
                     path);
 }
 
+static cairo_status_t gather_bytes(void *context, const unsigned char *bytes, unsigned int count) {
+  strut_buffer *svg = context;
+  strut_buffer_add(svg, "%.*s", (int)count, (const char *)bytes);
+  return svg->failed ? CAIRO_STATUS_NO_MEMORY : CAIRO_STATUS_SUCCESS;
+}
+
 static cairo_status_t write_bytes(void *context, const unsigned char *bytes, unsigned int count) {
   strut_file *file = context;
   errno = 0;
@@ -56,9 +62,10 @@ static strut_status start(strut_canvas *c, cairo_surface_t *surface, double scal
 
 static cairo_surface_t *surface_for(strut_canvas *c, ending kind, const char *title) {
   double width = c->box.width, height = c->box.height;
-  if (kind == SVG) return cairo_svg_surface_create_for_stream(write_bytes, &c->file, width, height);
+  c->is_svg = kind == SVG;
+  c->is_png = kind == PNG;
+  if (kind == SVG) return cairo_svg_surface_create_for_stream(gather_bytes, &c->svg, width, height);
   if (kind == PNG) {
-    c->png = true;
     return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(width * PNG_SCALE + 0.5),
                                       (int)(height * PNG_SCALE + 0.5));
   }
@@ -117,13 +124,23 @@ const unsigned char *strut_canvas_pixels(strut_canvas *c, size_t *stride) {
   return cairo_image_surface_get_data(surface);
 }
 
+static cairo_status_t write_svg(strut_canvas *c) {
+  char *text = strut_buffer_take(&c->svg);
+  cairo_status_t status = CAIRO_STATUS_NO_MEMORY;
+  if (text && strut_canvas_renumber(text))
+    status = write_bytes(&c->file, (const unsigned char *)text, (unsigned)strlen(text));
+  strut_release(text);
+  return status;
+}
+
 strut_status strut_canvas_commit(strut_canvas *c, strut_error *error) {
   cairo_status_t status = cairo_status(c->cairo);
   cairo_surface_t *surface = cairo_get_target(c->cairo);
   if (status == CAIRO_STATUS_SUCCESS) {
-    if (c->png) status = cairo_surface_write_to_png_stream(surface, write_bytes, &c->file);
+    if (c->is_png) status = cairo_surface_write_to_png_stream(surface, write_bytes, &c->file);
     cairo_surface_finish(surface);
     if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
+    if (status == CAIRO_STATUS_SUCCESS && c->is_svg) status = write_svg(c);
   }
   if (status == CAIRO_STATUS_SUCCESS) return strut_file_commit(&c->file, error);
   strut_status ours =
@@ -145,6 +162,7 @@ void strut_canvas_free(strut_canvas *c) {
     cairo_surface_finish(cairo_get_target(c->cairo));
     cairo_destroy(c->cairo);
   }
+  strut_release(strut_buffer_take(&c->svg));
   strut_file_abandon(&c->file);
   strut_release(c);
 }

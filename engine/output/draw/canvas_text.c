@@ -46,7 +46,13 @@ static void set_text(strut_canvas *c, const char *text, const strut_font *font) 
                                               : PANGO_ALIGN_LEFT;
   pango_layout_set_alignment(c->layout, side);
   pango_layout_set_wrap(c->layout, PANGO_WRAP_WORD_CHAR);
-  pango_layout_set_text(c->layout, text, -1);
+  if (g_utf8_validate(text, -1, NULL)) {
+    pango_layout_set_text(c->layout, text, -1);
+  } else { /* which Pango would complain of on the standard error stream */
+    gchar *mended = g_utf8_make_valid(text, -1);
+    pango_layout_set_text(c->layout, mended, -1);
+    g_free(mended);
+  }
 }
 
 /* The layout's size [pt]. */

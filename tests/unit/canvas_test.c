@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The canvas: pixels where they belong, same bytes twice, whole files or none, colours that grow. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "engine/output/draw/canvas_parts.h"
+#include "engine/output/draw/palette.h"
+
+static const char *const endings[] = {"svg", "pdf", "png"};
+
+static char folder[] = "/tmp/strut-canvas-XXXXXX";
+
+static const char *path_of(const char *name, const char *ending, char path[200]) {
+  snprintf(path, 200, "%s/%s.%s", folder, name, ending);
+  return path;
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  return rmdir(folder); /* fails if a test left anything */
+}
+
+static void draw_something(strut_canvas *c) {
+  const double corners[3][2] = {{10, 10}, {60, 20}, {30, 70}};
+  for (int i = STRUT_HATCH_NONE; i <= STRUT_HATCH_DOTS; i++) {
+    const strut_fill fill = {strut_palette_thing((size_t)i), (strut_hatch)i, strut_grey(1)};
+    strut_draw_polygon(c, corners, 3, &fill, NULL);
+  }
+  strut_draw_arrow(c, 5, 5, 80, 40, 6, (strut_pen){.colour = strut_grey(0), .width = 1});
+  strut_draw_text(c, 50, 50, "<b>&\"' \xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d", (strut_font){.size = 9});
+  strut_draw_text(c, 50, 50, "up", (strut_font){.upwards = true, .halo = strut_grey(1)});
+}
+
+static void write_picture(const char *path) {
+  strut_canvas *c;
+  strut_error error = {0};
+  assert_int_equal(strut_canvas_open(path, 100, 80, "A <title> & more", &c, &error), STRUT_OK);
+  draw_something(c);
+  assert_int_equal(strut_canvas_commit(c, &error), STRUT_OK);
+  strut_canvas_free(c);
+}
+
+static size_t read_all(const char *path, char *bytes, size_t room) {
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  size_t count = fread(bytes, 1, room, file);
+  fclose(file);
+  return count;
+}
+
+static void test_same_bytes(void **state) {
+  (void)state;
+  enum { ROOM = 1 << 20 };
+  char *first = malloc(ROOM), *second = malloc(ROOM), a[200], b[200];
+  for (size_t k = 0; k < 3; k++) {
+    write_picture(path_of("first", endings[k], a));
+    if (k == 1) sleep(1); /* a clock in the file would show */
+    write_picture(path_of("second", endings[k], b));
+    size_t size = read_all(a, first, ROOM);
+    assert_true(size > 500 && size < ROOM);
+    assert_int_equal(read_all(b, second, ROOM), size);
+    assert_memory_equal(first, second, size);
+    unlink(a);
+    unlink(b);
+  }
+  free(first);
+  free(second);
+}
+
+static void test_png_size(void **state) {
+  (void)state;
+  char path[200];
+  unsigned char head[24];
+  write_picture(path_of("size", "png", path));
+  assert_int_equal(read_all(path, (char *)head, sizeof head), sizeof head);
+  assert_memory_equal(head + 1, "PNG", 3);
+  assert_int_equal(head[18] << 8 | head[19], 417); /* 100 pt at 300 to the inch, rounded */
+  assert_int_equal(head[22] << 8 | head[23], 333);
+  unlink(path);
+}
+
+static void test_names(void **state) {
+  (void)state;
+  static const char *const good[] = {"a.svg", "b/c.pdf", "./x.y.png"};
+  static const char *const bad[] = {"a", "a.bmp", ".svg", "d.svg/file", "d/.png", "a.SVG", ""};
+  strut_error error;
+  for (size_t i = 0; i < 3; i++) assert_int_equal(strut_canvas_check_name(good[i], &error), 0);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    error = (strut_error){0};
+    assert_int_equal(strut_canvas_check_name(bad[i], &error), STRUT_USAGE);
+    assert_non_null(strstr(error.message, ".pdf"));
+  }
+}
+
+static void test_nothing_left(void **state) {
+  (void)state;
+  strut_canvas *c;
+  strut_error error = {0};
+  char path[200];
+  for (size_t k = 0; k < 3; k++) {
+    assert_int_equal(
+        strut_canvas_open(path_of("left", endings[k], path), 100, 80, "", &c, &error), STRUT_OK);
+    draw_something(c);
+    strut_canvas_free(c);
+    assert_int_not_equal(access(path, F_OK), 0);
+  }
+  assert_int_equal(strut_canvas_open("/nowhere/at/all.svg", 100, 80, "", &c, &error),
+                   STRUT_FILE_TROUBLE);
+  assert_null(c);
+}
+
+/* A full disk is told on commit. */
+static void test_full(void **state) {
+  (void)state;
+  strut_canvas *c;
+  strut_error error = {0};
+  char path[200];
+  assert_int_equal(strut_canvas_open(path_of("full", "svg", path), 100, 80, "", &c, &error), 0);
+  draw_something(c);
+  /* No disk is needed: writing into /dev/full fails the same way. */
+  assert_true(freopen("/dev/full", "wb", c->file.stream) != NULL);
+  assert_int_equal(strut_canvas_commit(c, &error), STRUT_FILE_TROUBLE);
+  strut_canvas_free(c);
+  assert_int_not_equal(access(path, F_OK), 0);
+}
+
+static void assert_pixel(strut_canvas *c, int x, int y, unsigned red, unsigned green,
+                         unsigned blue) {
+  size_t stride;
+  const unsigned char *at = strut_canvas_pixels(c, &stride) + (size_t)y * stride + 4 * (size_t)x;
+  if (at[2] != red || at[1] != green || at[0] != blue)
+    fail_msg("pixel %d, %d is %d %d %d", x, y, at[2], at[1], at[0]);
+}
+
+static void test_pixels(void **state) {
+  (void)state;
+  strut_canvas *c;
+  strut_error error = {0};
+  const strut_fill red = {.colour = {1, 0, 0, 1}}, blue = {.colour = {0, 0, 1, 1}};
+  assert_int_equal(strut_canvas_open_pixels(200, 100, 2.0, &c, &error), STRUT_OK);
+  assert_true(strut_canvas_box(c).width == 100 && strut_canvas_box(c).height == 50);
+  assert_pixel(c, 0, 0, 255, 255, 255);
+  strut_draw_box(c, (strut_box){10, 20, 30, 10}, &red, NULL);
+  assert_pixel(c, 20, 40, 255, 0, 0); /* its corners, at two pixels a point */
+  assert_pixel(c, 79, 59, 255, 0, 0);
+  assert_pixel(c, 19, 40, 255, 255, 255);
+  assert_pixel(c, 80, 59, 255, 255, 255);
+  strut_canvas_clip(c, (strut_box){50, 0, 10, 50});
+  strut_draw_box(c, (strut_box){0, 0, 100, 5}, &blue, NULL);
+  strut_canvas_unclip(c);
+  assert_pixel(c, 99, 5, 255, 255, 255);
+  assert_pixel(c, 100, 5, 0, 0, 255);
+  assert_pixel(c, 120, 5, 255, 255, 255);
+  strut_canvas_clear(c, strut_grey(0));
+  assert_pixel(c, 20, 40, 0, 0, 0);
+  strut_canvas_free(c);
+}
+
+/* Numbers that no page has change nothing else. */
+static void test_far_away(void **state) {
+  (void)state;
+  strut_canvas *c;
+  strut_error error = {0};
+  char path[200];
+  const strut_pen pen = {.colour = strut_grey(0), .width = 1};
+  const strut_fill fill = {.colour = strut_grey(0.5), .hatch = STRUT_HATCH_RISING};
+  const double points[3][2] = {{NAN, 1}, {1e300, -INFINITY}, {3, -1e300}};
+  assert_int_equal(strut_canvas_open(path_of("far", "svg", path), 100, 80, "", &c, &error), 0);
+  strut_draw_line(c, points, 3, pen);
+  strut_draw_line(c, points, 0, pen);
+  strut_draw_circle(c, NAN, INFINITY, 3, &fill, &pen);
+  strut_draw_arrow(c, 1, 1, 1, 1, 5, pen);
+  strut_draw_arrow(c, NAN, 1, 1, 1, 5, pen);
+  strut_draw_text(c, NAN, 1e300, "far", (strut_font){0});
+  strut_draw_text(c, 1, 1, "", (strut_font){0});
+  strut_draw_text(c, 1, 1, "not UTF-8: \xff\xfe", (strut_font){0});
+  assert_int_equal(strut_canvas_commit(c, &error), STRUT_OK);
+  strut_canvas_free(c);
+  unlink(path);
+}
+
+/* Lightness as the eye sees it, about: luma of the sRGB values. */
+static double lightness(strut_colour c) {
+  return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue;
+}
+
+static void test_palettes(void **state) {
+  (void)state;
+  for (int i = -100; i < 100; i++) {
+    assert_true(lightness(strut_palette_signed((i + 1) / 100.0)) >
+                lightness(strut_palette_signed(i / 100.0)));
+    if (i >= 0)
+      assert_true(lightness(strut_palette_sequence((i + 1) / 100.0)) >
+                  lightness(strut_palette_sequence(i / 100.0)));
+  }
+  assert_true(lightness(strut_palette_signed(5)) < 0.75);
+  assert_true(lightness(strut_palette_sequence(5)) < 0.78);
+  assert_true(strut_palette_signed(NAN).alpha > 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_png_size),
+      cmocka_unit_test(test_names),      cmocka_unit_test(test_nothing_left),
+      cmocka_unit_test(test_full),       cmocka_unit_test(test_pixels),
+      cmocka_unit_test(test_far_away),   cmocka_unit_test(test_palettes),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
