@@ -29,6 +29,18 @@ void strut_draw_line(strut_canvas *c, const double (*points)[2], size_t count, s
   cairo_stroke(c->cairo);
 }
 
+void strut_draw_segments(strut_canvas *c, const double (*ends)[2], size_t count, strut_pen pen) {
+  if (!count || !(pen.colour.alpha > 0)) return;
+  cairo_new_path(c->cairo);
+  for (size_t i = 0; i < count; i++) {
+    cairo_move_to(c->cairo, strut_canvas_near(ends[2 * i][0]), strut_canvas_near(ends[2 * i][1]));
+    cairo_line_to(c->cairo, strut_canvas_near(ends[2 * i + 1][0]),
+                  strut_canvas_near(ends[2 * i + 1][1]));
+  }
+  set_pen(c, &pen);
+  cairo_stroke(c->cairo);
+}
+
 void strut_draw_segment(strut_canvas *c, double x1, double y1, double x2, double y2,
                         strut_pen pen) {
   const double ends[2][2] = {{x1, y1}, {x2, y2}};
