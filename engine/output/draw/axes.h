@@ -16,14 +16,19 @@ typedef struct strut_axis {
 
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
-  strut_axis x, y;  /* ranges resolved */
+  strut_axis x, y;  /* ranges settled */
   strut_box frame;  /* where data go [pt] */
 } strut_axes;
 
 /** Widens an axis whose range is from the data by a value; not finite ones do nothing. */
 STRUT_API void strut_axis_include(strut_axis *axis, double value);
 /**
- * Lays out a frame in `box`, leaving room for ticks, labels and a title (NULL: none); panels side by
+ * Makes a range that can be drawn of what was included: at least a point wide, positive on a
+ * logarithmic axis, 0 to 1 where nothing was; widened by `room` of itself on either side.
+ */
+STRUT_API void strut_axis_settle(strut_axis *axis, double room);
+/**
+ * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL: none); panels side by
  * side line up when their boxes do.
  */
 STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
@@ -36,7 +41,22 @@ STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, doub
 enum { STRUT_MOST_TICKS = 40 };
 /** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
 STRUT_API size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]);
-/** The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). */
+/**
+ * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). Units
+ * that take none: "", "%", "kg", "deg".
+ */
 STRUT_API const char *strut_prefix(double largest, const char *unit, double *factor);
+
+enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
+/** The ticks of a settled axis as they are written. */
+typedef struct strut_tick_set {
+  size_t count, minor_count;
+  double at[STRUT_MOST_TICKS];           /* [SI] */
+  double minor[STRUT_MOST_MINOR];        /* without text: logarithmic axes only */
+  char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" where none is to stand */
+  char label[200];                       /* "velocity in mm/s", with an offset where one was taken */
+} strut_tick_set;
+/** Fills `set` for an axis that has room for about `wanted` of them. */
+STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 
 #endif

@@ -32,8 +32,8 @@ typedef struct strut_curves {
 } strut_curves;
 
 /**
- * Draws them in a box. Many points are thinned to what can be seen: the least and the largest in
- * each hundredth of a point. STRUT_NO_MEMORY when there is none.
+ * Draws them in a box. Many points are thinned to what can be seen: the first, least, largest
+ * and last in each quarter of a point. STRUT_NO_MEMORY when there is none.
  */
 STRUT_API strut_status strut_draw_curves(strut_canvas *canvas, strut_box box,
                                          const strut_curves *curves);

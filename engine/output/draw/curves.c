@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/draw/curves.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/palette.h"
+
+static const double GRAIN = 0.25, MARKER = 2.0, INSET = 4;
+enum { FEW_POINTS = 30, MARKERS = 8 };
+
+/* A figure being drawn. */
+typedef struct plotter {
+  strut_canvas *canvas;
+  const strut_curves *curves;
+  strut_axes axes;
+  strut_legend_entry *entries;
+  size_t entry_count;
+  double (**points)[2]; /* (series) thinned points on the page, broken lines with NAN between */
+  size_t *counts;       /* (series) */
+} plotter;
+
+static size_t look_of(const strut_curves *c, size_t series) {
+  return c->series[series].look >= 0 ? (size_t)c->series[series].look : series;
+}
+
+static bool has_markers(const strut_curves *c, size_t i) {
+  const strut_series *s = &c->series[i];
+  return s->points || s->no_line || c->series_count > 1;
+}
+
+static void settle_axes(const strut_curves *c, strut_axis *x, strut_axis *y) {
+  *x = c->x;
+  *y = c->y;
+  bool fit_x = isnan(x->low) || isnan(x->high), fit_y = isnan(y->low) || isnan(y->high);
+  for (size_t i = 0; i < c->series_count; i++) {
+    const strut_series *s = &c->series[i];
+    for (size_t k = 0; k < s->count; k++) {
+      if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
+      if (fit_x) strut_axis_include(x, s->x[k]);
+      if (fit_y) strut_axis_include(y, s->y[k]);
+    }
+  }
+  bool dots = c->series_count && (c->series[0].no_line || c->series[0].points);
+  strut_axis_settle(x, fit_x && dots ? 0.03 : 0);
+  strut_axis_settle(y, fit_y ? 0.06 : 0);
+}
+
+/* The series on the page; where it is broken a point that is not a number. */
+static bool place_series(plotter *p, size_t i) {
+  const strut_series *s = &p->curves->series[i];
+  size_t used = 0, start = 0;
+  double(*points)[2] = strut_allocate(2 * s->count + 2, sizeof *points);
+  p->points[i] = points;
+  if (!points) return false;
+  for (size_t k = 0; k <= s->count; k++) {
+    double at[2] = {NAN, NAN};
+    if (k < s->count && isfinite(s->x[k]) && isfinite(s->y[k]))
+      strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+    if (isfinite(at[0]) && isfinite(at[1])) {
+      if (s->steps && used > start) { /* the corner before it */
+        points[used][0] = at[0];
+        points[used][1] = points[used - 1][1];
+        used++;
+      }
+      points[used][0] = at[0];
+      points[used++][1] = at[1];
+    } else if (used > start) {
+      used = start + strut_thin(points + start, used - start, GRAIN);
+      points[used][0] = points[used][1] = NAN;
+      start = ++used;
+    }
+  }
+  p->counts[i] = used;
+  return true;
+}
+
+static bool place(plotter *p, strut_box box) {
+  strut_axis x, y;
+  settle_axes(p->curves, &x, &y);
+  p->axes = strut_axes_place(p->canvas, box, x, y, p->curves->title);
+  bool good = true;
+  for (size_t i = 0; i < p->curves->series_count && good; i++) {
+    strut_release(p->points[i]);
+    good = place_series(p, i);
+  }
+  return good;
+}
+
+static void draw_bands(const plotter *p) {
+  const strut_box *f = &p->axes.frame;
+  for (size_t i = 0; i < p->curves->band_count; i++) {
+    const strut_band *b = &p->curves->bands[i];
+    const strut_fill fill = strut_band_fill(b->look);
+    double low[2], high[2];
+    strut_axes_point(&p->axes, fmax(b->low, p->axes.x.low), p->axes.y.low, low);
+    strut_axes_point(&p->axes, fmin(b->high, p->axes.x.high), p->axes.y.low, high);
+    if (high[0] > low[0])
+      strut_draw_box(p->canvas, (strut_box){low[0], f->y, high[0] - low[0], f->height}, &fill,
+                     NULL);
+  }
+}
+
+static void draw_markers(const plotter *p, size_t i) {
+  const strut_series *s = &p->curves->series[i];
+  size_t look = look_of(p->curves, i);
+  bool all = s->count <= FEW_POINTS || s->points || s->no_line;
+  /* Few, and not where the other curves have theirs. */
+  size_t every = all ? 1 : s->count / MARKERS, first = all ? 0 : (look * every / 3 + every / 2) % every;
+  for (size_t k = first; k < s->count; k += every) {
+    double at[2];
+    if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
+    strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+    strut_draw_marker(p->canvas, look, at[0], at[1], s->count > 200 && all ? 1.0 : MARKER);
+  }
+}
+
+static void draw_series(const plotter *p, size_t i) {
+  const strut_series *s = &p->curves->series[i];
+  strut_pen pen = strut_look_pen(look_of(p->curves, i));
+  double(*points)[2] = p->points[i];
+  for (size_t start = 0; start < p->counts[i] && !s->no_line;) {
+    size_t end = start;
+    while (end < p->counts[i] && !isnan(points[end][0])) end++;
+    strut_draw_line(p->canvas, (const double(*)[2])points + start, end - start, pen);
+    start = end + 1;
+  }
+  if (has_markers(p->curves, i)) draw_markers(p, i);
+}
+
+/* Rows of the legend; names that come again stand once. */
+static void name_entries(plotter *p) {
+  const strut_curves *c = p->curves;
+  for (size_t i = 0; i < c->series_count + c->band_count; i++) {
+    bool area = i >= c->series_count;
+    const char *label = area ? c->bands[i - c->series_count].label : c->series[i].label;
+    bool known = !label || !*label;
+    for (size_t k = 0; k < p->entry_count && !known; k++)
+      known = p->entries[k].area == area && strcmp(p->entries[k].label, label) == 0;
+    if (known) continue;
+    strut_legend_entry *e = &p->entries[p->entry_count++];
+    *e = (strut_legend_entry){.label = label, .area = area};
+    if (area) {
+      e->fill = strut_band_fill(c->bands[i - c->series_count].look);
+    } else {
+      e->look = look_of(c, i);
+      e->line = !c->series[i].no_line;
+      e->marker = has_markers(c, i);
+    }
+  }
+}
+
+/* How much of the curves lies in a box: points and, between them, lines. */
+static size_t covered(const plotter *p, strut_box box) {
+  size_t count = 0;
+  for (size_t i = 0; i < p->curves->series_count; i++)
+    for (size_t k = 0; k + 1 < p->counts[i]; k++) {
+      const double *a = p->points[i][k], *b = p->points[i][k + 1];
+      if (isnan(a[0])) continue;
+      int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
+      for (int m = 0; m <= pieces; m++) {
+        double t = pieces ? (double)m / pieces : 0;
+        double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0], y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
+        count += x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height;
+      }
+    }
+  return count;
+}
+
+/* The emptiest place for a legend of this size; false where every one has curves in it. */
+static bool find_corner(const plotter *p, const double size[2], double corner[2]) {
+  const strut_box *f = &p->axes.frame;
+  if (size[0] > 0.6 * f->width || size[1] > 0.6 * f->height) return false;
+  for (int k = 0; k < 6; k++) {
+    double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
+    corner[0] = f->x + INSET + across * (f->width - size[0] - 2 * INSET);
+    corner[1] = f->y + INSET + down * (f->height - size[1] - 2 * INSET);
+    if (!covered(p, (strut_box){corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4})) return true;
+  }
+  return false;
+}
+
+/* Inside where there is room, else above a frame that gives way. False when memory is out. */
+static bool place_legend(plotter *p, strut_box box, double corner[2], double *width, bool *inside) {
+  double size[2];
+  *width = 0;
+  if (!p->entry_count) return true;
+  strut_legend_size(p->canvas, p->entries, p->entry_count, 0, size);
+  *inside = find_corner(p, size, corner);
+  if (*inside) return true;
+  *width = fmax(p->axes.frame.width, 60);
+  strut_legend_size(p->canvas, p->entries, p->entry_count, *width, size);
+  strut_box rest = {box.x, box.y + size[1], box.width, box.height - size[1]};
+  corner[0] = p->axes.frame.x;
+  corner[1] = box.y;
+  return place(p, rest);
+}
+
+static bool draw(plotter *p, strut_box box) {
+  double corner[2] = {0, 0}, width = 0;
+  bool inside = false;
+  if (!place(p, box)) return false;
+  name_entries(p);
+  if (!place_legend(p, box, corner, &width, &inside)) return false;
+  strut_canvas_clip(p->canvas, p->axes.frame);
+  draw_bands(p);
+  strut_canvas_unclip(p->canvas);
+  strut_draw_axes(p->canvas, &p->axes, p->curves->title);
+  strut_canvas_clip(p->canvas, p->axes.frame);
+  for (size_t i = 0; i < p->curves->series_count; i++) draw_series(p, i);
+  if (isfinite(p->curves->cursor)) {
+    double at[2];
+    strut_axes_point(&p->axes, p->curves->cursor, p->axes.y.low, at);
+    strut_draw_segment(p->canvas, at[0], p->axes.frame.y, at[0],
+                       p->axes.frame.y + p->axes.frame.height,
+                       (strut_pen){.colour = strut_grey(0.3), .width = 0.8, .dash = {3, 2}});
+  }
+  strut_canvas_unclip(p->canvas);
+  if (p->entry_count)
+    strut_draw_legend(p->canvas, p->entries, p->entry_count, width, corner[0], corner[1], inside);
+  return true;
+}
+
+strut_status strut_draw_curves(strut_canvas *canvas, strut_box box, const strut_curves *curves) {
+  plotter p = {.canvas = canvas, .curves = curves};
+  size_t count = curves->series_count;
+  p.entries = strut_allocate(count + curves->band_count, sizeof *p.entries);
+  p.points = strut_allocate(count, sizeof *p.points);
+  p.counts = strut_allocate(count, sizeof *p.counts);
+  bool good = p.entries && p.points && p.counts && draw(&p, box);
+  for (size_t i = 0; p.points && i < count; i++) strut_release(p.points[i]);
+  strut_release(p.points);
+  strut_release(p.counts);
+  strut_release(p.entries);
+  return good ? STRUT_OK : STRUT_NO_MEMORY;
+}
