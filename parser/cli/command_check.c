@@ -3,15 +3,18 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
+#include "engine/output/sketch.h"
 #include "engine/run/plan.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/streams.h"
+#include "parser/cli/terminal.h"
 
-enum { MOST_MEMBERS = 40, DIGITS = 5 };
+enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 
 static const double TURN = 6.283185307179586476925;
 
@@ -90,13 +93,34 @@ static void print_members(const strut_scene *scene) {
   }
 }
 
-static void print_plan(const strut_plan *plan, const strut_scene *scene) {
+/* The shape as drawn, whatever a run starts with: what was written is what may be mistyped. */
+static strut_status print_sketch(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
+  if (columns > SKETCH_COLUMNS) columns = SKETCH_COLUMNS;
+  double *q = strut_allocate((size_t)model->length, sizeof *q);
+  for (size_t i = 0; q && i < scene->node_count; i++) {
+    q[2 * i] = scene->nodes[i].position[0];
+    q[2 * i + 1] = scene->nodes[i].position[1];
+  }
+  char *text = q ? strut_sketch(model, q, columns, SKETCH_ROWS, strut_terminal_unicode()) : NULL;
+  strut_release(q);
+  if (!text) return strut_complain_of_memory();
+  if (*text) printf("\n%s\n", text);
+  strut_release(text);
+  return STRUT_OK;
+}
+
+static strut_status print_plan(const strut_plan *plan, const strut_model *model) {
+  const strut_scene *scene = model->scene;
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
+  strut_status status = print_sketch(model);
   print_things(plan);
   print_run(plan, scene);
   print_terms(plan, true, "each step evaluates");
   print_terms(plan, false, "left out, for nothing asks for it");
   print_members(scene);
+  return status;
 }
 
 static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene *scene) {
@@ -174,7 +198,7 @@ static strut_status run(const strut_arguments *arguments) {
   } else if (arguments->json) {
     status = print_json(&plan, &scene);
   } else {
-    print_plan(&plan, &scene);
+    status = print_plan(&plan, model);
   }
   strut_model_free(model);
   strut_scene_free(&scene);
@@ -186,9 +210,9 @@ const strut_command strut_command_check = {
     .model = "MODEL",
     .summary = "checks a model and says what running it will take",
     .details =
-        "\nPrints what the model consists of, the terms of the equations that its step\n"
-        "evaluates and those it leaves out, the largest stable step, and for every member\n"
-        "the rest length in each of the four ways to give one.\n",
+        "\nPrints a sketch of the structure as drawn, what it consists of, the terms of the\n"
+        "equations that its step evaluates and those it leaves out, the largest stable step,\n"
+        "and for every member the rest length in each of the four ways to give one.\n",
     .options = options,
     .run = run,
 };
