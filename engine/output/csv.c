@@ -181,7 +181,7 @@ strut_sink *strut_csv_create(const char *directory) {
     return NULL;
   }
   memcpy(self->directory, directory, strlen(directory));
-  self->sink = (strut_sink){self, begin, take_rows, end};
+  self->sink = (strut_sink){self, begin, take_rows, end, 0};
   return &self->sink;
 }
 

@@ -241,7 +241,7 @@ static char *copy(const char *text) {
 strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
   hdf5 *self = strut_allocate(1, sizeof *self);
   if (!self) return NULL;
-  self->sink = (strut_sink){self, begin, take_rows, end};
+  self->sink = (strut_sink){self, begin, take_rows, end, 0};
   self->directory = copy(directory);
   self->scene_text = copy(scene_text);
   if (self->directory && self->scene_text) return &self->sink;

@@ -42,6 +42,7 @@ typedef struct strut_sink {
   strut_status (*begin)(void *context, const strut_record_layout *layout, strut_error *error);
   strut_status (*rows)(void *context, const double *rows, size_t count, strut_error *error);
   strut_status (*end)(void *context, strut_status run_status, strut_error *error);
+  unsigned channels; /* strut_channel bits it is given, in their order; 0: those of the scene */
 } strut_sink;
 
 #endif

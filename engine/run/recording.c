@@ -48,8 +48,7 @@ static const char *const *item_names(const strut_model *model, strut_channel id,
   return names;
 }
 
-static bool lay_out(const strut_model *model, strut_recording *r) {
-  unsigned wanted = model->scene->experiment.channels;
+static bool lay_out(const strut_model *model, unsigned wanted, strut_recording *r) {
   r->layout.width = 1;
   for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
     if (!(wanted & kinds[k].id)) continue;
@@ -70,10 +69,41 @@ static bool lay_out(const strut_model *model, strut_recording *r) {
   return true;
 }
 
+static unsigned wanted_by(const strut_model *model, const strut_sink *sink) {
+  return sink->channels ? sink->channels : model->scene->experiment.channels;
+}
+
+/* Takes from the whole layout what one sink wants. */
+static void lay_out_part(const strut_recording *r, unsigned wanted, strut_recording_part *part) {
+  part->layout = (strut_record_layout){
+      .width = 1, .channels = part->channel, .expected_rows = r->layout.expected_rows};
+  for (size_t k = 0; k < r->layout.channel_count; k++) {
+    if (!(wanted & r->channel[k].id)) continue;
+    strut_record_channel *c = &part->channel[part->layout.channel_count];
+    *c = r->channel[k];
+    part->from[part->layout.channel_count++] = c->offset;
+    c->offset = part->layout.width;
+    part->layout.width += c->items * c->components;
+  }
+  part->whole = part->layout.channel_count == r->layout.channel_count;
+}
+
+static bool make_parts(const strut_model *model, strut_recording *r) {
+  bool all_whole = true;
+  r->parts = strut_arena_allocate(&r->arena, r->sink_count, sizeof *r->parts);
+  for (size_t s = 0; s < r->sink_count && r->parts; s++) {
+    lay_out_part(r, wanted_by(model, r->sinks[s]), &r->parts[s]);
+    all_whole = all_whole && r->parts[s].whole;
+  }
+  if (r->parts && !all_whole)
+    r->picked = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
+  return r->parts && (all_whole || r->picked);
+}
+
 static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   for (; r->begun < r->sink_count; r->begun++) {
     strut_sink *sink = r->sinks[r->begun];
-    strut_status status = sink->begin(sink->context, &r->layout, error);
+    strut_status status = sink->begin(sink->context, &r->parts[r->begun].layout, error);
     if (status) return status;
   }
   return STRUT_OK;
@@ -88,16 +118,19 @@ strut_status strut_recording_create(const strut_model *model, double step, strut
   r->start = span.record_start;
   r->every = span.record_every;
   size_t members = model->scene->member_count;
+  unsigned wanted = 0;
+  for (size_t s = 0; s < sink_count; s++) wanted |= wanted_by(model, sinks[s]);
   r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
   r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
-  bool ready = r->length && r->force && lay_out(model, r);
+  bool ready = r->length && r->force && lay_out(model, wanted, r);
   double expected = (span.duration - span.record_start) / fmax(span.record_every, step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   if (ready) {
     r->capacity = 1 + 65536 / r->layout.width;
     r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
+    ready = r->rows && make_parts(model, r);
   }
-  if (!ready || !r->rows) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!ready) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return begin_sinks(r, error);
 }
 
@@ -138,12 +171,28 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
   }
 }
 
+/* The rows of one sink: as they are, or the columns it wants. */
+static const double *rows_for(strut_recording *r, const strut_recording_part *part, size_t count) {
+  if (part->whole) return r->rows;
+  for (size_t i = 0; i < count; i++) {
+    const double *row = r->rows + i * r->layout.width;
+    double *out = r->picked + i * part->layout.width;
+    out[0] = row[0];
+    for (size_t k = 0; k < part->layout.channel_count; k++) {
+      const strut_record_channel *c = &part->channel[k];
+      memcpy(out + c->offset, row + part->from[k], c->items * c->components * sizeof *out);
+    }
+  }
+  return r->picked;
+}
+
 /* Rows that a sink refuses are not offered again. */
 static strut_status hand_over(strut_recording *r, strut_error *error) {
   size_t count = r->row_count;
   r->row_count = 0;
   for (size_t s = 0; s < r->begun && count; s++) {
-    strut_status status = r->sinks[s]->rows(r->sinks[s]->context, r->rows, count, error);
+    const double *rows = rows_for(r, &r->parts[s], count);
+    strut_status status = r->sinks[s]->rows(r->sinks[s]->context, rows, count, error);
     if (status) return status;
   }
   return STRUT_OK;

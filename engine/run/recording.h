@@ -8,12 +8,24 @@
 #include "engine/model/state.h"
 #include "engine/run/recorder.h"
 
+enum { STRUT_CHANNELS = 6 };
+
+/** What one sink is given: the channels it wants, as a layout of their own. */
+typedef struct strut_recording_part {
+  bool whole; /* all that is recorded: rows are passed on as they are */
+  strut_record_layout layout;
+  strut_record_channel channel[STRUT_CHANNELS];
+  size_t from[STRUT_CHANNELS]; /* where each stands in a whole row */
+} strut_recording_part;
+
 typedef struct strut_recording {
   strut_sink **sinks;
   size_t sink_count, begun;  /* sinks whose begin succeeded */
-  strut_record_layout layout;
-  strut_record_channel channel[6];
+  strut_record_layout layout; /* of all that some sink wants */
+  strut_record_channel channel[STRUT_CHANNELS];
+  strut_recording_part *parts; /* (sink_count) */
   double *rows;              /* (capacity, width) waiting to be handed over */
+  double *picked;            /* (capacity, width) those of one sink; NULL where all want all */
   size_t row_count, capacity;
   double start, every, step; /* first sample, interval, dt [s] */
   int64_t sampled, last;     /* samples taken; the step of the latest, -1 before the first */

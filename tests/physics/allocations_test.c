@@ -115,7 +115,7 @@ static uint64_t whole_run(int64_t steps) {
   strut_scene scene;
   strut_summary summary;
   size_t rows = 0;
-  strut_sink sink = {&rows, take_nothing, take_rows, take_end}, *sinks[] = {&sink};
+  strut_sink sink = {&rows, take_nothing, take_rows, take_end, 0}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
   busy_chain(&scene, 10, STRUT_MASS_CONSISTENT);
   motion_experiment(&scene, 1e-5, 1e-5 * (double)steps);

@@ -57,7 +57,7 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 static memory first, second;
 
 static strut_status run(const strut_scene *scene, strut_error *error) {
-  strut_sink sinks[] = {{&first, begin, rows, end}, {&second, begin, rows, end}};
+  strut_sink sinks[] = {{&first, begin, rows, end, 0}, {&second, begin, rows, end, 0}};
   strut_sink *all[] = {&sinks[0], &sinks[1]};
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
   strut_model *model = motion_compile(scene);
@@ -287,7 +287,7 @@ static void test_every_allocation_may_fail(void **unused) {
   demanding(&scene);
   int64_t n = 0;
   for (;; n++) {
-    strut_sink sink = {&first, begin, rows, end}, *all[] = {&sink};
+    strut_sink sink = {&first, begin, rows, end, 0}, *all[] = {&sink};
     strut_run_options options = {.sinks = all, .sink_count = 1};
     strut_model *model = NULL;
     strut_summary summary = {0};
