@@ -18,11 +18,12 @@ static const char *name_of(const strut_model *model, int32_t node) {
   return model->scene->nodes[node].name;
 }
 
-static void add_shape(strut_json *json, struct cJSON *row, const strut_model *model,
-                      const strut_mode *mode) {
-  struct cJSON *shape = strut_json_object(json, row, "shape");
+/* Two numbers for every node, by name. */
+static void add_nodes(strut_json *json, struct cJSON *row, const char *key,
+                      const strut_model *model, const double *values) {
+  struct cJSON *nodes = strut_json_object(json, row, key);
   for (int32_t i = 0; i < model->node_count; i++)
-    strut_json_numbers(json, shape, name_of(model, i), mode->shape + 2 * i, 2);
+    strut_json_numbers(json, nodes, name_of(model, i), values + 2 * i, 2);
 }
 
 static void add_mode(strut_json *json, struct cJSON *list, const strut_model *model,
@@ -38,7 +39,7 @@ static void add_mode(strut_json *json, struct cJSON *list, const strut_model *mo
   strut_json_number(json, row, "error", mode->error);
   strut_json_text(json, row, "kind", strut_mode_kind_name(mode->kind));
   strut_json_text(json, row, "description", mode->description);
-  add_shape(json, row, model, mode);
+  add_nodes(json, row, "shape", model, mode->shape);
 }
 
 char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
@@ -46,6 +47,7 @@ char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
   strut_json_text(&json, json.root, "name", model->scene->name);
   strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
   strut_json_text(&json, json.root, "at", modes->at);
+  add_nodes(&json, json.root, "nodes", model, modes->q);
   strut_json_integer(&json, json.root, "coordinates", modes->coordinates);
   struct cJSON *contacts = strut_json_array(&json, json.root, "contacts");
   for (int32_t i = 0; i < modes->closed_count; i++)

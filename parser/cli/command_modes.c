@@ -2,10 +2,12 @@
 #include "parser/cli/command_modes.h"
 
 #include "engine/base/memory.h"
+#include "engine/output/figures/modes_figure.h"
 #include "engine/output/file.h"
 #include "engine/output/modes_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
+#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 
 enum { MOST_MODES = 1000 };
@@ -17,6 +19,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_STUCK, "stuck", NULL, "hold nodes that touch along the ground too"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write modes.json and modes.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -39,17 +42,27 @@ static strut_status write_files(const char *directory, const strut_model *model,
   return status;
 }
 
-static strut_status report(const strut_arguments *arguments, const strut_model *model,
-                           const strut_modes *modes) {
+static strut_status show(const strut_arguments *arguments, const strut_model *model,
+                         const strut_modes *modes) {
+  char *text = arguments->json ? strut_modes_json(model, modes) : strut_modes_table(model, modes);
+  if (!text) return strut_complain_of_memory();
+  strut_status status = strut_print(text);
+  strut_release(text);
+  return status;
+}
+
+/* `panels` is what --count says, or 0. */
+static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
+                           const strut_model *model, const strut_modes *modes, size_t panels) {
   strut_error error = {0};
   if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK) {
     strut_complain(&error);
     return error.status;
   }
-  char *text = arguments->json ? strut_modes_json(model, modes) : strut_modes_table(model, modes);
-  if (!text) return strut_complain_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
+  strut_status status = show(arguments, model, modes);
+  if (status != STRUT_OK || !plot->path) return status;
+  status = strut_modes_figure(plot->path, plot->width, model, modes, panels, &error);
+  if (status != STRUT_OK) strut_complain(&error);
   return status;
 }
 
@@ -58,9 +71,11 @@ static strut_status run(const strut_arguments *arguments) {
   strut_model *model = NULL;
   strut_modes modes = {0};
   strut_error error = {0};
+  strut_plot plot;
   int64_t count = 0;
   strut_status status = strut_option_integer(&strut_command_modes, arguments, STRUT_OPTION_COUNT, 1,
                                              MOST_MODES, &count);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_modes, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_try_output(arguments);
   if (status != STRUT_OK) return status;
@@ -74,7 +89,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK)
     strut_complain(&error);
   else
-    status = report(arguments, model, &modes);
+    status = report(arguments, &plot, model, &modes, (size_t)count);
   strut_modes_free(&modes);
   strut_model_free(model);
   strut_scene_free(&scene);

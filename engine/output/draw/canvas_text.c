@@ -23,6 +23,7 @@ PangoLayout *strut_canvas_layout_create(cairo_t *cairo) {
   pango_cairo_context_set_font_options(context, options);
   cairo_font_options_destroy(options);
   pango_cairo_context_set_resolution(context, 72.0);
+  pango_context_set_round_glyph_positions(context, FALSE);
   pango_layout_context_changed(layout);
   return layout;
 }

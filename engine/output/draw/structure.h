@@ -51,6 +51,13 @@ typedef struct strut_structure_style {
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,
                                     const strut_structure_style *style);
+/**
+ * Names beside nodes and members, where the page is emptiest: what the style's node_names and
+ * member_names do, for a caller that draws more between the structure and its names.
+ */
+STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
+                                const strut_model *model, const double *q, bool nodes,
+                                bool members);
 /** The ground's line and body across the window; nothing where the scene has none. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model);

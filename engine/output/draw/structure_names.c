@@ -9,6 +9,7 @@
 enum { DIRECTIONS = 16, MOST_NAMED = 60 };
 
 static const double PI = 3.14159265358979323846, GAP = 3.6, SIZE = 7.5, MOST_WIDTH = 90;
+static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 
 /* Everything that names should keep away from. */
 typedef struct obstacles {
@@ -84,11 +85,25 @@ static void place_name(strut_canvas *canvas, obstacles *o, const double at[2], d
   strut_draw_text(canvas, chosen.x, chosen.y, name, font);
 }
 
+/* The sides of supports below nodes count as members too. */
+static void add_supports(const strut_window *w, const strut_model *model, const double *q,
+                         obstacles *o) {
+  for (int32_t i = 0; i < model->node_count; i++) {
+    if (!model->scene->nodes[i].fixed[1]) continue;
+    for (int side = -1; side <= 1; side += 2) {
+      double(*ends)[2] = o->ends + 2 * o->member_count++;
+      strut_window_point(w, q + 2 * i, ends[0]);
+      ends[1][0] = ends[0][0] + side * SUPPORT;
+      ends[1][1] = ends[0][1] + 2 * SUPPORT;
+    }
+  }
+}
+
 static bool gather(const strut_window *w, const strut_model *model, const double *q, obstacles *o,
                    strut_arena *arena) {
   size_t members = model->scene->member_count, nodes = (size_t)model->node_count;
   o->member_count = members;
-  o->ends = strut_arena_allocate(arena, 2 * members + 2, sizeof *o->ends);
+  o->ends = strut_arena_allocate(arena, 2 * (members + 1 + 2 * nodes), sizeof *o->ends);
   o->labels = strut_arena_allocate(arena, nodes + members, sizeof *o->labels);
   o->inside = w->box;
   if (!o->ends || !o->labels) return false;
@@ -97,6 +112,7 @@ static bool gather(const strut_window *w, const strut_model *model, const double
     strut_ground_line(w, model, o->ends + 2 * members);
     o->member_count++;
   }
+  add_supports(w, model, q, o);
   return true;
 }
 

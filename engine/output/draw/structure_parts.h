@@ -15,8 +15,5 @@ void strut_ground_line(const strut_window *window, const strut_model *model, dou
 /** Triangles under pinned nodes, rolling ones under nodes held in one direction. */
 void strut_draw_supports(strut_canvas *canvas, const strut_window *window,
                          const strut_model *model, const double *q, double size, double opacity);
-/** Names beside nodes and members, where the page is emptiest; none where there is no room. */
-void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_model *model,
-                      const double *q, bool nodes, bool members);
 
 #endif

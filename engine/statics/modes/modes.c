@@ -237,6 +237,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_modes_option
   strut_status status = strut_modes_shape(model, options->at, &modes->arena, &stand, error);
   if (status != STRUT_OK) return status;
   modes->at = stand.name;
+  modes->q = stand.q;
   modes->at_rest = stand.at_rest;
   modes->closed = stand.closed;
   modes->closed_count = stand.closed_count;

@@ -43,6 +43,7 @@ typedef struct strut_mode {
 
 typedef struct strut_modes {
   const char *at;      /* name of the equilibrium */
+  const double *q;     /* (length) its shape [m] */
   int32_t coordinates; /* free ones */
   int32_t closed_count;
   const int32_t *closed; /* (closed_count) nodes */

@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/figures/modes_figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/memory.h"
+#include "engine/output/draw/key.h"
+#include "engine/output/draw/palette.h"
+#include "engine/output/draw/structure.h"
+#include "engine/output/quantity_text.h"
+
+enum { NAMED = 12, SWUNG = 40, TITLE = 200 };
+
+static const double TURN = 6.283185307179586476925;
+static const double GAP = 12.0, EDGE = 4.0, MARGIN = 13.0; /* [pt] */
+static const double NARROWEST = 112.0;  /* panel, for its title [pt] */
+static const double TALLEST = 190.0;    /* drawing inside a panel [pt] */
+static const double NODE = 2.3;         /* radius of a node as drawn [pt] */
+static const double TITLE_LINE = 11.5, WORD_LINES = 19.0;
+static const double UNSTRAINED = 1e-9;  /* strain that is rounding, in units of motion over size */
+
+typedef struct figure {
+  strut_canvas *canvas;
+  const strut_model *model;
+  const strut_modes *modes;
+  size_t count, columns, rows;
+  size_t shown[STRUT_MODES_FIGURE_MOST]; /* indices of modes */
+  double *plus, *minus;                  /* (length) the ends of a swing [m] */
+  double *strain, *taut;                 /* (members); taut: 0 where a cable is slack at rest */
+  double size;                           /* larger extent of the shape at rest [m] */
+  strut_bounds bounds[STRUT_MODES_FIGURE_MOST], all; /* of the panels, and of all together */
+  double head, scale, panel_width;                   /* [pt], [pt/m] */
+  strut_arena arena;
+} figure;
+
+static bool take_memory(figure *f) {
+  size_t length = (size_t)f->model->length, members = f->model->scene->member_count + 1;
+  f->plus = strut_arena_allocate(&f->arena, length, sizeof(double));
+  f->minus = strut_arena_allocate(&f->arena, length, sizeof(double));
+  f->strain = strut_arena_allocate(&f->arena, members, sizeof(double));
+  f->taut = strut_arena_allocate(&f->arena, members, sizeof(double));
+  return f->plus && f->minus && f->strain && f->taut;
+}
+
+/* Which modes get a panel: those that are no rigid motion first. */
+static void choose(figure *f, size_t panels) {
+  size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
+  if (most > STRUT_MODES_FIGURE_MOST) most = STRUT_MODES_FIGURE_MOST;
+  for (size_t i = 0; i < f->modes->count; i++)
+    others += f->modes->list[i].kind != STRUT_MODE_RIGID;
+  for (size_t i = 0; i < f->modes->count && f->count < most; i++)
+    if (!others || f->modes->list[i].kind != STRUT_MODE_RIGID) f->shown[f->count++] = i;
+}
+
+/* Both ends of the swing of a mode. */
+static void swing(figure *f, const strut_mode *mode) {
+  const double *q = f->modes->q;
+  double most = 0.0;
+  for (int32_t i = 0; i < f->model->node_count; i++)
+    most = fmax(most, hypot(mode->shape[2 * i], mode->shape[2 * i + 1]));
+  double scale = most > 0 ? STRUT_MODES_FIGURE_SWING * f->size / most : 0.0;
+  for (int32_t i = 0; i < f->model->length; i++) {
+    f->plus[i] = q[i] + scale * mode->shape[i];
+    f->minus[i] = q[i] - scale * mode->shape[i];
+  }
+}
+
+/* How much each member stretches for the swing that is drawn, to first order; the largest. */
+static double strain(figure *f) {
+  const double *q = f->modes->q;
+  double largest = 0.0;
+  for (size_t j = 0; j < f->model->scene->member_count; j++) {
+    const int32_t *node = f->model->scene->members[j].node;
+    double along[2], change = 0.0, square = 0.0;
+    for (int d = 0; d < 2; d++) {
+      along[d] = q[2 * node[1] + d] - q[2 * node[0] + d];
+      square += along[d] * along[d];
+      change += along[d] * (f->plus[2 * node[1] + d] - q[2 * node[1] + d] -
+                            f->plus[2 * node[0] + d] + q[2 * node[0] + d]);
+    }
+    f->strain[j] = square > 0 ? change / square : 0.0;
+    largest = fmax(largest, fabs(f->strain[j]));
+  }
+  return largest > UNSTRAINED ? largest : 0.0;
+}
+
+static void find_taut(figure *f) {
+  const double *q = f->modes->q;
+  for (size_t j = 0; j < f->model->scene->member_count; j++) {
+    const strut_member *m = &f->model->scene->members[j];
+    const double *a = q + 2 * m->node[0], *b = q + 2 * m->node[1];
+    bool slack = m->kind == STRUT_CABLE &&
+                 hypot(b[0] - a[0], b[1] - a[1]) <= f->model->members.rest[j] * (1 - 1e-12);
+    f->taut[j] = slack ? 0.0 : 1.0;
+  }
+}
+
+/* Widens one rectangle to hold the other. */
+static void widen(strut_bounds *bounds, const strut_bounds *other) {
+  for (int d = 0; d < 2; d++) {
+    bounds->low[d] = fmin(bounds->low[d], other->low[d]);
+    bounds->high[d] = fmax(bounds->high[d], other->high[d]);
+  }
+}
+
+static void find_bounds(figure *f) {
+  f->all = strut_bounds_none();
+  strut_bounds_add(&f->all, f->model, f->modes->q);
+  f->size = fmax(f->all.high[0] - f->all.low[0], f->all.high[1] - f->all.low[1]);
+  if (!(f->size > 0)) f->size = f->model->size;
+  for (size_t k = 0; k < f->count; k++) {
+    f->bounds[k] = strut_bounds_none();
+    strut_bounds_add(&f->bounds[k], f->model, f->modes->q);
+    swing(f, &f->modes->list[f->shown[k]]);
+    strut_bounds_add(&f->bounds[k], f->model, f->plus);
+    strut_bounds_add(&f->bounds[k], f->model, f->minus);
+    widen(&f->all, &f->bounds[k]);
+  }
+}
+
+/* What the panels of a row show: as wide as all, as high as the row needs. */
+static strut_bounds row_bounds(const figure *f, size_t row) {
+  strut_bounds bounds = f->all;
+  bounds.low[1] = HUGE_VAL;
+  bounds.high[1] = -HUGE_VAL;
+  for (size_t k = row * f->columns; k < (row + 1) * f->columns && k < f->count; k++) {
+    bounds.low[1] = fmin(bounds.low[1], f->bounds[k].low[1]);
+    bounds.high[1] = fmax(bounds.high[1], f->bounds[k].high[1]);
+  }
+  return bounds;
+}
+
+static double row_height(const figure *f, size_t row) {
+  strut_bounds bounds = row_bounds(f, row);
+  return f->head + f->scale * (bounds.high[1] - bounds.low[1]) + 2 * MARGIN;
+}
+
+/* As many panels in a row as make the structure largest on a page no taller than wide. */
+static void arrange(figure *f, double width) {
+  double wide = fmax(f->all.high[0] - f->all.low[0], 1e-6 * f->size);
+  double high = fmax(f->all.high[1] - f->all.low[1], 1e-6 * f->size);
+  for (size_t columns = 1; columns <= f->count; columns++) {
+    size_t rows = (f->count + columns - 1) / columns;
+    double panel = (width - 2 * EDGE - (double)(columns - 1) * GAP) / (double)columns;
+    if (panel < NARROWEST && columns > 1) break;
+    double tallest = fmin(TALLEST, fmax(width / (double)rows - f->head, 40.0));
+    double scale = fmin((panel - 2 * MARGIN) / wide, (tallest - 2 * MARGIN) / high);
+    if (scale < f->scale * (1 - 1e-9)) continue; /* of equal ones the one with fewest rows */
+    f->scale = scale;
+    f->columns = columns;
+    f->rows = rows;
+    f->panel_width = panel;
+  }
+}
+
+static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
+  strut_c_locale locale = strut_c_locale_enter();
+  if (mode->kind == STRUT_MODE_ELASTIC) {
+    int used = snprintf(title, TITLE, "mode %zu: %s", number,
+                        strut_quantity_of(mode->angular_frequency / TURN, 4, "Hz").text);
+    if (isfinite(mode->damping_ratio) && mode->damping_ratio > 0 && used > 0)
+      snprintf(title + used, TITLE - (size_t)used, ", \xCE\xB6 = %.2g", mode->damping_ratio);
+  } else if (mode->kind == STRUT_MODE_UNSTABLE) {
+    snprintf(title, TITLE, "mode %zu: unstable, e-fold in %s", number,
+             strut_quantity_of(1.0 / sqrt(-mode->eigenvalue), 3, "s").text);
+  } else {
+    snprintf(title, TITLE, "mode %zu: %s", number,
+             mode->kind == STRUT_MODE_RIGID ? "rigid-body motion" : "mechanism");
+  }
+  strut_c_locale_leave(locale);
+}
+
+/* What moves; which members give way is told by colours. */
+static void words_of(const strut_mode *mode, char words[TITLE + 1]) {
+  const char *end = strchr(mode->description, ';');
+  snprintf(words, TITLE + 1, "%.*s", end ? (int)(end - mode->description) : TITLE,
+           mode->description);
+}
+
+static strut_font word_font(double width) {
+  return (strut_font){.size = 7, .colour = strut_grey(0.3), .width = width};
+}
+
+static void draw_head(figure *f, strut_box box, size_t number) {
+  const strut_mode *mode = &f->modes->list[number];
+  const strut_font bold = {.size = 8, .bold = true};
+  const strut_font plain = word_font(box.width);
+  char text[TITLE + 1], fitted[STRUT_FITTED_TEXT];
+  title_of(mode, number + 1, text);
+  strut_draw_text(f->canvas, box.x, box.y,
+                  strut_text_fit(f->canvas, text, bold, box.width, 0, fitted), bold);
+  words_of(mode, text);
+  strut_draw_text(f->canvas, box.x, box.y + TITLE_LINE,
+                  strut_text_fit(f->canvas, text, plain, box.width, WORD_LINES, fitted), plain);
+}
+
+static strut_pen other_end(void) {
+  return (strut_pen){.colour = strut_grey(0.55), .width = 0.6, .dash = {2.2, 1.8}, .butt = true};
+}
+static strut_pen way(void) { return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8}; }
+static strut_pen touch(void) { return (strut_pen){.colour = strut_grey(0.1), .width = 0.9}; }
+
+/* The dashed end of the swing, and how every node goes from there to the other. */
+static void draw_motion(figure *f, const strut_window *window) {
+  const strut_scene *scene = f->model->scene;
+  for (size_t j = 0; j < scene->member_count && scene->member_count <= SWUNG; j++) {
+    double ends[2][2];
+    for (int k = 0; k < 2; k++)
+      strut_window_point(window, f->minus + 2 * scene->members[j].node[k], ends[k]);
+    strut_draw_line(f->canvas, (const double(*)[2])ends, 2, other_end());
+  }
+}
+
+static void draw_ways(figure *f, const strut_window *window) {
+  for (int32_t i = 0; i < f->model->node_count; i++) {
+    double from[2], to[2];
+    strut_window_point(window, f->minus + 2 * i, from);
+    strut_window_point(window, f->plus + 2 * i, to);
+    double length = hypot(to[0] - from[0], to[1] - from[1]), end = 1.0 - NODE / length;
+    if (length < 2 * NODE) continue;
+    strut_draw_arrow(f->canvas, from[0], from[1], from[0] + end * (to[0] - from[0]),
+                     from[1] + end * (to[1] - from[1]), 4.5, way());
+  }
+}
+
+static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t number) {
+  draw_head(f, box, number);
+  box.y += f->head;
+  box.height -= f->head;
+  strut_window window = strut_window_fit(box, bounds, MARGIN);
+  const strut_structure_style rest = {.colouring = STRUT_COLOUR_ONE,
+                                      .colour = strut_grey(0.8),
+                                      .slack_forces = f->taut,
+                                      .no_nodes = true};
+  swing(f, &f->modes->list[number]);
+  double largest = strain(f);
+  const strut_structure_style bent = {.colouring = STRUT_COLOUR_FORCE,
+                                      .values = f->strain,
+                                      .limit = largest > 0 ? largest : 1.0,
+                                      .slack_forces = f->taut,
+                                      .no_supports = true};
+  strut_draw_ground(f->canvas, &window, f->model);
+  strut_draw_structure(f->canvas, &window, f->model, f->modes->q, &rest);
+  draw_motion(f, &window);
+  for (int32_t k = 0; k < f->modes->closed_count; k++) {
+    double at[2];
+    strut_window_point(&window, f->modes->q + 2 * f->modes->closed[k], at);
+    const strut_pen pen = touch();
+    strut_draw_circle(f->canvas, at[0], at[1], 3.4, NULL, &pen);
+  }
+  strut_draw_structure(f->canvas, &window, f->model, f->plus, &bent);
+  draw_ways(f, &window);
+  if (f->model->node_count <= NAMED)
+    strut_draw_names(f->canvas, &window, f->model, f->plus, true, false);
+}
+
+/* What is not drawn, in words; empty where all is. */
+static void say_rest(const figure *f, char text[TITLE]) {
+  size_t rigid = 0, left = f->modes->count - f->count;
+  for (size_t i = 0; i < f->modes->count; i++)
+    rigid += f->modes->list[i].kind == STRUT_MODE_RIGID;
+  if (f->modes->list[f->shown[0]].kind == STRUT_MODE_RIGID) rigid -= f->count;
+  left -= rigid;
+  text[0] = '\0';
+  int used = 0;
+  if (rigid)
+    used = snprintf(text, TITLE, "not drawn: %zu rigid-body motion%s", rigid, rigid > 1 ? "s" : "");
+  if (left)
+    snprintf(text + used, TITLE - (size_t)used, "%s%zu higher mode%s", used ? ", " : "not drawn: ",
+             left, left > 1 ? "s" : "");
+}
+
+enum { ITEMS = 8 };
+
+static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
+                       strut_key_item items[ITEMS]) {
+  size_t count = 0;
+  snprintf(at, TITLE, "at %.150s%s", f->modes->at,
+           f->modes->at_rest ? "" : " (no equilibrium)");
+  say_rest(f, rest);
+  items[count++] = (strut_key_item){.sign = STRUT_KEY_LINE,
+                                    .pen = {.colour = strut_grey(0.8), .width = 1.8},
+                                    .text = at};
+  if (f->modes->closed_count)
+    items[count++] = (strut_key_item){
+        .sign = STRUT_KEY_DOT, .pen = touch(), .text = "touches the ground"};
+  items[count++] =
+      (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = way(), .text = "way of a node"};
+  if (f->model->scene->member_count && f->model->scene->member_count <= SWUNG)
+    items[count++] = (strut_key_item){
+        .sign = STRUT_KEY_LINE, .pen = other_end(), .text = "other end of the swing"};
+  if (f->model->scene->member_count)
+    items[count++] = (strut_key_item){
+        .sign = STRUT_KEY_SIGNED, .before = "shortens", .text = "stretches, most in each mode"};
+  if (rest[0]) items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = rest};
+  return count;
+}
+
+/* Heights of the panels' heads and of the key, by the letters that they are set in. */
+static strut_status measure(figure *f, double width, const strut_key_item *items, size_t count,
+                            double *key, strut_error *error) {
+  strut_canvas *ruler;
+  strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &ruler, error);
+  if (status != STRUT_OK) return status;
+  *key = strut_key_height(ruler, width - 2 * EDGE, items, count);
+  double words = 0.0;
+  for (size_t k = 0; k < f->count; k++) {
+    char text[TITLE + 1], fitted[STRUT_FITTED_TEXT];
+    double wide, high;
+    words_of(&f->modes->list[f->shown[k]], text);
+    const strut_font font = word_font(f->panel_width);
+    strut_text_fit(ruler, text, font, f->panel_width, WORD_LINES, fitted);
+    strut_text_size(ruler, fitted, font, &wide, &high);
+    words = fmax(words, high);
+  }
+  f->head = TITLE_LINE + words;
+  strut_canvas_free(ruler);
+  return STRUT_OK;
+}
+
+static strut_status draw(figure *f, const char *path, double width, strut_error *error) {
+  char at[TITLE], rest[TITLE];
+  strut_key_item items[ITEMS] = {{0}};
+  size_t count = make_key(f, at, rest, items);
+  double key, height = 2 * EDGE;
+  strut_status status = measure(f, width, items, count, &key, error);
+  if (status != STRUT_OK) return status;
+  for (size_t row = 0; row < f->rows; row++) height += row_height(f, row) + GAP;
+  height += key - 0.5 * GAP;
+  status = strut_canvas_open(path, width, height, f->model->scene->name, &f->canvas, error);
+  if (status != STRUT_OK) return status;
+  strut_box box = {EDGE, EDGE, f->panel_width, 0};
+  for (size_t row = 0; row < f->rows; row++, box.y += box.height + GAP) {
+    box.height = row_height(f, row);
+    for (size_t k = row * f->columns; k < (row + 1) * f->columns && k < f->count; k++) {
+      box.x = EDGE + (double)(k % f->columns) * (f->panel_width + GAP);
+      draw_panel(f, box, row_bounds(f, row), f->shown[k]);
+    }
+  }
+  strut_draw_key(f->canvas, (strut_box){EDGE, height - EDGE - key, width - 2 * EDGE, key}, items,
+                 count);
+  status = strut_canvas_commit(f->canvas, error);
+  strut_canvas_free(f->canvas);
+  return status;
+}
+
+strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
+                                const strut_modes *modes, size_t panels, strut_error *error) {
+  figure f = {.model = model, .modes = modes, .head = TITLE_LINE + WORD_LINES + 2.0};
+  choose(&f, panels);
+  strut_status status = STRUT_NO_MEMORY;
+  if (take_memory(&f)) {
+    find_taut(&f);
+    find_bounds(&f);
+    arrange(&f, width);
+    status = draw(&f, path, width, error);
+  } else {
+    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  }
+  strut_arena_free(&f.arena);
+  return status;
+}

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lines and areas of an SVG as Cairo writes it, in points on the page; letters left out.
+
+Cairo 1.16 puts colours into style="...", 1.18 into attributes of their own; both place things with
+matrices. What is read here is the same for both.
+"""
+import re
+import xml.etree.ElementTree as tree
+
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+UNIT = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+
+
+def product(a, b):
+    """The matrix that does b first, then a."""
+    return (a[0] * b[0] + a[2] * b[1], a[1] * b[0] + a[3] * b[1],
+            a[0] * b[2] + a[2] * b[3], a[1] * b[2] + a[3] * b[3],
+            a[0] * b[4] + a[2] * b[5] + a[4], a[1] * b[4] + a[3] * b[5] + a[5])
+
+
+def placed(m, x, y):
+    return (m[0] * x + m[2] * y + m[4], m[1] * x + m[3] * y + m[5])
+
+
+def colour(text):
+    """Red, green, blue from 0 to 1, or None."""
+    if not text or text == "none" or text.startswith("url"):
+        return None
+    if text.startswith("#"):
+        digits = text[1:] if len(text) == 7 else "".join(2 * c for c in text[1:])
+        return tuple(int(digits[i:i + 2], 16) / 255 for i in (0, 2, 4))
+    if text.startswith("rgb"):
+        parts = [float(n) for n in NUMBER.findall(text)][:3]
+        return tuple(p / (100 if "%" in text else 255) for p in parts)
+    return {"black": (0, 0, 0), "white": (1, 1, 1)}.get(text)
+
+
+class Path:
+    """fill, stroke: colours or None; width, dash; lines: lists of points, `curved` if some bend."""
+
+    def __init__(self, element, matrix):
+        style = dict(part.split(":", 1) for part in element.get("style", "").split(";") if part)
+        get = lambda key, other=None: style.get(key, element.get(key, other))
+        self.fill = colour(get("fill", "black"))
+        self.stroke = colour(get("stroke"))
+        self.width = float(get("stroke-width", "1"))
+        dash = get("stroke-dasharray", "none")
+        self.dash = None if dash == "none" else [float(n) for n in NUMBER.findall(dash)]
+        self.curved = "C" in element.get("d", "")
+        self.lines = []
+        for command, rest in re.findall(r"([MLCZHV])([^MLCZHV]*)", element.get("d", "")):
+            n = [float(t) for t in NUMBER.findall(rest)]
+            points = [placed(matrix, n[i], n[i + 1]) for i in range(0, len(n) - 1, 2)]
+            if command == "M":
+                self.lines.append(points)
+            elif points and self.lines:
+                self.lines[-1] += points
+        self.lines = [line for line in self.lines if len(line) > 1]
+
+
+def matrix_of(element):
+    text = element.get("transform", "")
+    numbers = [float(n) for n in NUMBER.findall(text)]
+    if text.startswith("matrix"):
+        return tuple(numbers)
+    if text.startswith("translate"):
+        return (1.0, 0.0, 0.0, 1.0, numbers[0], numbers[1] if len(numbers) > 1 else 0.0)
+    if text.startswith("scale"):
+        return (numbers[0], 0.0, 0.0, numbers[-1], 0.0, 0.0)
+    return UNIT
+
+
+def read(file):
+    """(width, height, paths in the order they are drawn)."""
+    root = tree.parse(file).getroot()
+    paths = []
+
+    def walk(element, matrix):
+        name = element.tag.split("}")[-1]
+        if name in ("defs", "clipPath", "pattern", "symbol", "mask"):
+            return
+        matrix = product(matrix, matrix_of(element))
+        if name == "path":
+            path = Path(element, matrix)
+            if path.lines:
+                paths.append(path)
+        for child in element:
+            walk(child, matrix)
+
+    walk(root, UNIT)
+    size = [float(NUMBER.findall(root.get(side))[0]) for side in ("width", "height")]
+    return size[0], size[1], paths
+
+
+def near(colour_a, colour_b):
+    return colour_a is not None and max(abs(a - b) for a, b in zip(colour_a, colour_b)) < 0.01
+
+
+def segments(paths):
+    """All straight lines of two points: (start, end, path)."""
+    return [(line[0], line[1], path) for path in paths if not path.curved and path.stroke
+            for line in path.lines if len(line) == 2]
+
+
+def has_segment(found, a, b, tolerance=0.02):
+    """The first path with a segment between these points, in either direction; or None."""
+    close = lambda p, q: abs(p[0] - q[0]) < tolerance and abs(p[1] - q[1]) < tolerance
+    for start, end, path in found:
+        if (close(start, a) and close(end, b)) or (close(start, b) and close(end, a)):
+            return path
+    return None
