@@ -11,6 +11,7 @@
 #include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/progress.h"
+#include "parser/cli/run_pictures.h"
 #include "parser/cli/streams.h"
 #include "parser/write_scene.h"
 
@@ -20,6 +21,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
     {STRUT_OPTION_FORCE, "force", NULL, "run even where the step is above the stability limit"},
+    STRUT_RUN_PICTURE_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -27,7 +29,8 @@ static const strut_option options[] = {
 typedef struct kept {
   strut_results results;
   char *scene_text; /* the effective scene */
-  strut_sink *sinks[2];
+  strut_sink *csv, *hdf5;
+  strut_sink *sinks[3]; /* these, and that of pictures */
   size_t sink_count;
 } kept;
 
@@ -42,11 +45,11 @@ static strut_status begin_results(const strut_arguments *arguments, const strut_
   if (status != STRUT_OK) return status;
   keep->scene_text = strut_scene_write(scene);
   if (keep->scene_text) {
-    keep->sinks[0] = strut_csv_create(keep->results.stage);
-    keep->sinks[1] = strut_hdf5_create(keep->results.stage, keep->scene_text);
-    keep->sink_count = 2;
+    keep->csv = keep->sinks[keep->sink_count++] = strut_csv_create(keep->results.stage);
+    keep->hdf5 = keep->sinks[keep->sink_count++] =
+        strut_hdf5_create(keep->results.stage, keep->scene_text);
   }
-  if (keep->sinks[0] && keep->sinks[1]) return STRUT_OK;
+  if (keep->csv && keep->hdf5) return STRUT_OK;
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
@@ -66,17 +69,21 @@ static strut_status complete_results(kept *keep, const strut_summary *summary,
 }
 
 static void free_results(kept *keep) {
-  strut_csv_free(keep->sinks[0]);
-  strut_hdf5_free(keep->sinks[1]);
+  strut_csv_free(keep->csv);
+  strut_hdf5_free(keep->hdf5);
   strut_release(keep->scene_text);
   strut_results_abandon(&keep->results); /* nothing where they are complete */
 }
 
 static strut_status simulate(const strut_model *model, const strut_arguments *arguments, kept *keep,
-                             strut_summary *summary, strut_error *error) {
+                             strut_run_pictures *pictures, strut_summary *summary,
+                             strut_error *error) {
   const volatile sig_atomic_t *interrupt = strut_interrupt_watch(); /* before there are files */
   strut_status status = begin_results(arguments, model->scene, keep, error);
   if (status != STRUT_OK) return status;
+  strut_sink *look = strut_run_pictures_sink(pictures, model->scene, &status);
+  if (status != STRUT_OK) return strut_fail(error, status, "out of memory");
+  if (look) keep->sinks[keep->sink_count++] = look;
   strut_progress progress = strut_progress_begin(arguments->quiet);
   const strut_run_options run = {
       .force = arguments->force,
@@ -102,14 +109,16 @@ static strut_status print_summary(const strut_arguments *arguments, const strut_
   return status;
 }
 
-static strut_status run_model(const strut_arguments *arguments, const strut_model *model) {
+static strut_status run_model(const strut_arguments *arguments, const strut_model *model,
+                              strut_run_pictures *pictures) {
   kept keep = {0};
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
-  strut_status status = simulate(model, arguments, &keep, &summary, &error);
+  strut_status status = simulate(model, arguments, &keep, pictures, &summary, &error);
   if (status != STRUT_OK) strut_complain(&error);
   if (began(status)) {
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
+    if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
     if (written != STRUT_OK) {
       strut_complain(&late);
       status = written;
@@ -126,14 +135,17 @@ static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
+  strut_run_pictures pictures = {0};
+  strut_status status = strut_run_pictures_read(&strut_command_run, arguments, &pictures);
+  if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) {
-    status = run_model(arguments, model);
+    status = run_model(arguments, model, &pictures);
   } else {
     strut_complain(&error);
   }
+  strut_run_pictures_free(&pictures);
   strut_model_free(model);
   strut_scene_free(&scene);
   return status;

@@ -36,6 +36,25 @@ strut_status strut_option_number(const strut_command *command, const strut_argum
   return STRUT_OK;
 }
 
+size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
+                            size_t most) {
+  char part[100];
+  size_t count = 0;
+  for (const char *rest = text; rest; count++) {
+    size_t length = strcspn(rest, ",");
+    strut_expression_error error = {0};
+    strut_quantity quantity;
+    if (length >= sizeof part || count == most) return 0;
+    memcpy(part, rest, length);
+    part[length] = '\0';
+    if (!strut_expression_evaluate(part, NULL, &quantity, &error)) return 0;
+    if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) return 0;
+    values[count] = quantity.value;
+    rest = rest[length] ? rest + length + 1 : NULL;
+  }
+  return count;
+}
+
 strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
                                   strut_option_id id, int64_t low, int64_t high, int64_t *value) {
   const char *text = strut_option_text(arguments, id);

@@ -16,6 +16,12 @@
  */
 strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
                                  strut_option_id id, strut_dimension dimension, double *value);
+/**
+ * Reads up to `most` values with commas between, such as "0 s, 80 ms", into values. Returns how many,
+ * or 0 where the text is something else.
+ */
+size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
+                            size_t most);
 /** The same for whole numbers from low to high. */
 strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
                                   strut_option_id id, int64_t low, int64_t high, int64_t *value);
