@@ -4,12 +4,16 @@
 #include <stdio.h>
 
 #include "engine/output/matrix_market.h"
+#include "parser/cli/export_vtk.h"
 #include "parser/cli/named_shape.h"
 #include "parser/cli/open_model.h"
+#include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
+    {STRUT_OPTION_FORMAT, "format", "FORMAT", "vtk: the motion of a run, or a shape, for ParaView"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write the files of --format into DIR"},
     {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -26,13 +30,29 @@ static strut_status write_matrices(const strut_arguments *arguments, const char 
   return status;
 }
 
+static strut_status export_format(const strut_arguments *arguments, const char *matrices) {
+  static const char *const formats[] = {"vtk", NULL};
+  int format = 0;
+  strut_status status = strut_option_word(&strut_command_export, arguments, STRUT_OPTION_FORMAT,
+                                          formats, &format);
+  if (status != STRUT_OK) return status;
+  if (arguments->output && *arguments->output && !matrices)
+    return strut_export_vtk(&strut_command_export, arguments);
+  fprintf(stderr, "strut export: %s\n",
+          matrices ? "--matrices and --format are two commands" : "where to? give -o DIR");
+  return STRUT_USAGE;
+}
+
 static strut_status run(const strut_arguments *arguments) {
   const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
-  if (!directory || !*directory) {
-    fprintf(stderr, "strut export: where to? give --matrices DIR\n");
+  if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
+  if (!directory || !*directory || arguments->output) {
+    fprintf(stderr, "strut export: %s\n",
+            arguments->output ? "-o DIR wants a format: give --format vtk too"
+                              : "where to? give --matrices DIR, or --format vtk -o DIR");
     return STRUT_USAGE;
   }
   strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
@@ -47,13 +67,16 @@ static strut_status run(const strut_arguments *arguments) {
 
 const strut_command strut_command_export = {
     .name = "export",
-    .model = "MODEL",
-    .summary = "writes a model's matrices for MATLAB, Octave or Python",
+    .model = "RUN|MODEL",
+    .summary = "writes a model's matrices, or a run's motion for ParaView",
     .details =
-        "\nMatrix Market files: connectivity, equilibrium, mass, stiffness_elastic,\n"
+        "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files: connectivity, equilibrium, mass, stiffness_elastic,\n"
         "stiffness_geometric, damping and, where nodes touch the ground, stiffness_contact;\n"
         "node_names.csv, rows.csv (free coordinates) and columns.csv (members) name their rows\n"
-        "and columns. The tangent stiffness is the sum of the three. All files or none.\n",
+        "and columns. The tangent stiffness is the sum of the three.\n"
+        "With --format vtk, for ParaView: structure.pvd, a .vtp file for every frame of RUN (a\n"
+        "directory that 'strut run -o' made) or one for the shape of MODEL, and ground.vtp.\n"
+        "All files or none.\n",
     .options = options,
     .run = run,
 };

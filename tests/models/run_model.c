@@ -61,7 +61,7 @@ void model_read(model_run *run, const char *name, const char *const *settings) {
 
 void model_simulate(model_run *run) {
   strut_error error = {0};
-  strut_sink sink = {run, begin, take, end}, *sinks[] = {&sink};
+  strut_sink sink = {run, begin, take, end, 0}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
   strut_status status = strut_model_compile(&run->scene, &run->model, &error);
   if (!status) status = strut_simulate(run->model, &options, &run->summary, &error);
