@@ -6,10 +6,12 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/equilibria_report.h"
+#include "engine/output/figures/equilibria_figure.h"
 #include "engine/output/file.h"
 #include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
+#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/diagnostics.h"
 
@@ -23,6 +25,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_SEED, "seed", "S", "of the random starts; the same seed gives the same bits"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write equilibria.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -98,7 +101,8 @@ static strut_status report(const strut_arguments *arguments, const strut_equilib
   return status;
 }
 
-static strut_status search(const strut_arguments *arguments, strut_scene *scene) {
+static strut_status search(const strut_arguments *arguments, const strut_plot *plot,
+                           strut_scene *scene) {
   strut_equilibria_options options_read;
   strut_model *model = NULL;
   strut_equilibria all = {0};
@@ -112,6 +116,10 @@ static strut_status search(const strut_arguments *arguments, strut_scene *scene)
     strut_complain(&error);
   } else {
     status = report(arguments, &all, model);
+    if (!status && plot->path && all.count > 0) {
+      status = strut_equilibria_figure(plot->path, plot->width, model, &all, &error);
+      if (status) strut_complain(&error);
+    }
     if (!status && all.count == 0) {
       strut_fail(&error, status = STRUT_NOT_SETTLED, "%s", all.remark);
       strut_complain(&error);
@@ -124,11 +132,13 @@ static strut_status search(const strut_arguments *arguments, strut_scene *scene)
 
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
+  strut_plot plot;
   strut_status status = strut_try_output(arguments);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_equilibria, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
-  status = search(arguments, &scene);
+  status = search(arguments, &plot, &scene);
   strut_scene_free(&scene);
   return status;
 }

@@ -146,6 +146,15 @@ static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tic
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
 }
 
+void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes) {
+  const strut_box *f = &axes->frame;
+  strut_tick_set set;
+  strut_axis_ticks(&axes->y, ticks_along_y(f->height), &set);
+  draw_y(canvas, axes, &set);
+  strut_draw_segment(canvas, f->x, f->y, f->x, f->y + f->height,
+                     (strut_pen){.colour = strut_grey(0.25), .width = 0.6});
+}
+
 void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title) {
   const strut_box *f = &axes->frame;
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};

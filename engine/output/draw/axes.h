@@ -35,6 +35,8 @@ STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut
                                       strut_axis y, const char *title);
 /** Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid. */
 STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
+/** The y axis alone, with its grid: where what stands along x has no numbers. */
+STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
 /** Where a pair of values is on the page. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
 

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/figures/equilibria_figure.h"
+
+#include <math.h>
+#include <stdio.h>
+
+
+#include "engine/output/draw/key.h"
+#include "engine/output/draw/palette.h"
+#include "engine/output/figures/equilibria_parts.h"
+#include "engine/output/quantity_text.h"
+
+static const double EDGE = 5, TITLE = 16, LINES = 23, MARGIN = 17, NARROW = 150, SCALE = 34,
+                    LADDER = 150;
+enum { MOST_CARDS = 12, MOST_SMALL = 6 };
+
+/* The figure's plan: which are drawn, and how large. */
+typedef struct plan {
+  const strut_model *model;
+  const strut_equilibria *all;
+  size_t *standing, standing_count; /* those that stand, by energy */
+  size_t *aside, aside_count;       /* further stable ones, by energy */
+  size_t cards, columns, small, small_columns;
+  double width, size[2], cell[2], small_cell[2], force_limit, contact_limit;
+  bool ladder;
+  strut_arena arena;
+} plan;
+
+static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
+
+const double *strut_drawn_shape(const strut_equilibria *all, size_t i) {
+  const strut_equilibrium *e = &all->list[i];
+  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
+}
+
+double strut_drawn_energy(const strut_equilibria *all, size_t i) {
+  const strut_equilibrium *e = &all->list[i];
+  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
+}
+
+/* Sorts indices by energy; equal ones keep the list's order. */
+static void by_energy(const strut_equilibria *all, size_t *index, size_t count) {
+  for (size_t i = 1; i < count; i++) {
+    size_t moved = index[i], k = i;
+    for (; k > 0 && strut_drawn_energy(all, index[k - 1]) > strut_drawn_energy(all, moved); k--)
+      index[k] = index[k - 1];
+    index[k] = moved;
+  }
+}
+
+static bool is_stable(const strut_equilibrium *e) {
+  return e->point.label == STRUT_STABLE || e->point.label == STRUT_FLOPPY;
+}
+
+static bool choose(plan *p) {
+  size_t count = p->all->count;
+  p->standing = strut_arena_allocate(&p->arena, count, sizeof *p->standing);
+  p->aside = strut_arena_allocate(&p->arena, count, sizeof *p->aside);
+  if (!p->standing || !p->aside) return false;
+  for (size_t i = 0; i < count; i++) {
+    const strut_equilibrium *e = &p->all->list[i];
+    if (!is_stable(e)) continue;
+    if (e->fate == STRUT_FATE_STANDS || e->fate == STRUT_FATE_FLOPPY) {
+      p->standing[p->standing_count++] = i;
+    } else {
+      p->aside[p->aside_count++] = i;
+    }
+  }
+  by_energy(p->all, p->standing, p->standing_count);
+  by_energy(p->all, p->aside, p->aside_count);
+  return true;
+}
+
+static strut_bounds bounds_of(const plan *p, size_t i) {
+  strut_bounds b = strut_bounds_none();
+  strut_bounds_add(&b, p->model, strut_drawn_shape(p->all, i));
+  return b;
+}
+
+/* Largest forces, so that all cards share their scales. */
+static void measure(plan *p, size_t i) {
+  const strut_equilibrium *e = &p->all->list[i];
+  strut_bounds b = bounds_of(p, i);
+  for (int d = 0; d < 2; d++) p->size[d] = fmax(p->size[d], b.high[d] - b.low[d]);
+  for (size_t j = 0; j < p->model->scene->member_count; j++)
+    p->force_limit = fmax(p->force_limit, fabs(e->member_force[j]));
+  for (int32_t k = 0; k < e->contact_count && e->normal; k++)
+    p->contact_limit = fmax(p->contact_limit, fabs(e->normal[k]));
+}
+
+static void lay_out(plan *p) {
+  double inner = p->width - 2 * EDGE;
+  p->cards = p->standing_count < MOST_CARDS ? p->standing_count : MOST_CARDS;
+  for (size_t k = 0; k < p->cards; k++) measure(p, p->standing[k]);
+  p->small_columns = (size_t)fmax(1, floor(inner / 82));
+  if (p->small_columns > MOST_SMALL) p->small_columns = MOST_SMALL;
+  p->small = p->aside_count < p->small_columns ? p->aside_count : p->small_columns;
+  if (!p->cards)
+    for (size_t k = 0; k < p->small; k++) measure(p, p->aside[k]);
+  p->columns = (size_t)fmax(1, fmin(3, floor(inner / NARROW)));
+  if (p->columns > p->cards && p->cards) p->columns = p->cards;
+  p->cell[0] = inner / (double)p->columns;
+  double aspect = p->size[0] > 0 ? p->size[1] / p->size[0] : 1;
+  double wanted = (p->cell[0] - 2 * MARGIN) * aspect + 2 * MARGIN + 6;
+  p->cell[1] = LINES + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
+  p->small_cell[0] = inner / (double)p->small_columns;
+  p->small_cell[1] = 26 + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
+  p->ladder = p->cards > 1 && strut_ladder_wanted(p->all, p->standing, p->cards);
+}
+
+static double height_of(const plan *p) {
+  double rows = ceil((double)p->cards / (double)p->columns);
+  return 2 * EDGE + TITLE + rows * p->cell[1] + (p->cards ? SCALE : 0) + (p->ladder ? LADDER : 0) +
+         (p->small ? p->small_cell[1] + 16 : 0);
+}
+
+/* Forces of the ground as (contacts, 2), zero where it is not touched; NULL: no memory. */
+static double (*contact_forces(plan *p, const strut_equilibrium *e))[2] {
+  const strut_contact_table *contacts = &p->model->contacts;
+  double(*force)[2] =
+      strut_arena_allocate(&p->arena, (size_t)contacts->count + 1, sizeof *force);
+  for (int32_t k = 0; force && k < e->contact_count && e->normal; k++)
+    for (int32_t c = 0; c < contacts->count; c++)
+      if (contacts->entry[c].node == e->contacts[k]) force[c][0] = e->normal[k];
+  return force;
+}
+
+static strut_window window_for(const plan *p, size_t i, strut_box box, double margin) {
+  strut_bounds b = bounds_of(p, i);
+  double middle = 0.5 * (b.low[0] + b.high[0]), low = b.low[1];
+  const strut_ground *ground = &p->model->scene->ground;
+  if (ground->present && ground->slope == 0) low = fmin(low, ground->height);
+  const strut_bounds shared = {{middle - 0.5 * p->size[0], low},
+                               {middle + 0.5 * p->size[0], low + p->size[1]}};
+  return strut_window_fit(box, shared, margin);
+}
+
+static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
+  const strut_equilibrium *e = &p->all->list[i];
+  char text[300], fitted[STRUT_FITTED_TEXT];
+  strut_font name = {.size = 8.5, .bold = true};
+  strut_font note = {.size = 7.5, .colour = strut_grey(0.3)};
+  strut_box box = {cell.x, cell.y + LINES, cell.width, cell.height - LINES};
+  strut_window window = window_for(p, i, box, MARGIN);
+  double(*force)[2] = contact_forces(p, e);
+  if (!force) return false;
+  const strut_structure_style style = {.colouring = STRUT_COLOUR_FORCE,
+                                       .values = e->member_force,
+                                       .slack_forces = e->member_force,
+                                       .limit = p->force_limit,
+                                       .node_names = cell.width > 120};
+  strut_draw_text(canvas, cell.x + 4, cell.y,
+                  strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
+  snprintf(text, sizeof text, "%s, %s",
+           strut_quantity_of(strut_drawn_energy(p->all, i), 6, "J").text, e->verdict);
+  strut_draw_text(canvas, cell.x + 4, cell.y + 11,
+                  strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
+  strut_canvas_clip(canvas, cell);
+  strut_draw_ground(canvas, &window, p->model);
+  strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
+  strut_draw_contact_forces(canvas, &window, p->model, strut_drawn_shape(p->all, i),
+                            (const double(*)[2])force, p->contact_limit, 20);
+  strut_canvas_unclip(canvas);
+  return true;
+}
+
+static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
+  const strut_equilibrium *e = &p->all->list[i];
+  char text[300], fitted[STRUT_FITTED_TEXT];
+  strut_font note = {.size = 6.5, .colour = strut_grey(0.35), .width = cell.width - 6};
+  strut_window window =
+      window_for(p, i, (strut_box){cell.x, cell.y, cell.width, cell.height - 26}, 6);
+  const strut_structure_style style = {.colouring = STRUT_COLOUR_ONE,
+                                       .colour = strut_grey(0.45),
+                                       .thinness = 0.4,
+                                       .no_nodes = true};
+  strut_canvas_clip(canvas, cell);
+  strut_draw_ground(canvas, &window, p->model);
+  strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
+  snprintf(text, sizeof text, "%s: %s", strut_quantity_of(e->energy, 5, "J").text, e->verdict);
+  strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
+                  strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
+  strut_canvas_unclip(canvas);
+}
+
+static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
+  for (size_t k = 0; k < p->cards && *good; k++) {
+    strut_box cell = {EDGE + (double)(k % p->columns) * p->cell[0],
+                      y + (double)(k / p->columns) * p->cell[1], p->cell[0], p->cell[1]};
+    *good = draw_card(p, canvas, p->standing[k], cell);
+  }
+  if (!p->cards) return y;
+  y += ceil((double)p->cards / (double)p->columns) * p->cell[1];
+  strut_window foot = window_for(
+      p, p->standing[0], (strut_box){EDGE, y + LINES, p->cell[0], p->cell[1] - LINES}, MARGIN);
+  foot.box.y = y + SCALE - 8 - foot.box.height;
+  strut_draw_yardstick(canvas, &foot);
+  double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
+  const strut_colour_scale scale = {
+      .name = "force", .unit = "N", .low = -p->force_limit, .high = p->force_limit};
+  if (p->force_limit > 0)
+    strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
+  return y + SCALE;
+}
+
+static strut_status draw(plan *p, strut_canvas *canvas) {
+  char text[400], fitted[STRUT_FITTED_TEXT];
+  bool good = true;
+  strut_font title = {.size = 9, .bold = true};
+  strut_font note = {.size = 8, .colour = strut_grey(0.3)};
+  double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
+  snprintf(text, sizeof text, "%s: %zu equilibri%s at rest%s", p->model->scene->name,
+           p->standing_count, p->standing_count == 1 ? "um" : "a",
+           p->cards < p->standing_count ? ", the lowest are drawn" : "");
+  strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, text, title, inner, 0, fitted), title);
+  y = draw_cards(p, canvas, y, &good);
+  if (!good) return STRUT_NO_MEMORY;
+  if (p->ladder) {
+    double wide = fmin(inner, 90.0 + 120.0 * (double)p->cards);
+    strut_status status = strut_draw_ladder(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8},
+                                            p->all, p->standing, p->cards);
+    if (status != STRUT_OK) return status;
+    y += LADDER;
+  }
+  if (!p->small) return STRUT_OK;
+  snprintf(text, sizeof text, "Stable on static supports, but not at rest on the ground%s%.0zu%s:",
+           p->small < p->aside_count ? " (the lowest of " : "",
+           p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
+  strut_draw_text(canvas, EDGE, y + 2, strut_text_fit(canvas, text, note, inner, 0, fitted), note);
+  for (size_t k = 0; k < p->small; k++)
+    draw_small(p, canvas, p->aside[k],
+               (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
+                           p->small_cell[1]});
+  return STRUT_OK;
+}
+
+strut_status strut_equilibria_figure(const char *path, double width, const strut_model *model,
+                                     const strut_equilibria *equilibria, strut_error *error) {
+  plan p = {.model = model, .all = equilibria, .width = width};
+  strut_canvas *canvas = NULL;
+  strut_status status =
+      choose(&p) ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (status == STRUT_OK) {
+    lay_out(&p);
+    status = strut_canvas_open(path, width, height_of(&p), model->scene->name, &canvas, error);
+  }
+  if (status == STRUT_OK) {
+    status = draw(&p, canvas);
+    if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
+  }
+  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
+  strut_canvas_free(canvas);
+  strut_arena_free(&p.arena);
+  return status;
+}
