@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 
 #include "engine/output/draw/canvas.h"
+#include "engine/output/quantity_text.h"
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
 typedef struct strut_axis {
@@ -48,6 +49,9 @@ STRUT_API size_t strut_ticks(double low, double high, int wanted, double ticks[S
  * that take none: "", "%", "kg", "deg".
  */
 STRUT_API const char *strut_prefix(double largest, const char *unit, double *factor);
+
+/** A quantity as drawings write it: as strut_quantity_of, with a real minus sign and Greek micro. */
+STRUT_API strut_quantity strut_drawn_quantity(double value, int digits, const char *unit);
 
 enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis as they are written. */

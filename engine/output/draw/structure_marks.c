@@ -2,9 +2,9 @@
 /* What stands around a structure: supports, ground, forces on it, ways, a yardstick. */
 #include <math.h>
 
+#include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure_parts.h"
-#include "engine/output/quantity_text.h"
 
 enum { TRAIL_SHADES = 64 };
 
@@ -142,6 +142,6 @@ void strut_draw_yardstick(strut_canvas *canvas, const strut_window *w) {
   strut_draw_segment(canvas, x, y, end, y, pen);
   strut_draw_segment(canvas, x, y - 2, x, y + 2, pen);
   strut_draw_segment(canvas, end, y - 2, end, y + 2, pen);
-  strut_draw_text(canvas, 0.5 * (x + end), y - 2, strut_quantity_of(length, 3, "m").text,
+  strut_draw_text(canvas, 0.5 * (x + end), y - 2, strut_drawn_quantity(length, 3, "m").text,
                   (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
 }

@@ -53,6 +53,16 @@ static void write_number(char *text, size_t size, const char *format, int decima
   snprintf(text, size, "%s%s", plain[0] == '-' ? "\xe2\x88\x92" : "", plain + (plain[0] == '-'));
 }
 
+strut_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
+  strut_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
+  const char *space = strchr(plain.text, ' ');
+  bool micro = space && space[1] == 'u' && strcmp(space + 2, unit) == 0;
+  snprintf(drawn.text, sizeof drawn.text, "%s%.*s%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
+           space ? (int)(space - plain.text) - (plain.text[0] == '-') : STRUT_QUANTITY_TEXT,
+           plain.text + (plain.text[0] == '-'), micro ? " µ" : "", space ? space + 2 * micro : "");
+  return drawn;
+}
+
 static void write_power(char *text, size_t size, int exponent) {
   static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   char digits[16];

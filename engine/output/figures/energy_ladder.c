@@ -8,9 +8,8 @@
 #include "engine/output/draw/key.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/equilibria_parts.h"
-#include "engine/output/quantity_text.h"
 
-enum { ARC = 40 };
+enum { ARC = 40, FEW = 4 };
 
 static const double LEVEL = 0.3; /* half the width of a level, in places */
 
@@ -66,13 +65,15 @@ static void draw_passes(strut_canvas *canvas, const strut_axes *axes, const stru
     const double energy[2] = {strut_drawn_energy(all, (size_t)b->from) - zero,
                               strut_drawn_energy(all, (size_t)b->to) - zero};
     double top = energy[0] + height_of(b), at[2];
-    if (ends[0] < ends[1]) draw_pass(canvas, axes, ends, energy, top);
+    /* Among many only the ways between neighbours can be told apart. */
+    bool told = abs(ends[0] - ends[1]) == 1 || count <= FEW;
+    if (ends[0] < ends[1] && told) draw_pass(canvas, axes, ends, energy, top);
     if (abs(ends[0] - ends[1]) != 1) continue;
     /* What it takes, beside the slope that it is taken on. */
     char text[80];
     bool right = ends[1] > ends[0];
     snprintf(text, sizeof text, right ? "%s \xe2\x86\x92" : "\xe2\x86\x90 %s",
-             strut_quantity_of(height_of(b), 3, "J").text);
+             strut_drawn_quantity(height_of(b), 3, "J").text);
     strut_axes_point(axes, 0.5 * (ends[0] + ends[1]), top, at);
     strut_draw_text(canvas, at[0], at[1] - (right ? 2 : 11), text,
                     (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
@@ -85,7 +86,10 @@ static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const stru
   for (size_t k = 0; k < count; k++) {
     double left[2], right[2], energy = strut_drawn_energy(all, chosen[k]) - zero;
     char fitted[STRUT_FITTED_TEXT];
-    strut_font font = {.size = 8, .bold = true, .across = 0.5, .halo = strut_grey(1)};
+    strut_font font = {.size = count <= FEW ? 8 : 7,
+                       .bold = count <= FEW,
+                       .across = 0.5,
+                       .halo = strut_grey(1)};
     strut_axes_point(axes, (double)k - LEVEL, energy, left);
     strut_axes_point(axes, (double)k + LEVEL, energy, right);
     strut_draw_segment(canvas, left[0], left[1], right[0], right[1],

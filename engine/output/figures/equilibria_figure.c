@@ -6,9 +6,9 @@
 
 
 #include "engine/output/draw/key.h"
+#include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/equilibria_parts.h"
-#include "engine/output/quantity_text.h"
 
 static const double EDGE = 5, TITLE = 16, LINES = 23, MARGIN = 17, NARROW = 150, SCALE = 34,
                     LADDER = 150;
@@ -21,7 +21,8 @@ typedef struct plan {
   size_t *standing, standing_count; /* those that stand, by energy */
   size_t *aside, aside_count;       /* further stable ones, by energy */
   size_t cards, columns, small, small_columns;
-  double width, size[2], cell[2], small_cell[2], force_limit, contact_limit;
+  double width, size[2], cell[2], small_cell[2], force_limit, contact_limit,
+      largest_energy;
   bool ladder;
   strut_arena arena;
 } plan;
@@ -36,6 +37,11 @@ const double *strut_drawn_shape(const strut_equilibria *all, size_t i) {
 double strut_drawn_energy(const strut_equilibria *all, size_t i) {
   const strut_equilibrium *e = &all->list[i];
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
+}
+
+/* What rounding leaves of no energy at all is written as none. */
+static double told_energy(const plan *p, double energy) {
+  return fabs(energy) > 1e-12 * p->largest_energy ? energy : 0;
 }
 
 /* Sorts indices by energy; equal ones keep the list's order. */
@@ -81,6 +87,8 @@ static strut_bounds bounds_of(const plan *p, size_t i) {
 static void measure(plan *p, size_t i) {
   const strut_equilibrium *e = &p->all->list[i];
   strut_bounds b = bounds_of(p, i);
+  for (size_t k = 0; k < p->all->count; k++)
+    p->largest_energy = fmax(p->largest_energy, fabs(p->all->list[k].energy));
   for (int d = 0; d < 2; d++) p->size[d] = fmax(p->size[d], b.high[d] - b.low[d]);
   for (size_t j = 0; j < p->model->scene->member_count; j++)
     p->force_limit = fmax(p->force_limit, fabs(e->member_force[j]));
@@ -152,7 +160,7 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
-           strut_quantity_of(strut_drawn_energy(p->all, i), 6, "J").text, e->verdict);
+           strut_drawn_quantity(told_energy(p, strut_drawn_energy(p->all, i)), 6, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 4, cell.y + 11,
                   strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
   strut_canvas_clip(canvas, cell);
@@ -177,7 +185,7 @@ static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) 
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
-  snprintf(text, sizeof text, "%s: %s", strut_quantity_of(e->energy, 5, "J").text, e->verdict);
+  snprintf(text, sizeof text, "%s: %s", strut_drawn_quantity(told_energy(p, e->energy), 5, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
                   strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
   strut_canvas_unclip(canvas);

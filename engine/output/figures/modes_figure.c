@@ -8,9 +8,9 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
 #include "engine/output/draw/key.h"
+#include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
-#include "engine/output/quantity_text.h"
 
 enum { NAMED = 12, SWUNG = 40, TITLE = 200 };
 
@@ -160,12 +160,12 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
   strut_c_locale locale = strut_c_locale_enter();
   if (mode->kind == STRUT_MODE_ELASTIC) {
     int used = snprintf(title, TITLE, "mode %zu: %s", number,
-                        strut_quantity_of(mode->angular_frequency / TURN, 4, "Hz").text);
+                        strut_drawn_quantity(mode->angular_frequency / TURN, 4, "Hz").text);
     if (isfinite(mode->damping_ratio) && mode->damping_ratio > 0 && used > 0)
       snprintf(title + used, TITLE - (size_t)used, ", \xCE\xB6 = %.2g", mode->damping_ratio);
   } else if (mode->kind == STRUT_MODE_UNSTABLE) {
     snprintf(title, TITLE, "mode %zu: unstable, e-fold in %s", number,
-             strut_quantity_of(1.0 / sqrt(-mode->eigenvalue), 3, "s").text);
+             strut_drawn_quantity(1.0 / sqrt(-mode->eigenvalue), 3, "s").text);
   } else {
     snprintf(title, TITLE, "mode %zu: %s", number,
              mode->kind == STRUT_MODE_RIGID ? "rigid-body motion" : "mechanism");

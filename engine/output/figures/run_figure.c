@@ -7,7 +7,6 @@
 
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
-#include "engine/output/quantity_text.h"
 
 static const struct {
   double (*height)(strut_run_scene *run);
@@ -42,8 +41,8 @@ static strut_status check_times(const strut_run_figure *figure, const strut_traj
       return strut_fail(error, STRUT_USAGE,
                         "nothing was recorded at %s: the record goes from %s to %s (output.last and "
                         "output.every say what is recorded)",
-                        strut_quantity_of(figure->times[i], 6, "s").text,
-                        strut_quantity_of(first, 6, "s").text, strut_quantity_of(last, 6, "s").text);
+                        strut_drawn_quantity(figure->times[i], 6, "s").text,
+                        strut_drawn_quantity(first, 6, "s").text, strut_drawn_quantity(last, 6, "s").text);
   return STRUT_OK;
 }
 
@@ -163,10 +162,10 @@ double strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, st
   used += 1;
   if (s && s->status != STRUT_OK) {
     snprintf(line, sizeof line, "%s at %s: %s", strut_status_text(s->status),
-             strut_quantity_of(s->duration, 4, "s").text, what);
+             strut_drawn_quantity(s->duration, 4, "s").text, what);
   } else if (s && isfinite(s->velocity)) {
     snprintf(line, sizeof line, "%s; %s moves with %s", what, strut_run_measured_name(run),
-             strut_quantity_of(fabs(s->velocity) < 1e-12 ? 0 : s->velocity, 4, "m/s").text);
+             strut_drawn_quantity(fabs(s->velocity) < 1e-12 ? 0 : s->velocity, 4, "m/s").text);
   } else {
     snprintf(line, sizeof line, "%s", what);
   }

@@ -4,7 +4,6 @@
 #include <stdio.h>
 
 #include "engine/output/figures/run_parts.h"
-#include "engine/output/quantity_text.h"
 
 static const double EDGE = 5, TITLE = 26, SCALE = 46, CHART = 130, MARGIN = 26;
 static const double PERIODS = 5, PART = 0.1; /* of what was recorded, where nothing is periodic */
@@ -62,7 +61,7 @@ strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
   const strut_trajectory *m = run->motion;
   double width = run->figure->width - 2 * EDGE, height = drawing_height(run);
   char what[100];
-  snprintf(what, sizeof what, "at %s", strut_quantity_of(m->time[m->frames - 1], 5, "s").text);
+  snprintf(what, sizeof what, "at %s", strut_drawn_quantity(m->time[m->frames - 1], 5, "s").text);
   double used = strut_run_draw_title(run, canvas, (strut_box){EDGE, EDGE, width, TITLE}, what);
   if (used < TITLE) used = TITLE;
   strut_box box = {EDGE, EDGE + used, width - SCALE, height};

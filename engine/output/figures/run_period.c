@@ -5,7 +5,6 @@
 
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
-#include "engine/output/quantity_text.h"
 
 static const double EDGE = 5, TITLE = 38, KEY = 34, MARGIN = 26;
 
@@ -81,7 +80,7 @@ static void describe(const strut_run_scene *run, const ways *w, char *text, size
   double span = time[run->motion->frames - 1] - time[w->first];
   int used = snprintf(text, size, "ways of the nodes over %s%s, dark to bright",
                       run->period > 0 ? "one period, " : "",
-                      strut_quantity_of(span, 4, "s").text);
+                      strut_drawn_quantity(span, 4, "s").text);
   if (factor(run, 0) == 1 && factor(run, 1) == 1) return;
   snprintf(text + used, size - (size_t)used, "; motion %g times along x, %g times along y",
            factor(run, 0), factor(run, 1));

@@ -5,7 +5,6 @@
 
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
-#include "engine/output/quantity_text.h"
 
 enum { USUAL = 6 };
 
@@ -80,8 +79,8 @@ static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, 
   strut_window window = strut_window_fit(box, window_bounds, MARGIN);
   double way = strut_run_measured(run, frame) - strut_run_measured(run, 0);
   snprintf(text, sizeof text, "%c) t = %s, way %s", (char)('a' + (int)(i % 26)),
-           strut_quantity_of(run->motion->time[frame], 5, "s").text,
-           strut_quantity_of(fabs(way) < 1e-9 * run->model->size ? 0 : way, 3, "m").text);
+           strut_drawn_quantity(run->motion->time[frame], 5, "s").text,
+           strut_drawn_quantity(fabs(way) < 1e-9 * run->model->size ? 0 : way, 3, "m").text);
   strut_draw_text(canvas, cell.x + 4, cell.y, text, (strut_font){.size = 8});
   strut_canvas_clip(canvas, cell);
   bool good = strut_run_draw_frame(run, canvas, &window, frame, g->cell[0] > 120);
