@@ -2,10 +2,12 @@
 #include "parser/cli/command_path.h"
 
 #include "engine/base/memory.h"
+#include "engine/output/figures/path_figure.h"
 #include "engine/output/file.h"
 #include "engine/output/path_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
+#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 
 enum { MOST_STEPS = 1000000 };
@@ -17,6 +19,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -53,13 +56,30 @@ static strut_status read_options(const strut_arguments *arguments, strut_path_op
   return status;
 }
 
+/* Everything that was asked for; a sentence on stderr where that cannot be had. */
+static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
+                           const strut_model *model, const strut_path *path) {
+  strut_error error = {0};
+  strut_status status = STRUT_OK;
+  if (arguments->output) status = write_files(arguments->output, path, model->scene, &error);
+  if (status == STRUT_OK) {
+    status = show(arguments, path, model->scene);
+    if (status != STRUT_OK || !plot->path) return status;
+    status = strut_path_figure(plot->path, plot->width, model, path, &error);
+  }
+  if (status != STRUT_OK) strut_complain(&error);
+  return status;
+}
+
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_path_options wanted = {0};
   strut_path path = {0};
   strut_model *model = NULL;
   strut_error error = {0};
+  strut_plot plot;
   strut_status status = read_options(arguments, &wanted);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_path, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_try_output(arguments);
   if (status != STRUT_OK) return status;
@@ -67,10 +87,8 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_path_follow(model, &wanted, &path, &error);
-  if (status == STRUT_OK && arguments->output)
-    status = write_files(arguments->output, &path, &scene, &error);
   if (status == STRUT_OK)
-    status = show(arguments, &path, &scene);
+    status = report(arguments, &plot, model, &path);
   else
     strut_complain(&error);
   strut_path_free(&path);

@@ -91,19 +91,26 @@ static bool fits(strut_canvas *canvas, const char *text, strut_font font, double
   return wide <= width + 1e-6 && (height <= 0 || high <= height + 1e-6);
 }
 
+int strut_text_bytes(const char *text, int most) {
+  int length = (int)strnlen(text, (size_t)most), last = length;
+  while (last > 0 && ((unsigned char)text[last - 1] & 0xC0) == 0x80) last--;
+  if (last == 0) return 0;
+  unsigned char lead = (unsigned char)text[last - 1];
+  int wanted = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
+  return length - last + 1 < wanted ? last - 1 : length;
+}
+
 const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font, double width,
                            double height, char fitted[STRUT_FITTED_TEXT]) {
   static const char ELLIPSIS[] = "\xE2\x80\xA6";
-  size_t length = strlen(text), most = STRUT_FITTED_TEXT - sizeof ELLIPSIS;
-  bool whole = length <= most;
-  if (!whole) length = most;
+  int length = strut_text_bytes(text, STRUT_FITTED_TEXT - (int)sizeof ELLIPSIS);
+  bool whole = text[length] == '\0';
   for (;;) {
-    while (!whole && length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80) length--;
-    memcpy(fitted, text, length);
+    memcpy(fitted, text, (size_t)length);
     memcpy(fitted + length, ELLIPSIS, sizeof ELLIPSIS);
     if (whole) fitted[length] = '\0';
     if (length == 0 || fits(canvas, fitted, font, width, height)) return fitted;
+    if (!whole) length = strut_text_bytes(text, length - 1);
     whole = false;
-    length--;
   }
 }

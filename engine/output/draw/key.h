@@ -31,10 +31,12 @@ STRUT_API double strut_key_height(strut_canvas *canvas, double width, const stru
 STRUT_API void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                               size_t count);
 
+/** Bytes of the longest beginning of `text`, of at most `most` bytes, that splits no letter. */
+STRUT_API int strut_text_bytes(const char *text, int most);
 enum { STRUT_FITTED_TEXT = 320 };
 /**
  * Copies of `text` what goes into `width` by `height` [pt] (0: any height), ending in an ellipsis
- * where that is not all of it; lines break at `font.width` only. Returns `fitted`.
+ * where that is not all of it, a letter cut in two left out; lines break at `font.width` only. Returns `fitted`.
  */
 STRUT_API const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font,
                                      double width, double height, char fitted[STRUT_FITTED_TEXT]);

@@ -194,5 +194,5 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
   draw_members(canvas, &l);
   if (!style->no_nodes) draw_nodes(canvas, &l);
   if (style->node_names || style->member_names)
-    strut_draw_names(canvas, window, model, q, style->node_names, style->member_names);
+    strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);
 }

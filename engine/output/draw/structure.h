@@ -53,11 +53,12 @@ STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *wi
                                     const strut_structure_style *style);
 /**
  * Names beside nodes and members, where the page is emptiest: what the style's node_names and
- * member_names do, for a caller that draws more between the structure and its names.
+ * member_names do, for a caller that draws more between the structure and its names. They keep off
+ * `other_count` other lines too: (other_count, 2) ends on the page [pt]; may be NULL.
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
                                 const strut_model *model, const double *q, bool nodes,
-                                bool members);
+                                bool members, const double (*others)[2], size_t other_count);
 /** The ground's line and body across the window; nothing where the scene has none. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model);

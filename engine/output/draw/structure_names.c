@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names beside nodes and members, where the page is emptiest. */
 #include <math.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/palette.h"
@@ -99,11 +100,11 @@ static void add_supports(const strut_window *w, const strut_model *model, const 
   }
 }
 
-static bool gather(const strut_window *w, const strut_model *model, const double *q, obstacles *o,
-                   strut_arena *arena) {
+static bool gather(const strut_window *w, const strut_model *model, const double *q, size_t others,
+                   obstacles *o, strut_arena *arena) {
   size_t members = model->scene->member_count, nodes = (size_t)model->node_count;
   o->member_count = members;
-  o->ends = strut_arena_allocate(arena, 2 * (members + 1 + 2 * nodes), sizeof *o->ends);
+  o->ends = strut_arena_allocate(arena, 2 * (members + 1 + 2 * nodes + others), sizeof *o->ends);
   o->labels = strut_arena_allocate(arena, nodes + members, sizeof *o->labels);
   o->inside = w->box;
   if (!o->ends || !o->labels) return false;
@@ -117,11 +118,14 @@ static bool gather(const strut_window *w, const strut_model *model, const double
 }
 
 void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                      const double *q, bool nodes, bool members) {
+                      const double *q, bool nodes, bool members, const double (*others)[2],
+                      size_t other_count) {
   const strut_scene *scene = model->scene;
   strut_arena arena = {0};
   obstacles o = {0};
-  if (scene->node_count <= MOST_NAMED && gather(w, model, q, &o, &arena)) {
+  if (scene->node_count <= MOST_NAMED && gather(w, model, q, other_count, &o, &arena)) {
+    if (other_count) memcpy(o.ends + 2 * o.member_count, others, 2 * other_count * sizeof *others);
+    o.member_count += other_count;
     for (size_t i = 0; i < scene->node_count && nodes; i++) {
       double at[2];
       strut_window_point(w, q + 2 * i, at);

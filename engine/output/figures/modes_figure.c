@@ -29,6 +29,7 @@ typedef struct figure {
   size_t count, columns, rows;
   size_t shown[STRUT_MODES_FIGURE_MOST]; /* indices of modes */
   double *plus, *minus;                  /* (length) the ends of a swing [m] */
+  double (*ways)[2];                     /* (nodes, 2) ends of arrows on the page [pt] */
   double *strain, *taut;                 /* (members); taut: 0 where a cable is slack at rest */
   double size;                           /* larger extent of the shape at rest [m] */
   strut_bounds bounds[STRUT_MODES_FIGURE_MOST], all; /* of the panels, and of all together */
@@ -40,9 +41,10 @@ static bool take_memory(figure *f) {
   size_t length = (size_t)f->model->length, members = f->model->scene->member_count + 1;
   f->plus = strut_arena_allocate(&f->arena, length, sizeof(double));
   f->minus = strut_arena_allocate(&f->arena, length, sizeof(double));
+  f->ways = strut_arena_allocate(&f->arena, length, sizeof *f->ways);
   f->strain = strut_arena_allocate(&f->arena, members, sizeof(double));
   f->taut = strut_arena_allocate(&f->arena, members, sizeof(double));
-  return f->plus && f->minus && f->strain && f->taut;
+  return f->plus && f->minus && f->ways && f->strain && f->taut;
 }
 
 /* Which modes get a panel: those that are no rigid motion first. */
@@ -176,7 +178,8 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
 /* What moves; which members give way is told by colours. */
 static void words_of(const strut_mode *mode, char words[TITLE + 1]) {
   const char *end = strchr(mode->description, ';');
-  snprintf(words, TITLE + 1, "%.*s", end ? (int)(end - mode->description) : TITLE,
+  snprintf(words, TITLE + 1, "%.*s",
+           strut_text_bytes(mode->description, end ? (int)(end - mode->description) : TITLE),
            mode->description);
 }
 
@@ -214,16 +217,20 @@ static void draw_motion(figure *f, const strut_window *window) {
   }
 }
 
-static void draw_ways(figure *f, const strut_window *window) {
+/* Returns how many; (2 for each) where they begin and end. */
+static size_t draw_ways(figure *f, const strut_window *window, double (*ways)[2]) {
+  size_t count = 0;
   for (int32_t i = 0; i < f->model->node_count; i++) {
-    double from[2], to[2];
+    double *from = ways[2 * count], *to = ways[2 * count + 1];
     strut_window_point(window, f->minus + 2 * i, from);
     strut_window_point(window, f->plus + 2 * i, to);
     double length = hypot(to[0] - from[0], to[1] - from[1]), end = 1.0 - NODE / length;
     if (length < 2 * NODE) continue;
     strut_draw_arrow(f->canvas, from[0], from[1], from[0] + end * (to[0] - from[0]),
                      from[1] + end * (to[1] - from[1]), 4.5, way());
+    count++;
   }
+  return count;
 }
 
 static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t number) {
@@ -252,9 +259,10 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
     strut_draw_circle(f->canvas, at[0], at[1], 3.4, NULL, &pen);
   }
   strut_draw_structure(f->canvas, &window, f->model, f->plus, &bent);
-  draw_ways(f, &window);
+  size_t ways = draw_ways(f, &window, f->ways);
   if (f->model->node_count <= NAMED)
-    strut_draw_names(f->canvas, &window, f->model, f->plus, true, false);
+    strut_draw_names(f->canvas, &window, f->model, f->plus, true, false,
+                     (const double(*)[2])f->ways, ways);
 }
 
 /* What is not drawn, in words; empty where all is. */
@@ -278,7 +286,7 @@ enum { ITEMS = 8 };
 static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
                        strut_key_item items[ITEMS]) {
   size_t count = 0;
-  snprintf(at, TITLE, "at %.150s%s", f->modes->at,
+  snprintf(at, TITLE, "at %.*s%s", strut_text_bytes(f->modes->at, 150), f->modes->at,
            f->modes->at_rest ? "" : " (no equilibrium)");
   say_rest(f, rest);
   items[count++] = (strut_key_item){.sign = STRUT_KEY_LINE,

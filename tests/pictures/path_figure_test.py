@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""strut path --plot: the curve is that of path.csv, the shapes are those of path.json.
+
+usage: path_figure_test.py STRUT
+"""
+import csv
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+from svg_paths import has_segment, near, read, segments
+
+strut = os.path.abspath(sys.argv[1])
+CURVE, CURVE_WIDTH = (0.15, 0.15, 0.15), 1.2
+failures = 0
+
+
+def fail(text):
+    global failures
+    failures += 1
+    print("FAILED:", text)
+
+
+def members_of(model):
+    text = subprocess.run([strut, "write", model], capture_output=True, text=True).stdout
+    return [(a, b) for a, b in re.findall(r"^  \w+: \{nodes: \[(\w+), (\w+)\]", text, re.M)]
+
+
+def centres(paths, page):
+    """Where the dots are, with their fill."""
+    return [((min(p[0] for p in line) + max(p[0] for p in line)) / 2,
+             (min(p[1] for p in line) + max(p[1] for p in line)) / 2, path.fill)
+            for path in paths if path.curved and path.fill and not near(path.fill, (1, 1, 1))
+            for line in path.lines if max(p[0] for p in line) - min(p[0] for p in line) < 6]
+
+
+def off(point, line):
+    """Distance of a point from a line through points."""
+    best = math.inf
+    for a, b in zip(line, line[1:]):
+        along = (b[0] - a[0], b[1] - a[1])
+        square = along[0] ** 2 + along[1] ** 2
+        t = ((point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1]) / square if square else 0
+        t = max(0, min(1, t))
+        best = min(best, math.dist(point, (a[0] + t * along[0], a[1] + t * along[1])))
+    return best
+
+
+def check_curve(what, paths, rows, column, sign):
+    """Where the rows of path.csv are on the page. Cairo drops points on straight lines."""
+    unstable = [int(r["negative_eigenvalues"] or 0) > 0 for r in rows]
+    pieces = [(line, bool(path.dash)) for path in paths for line in path.lines
+              if near(path.stroke, CURVE) and abs(path.width - CURVE_WIDTH) < 1e-6
+              and not path.curved]
+    if any(unstable):
+        pieces.pop()  # the sample in the key
+    values = [[sign * (float(r[column]) - float(rows[0][column])) for r in rows],
+              [-float(r["factor"]) for r in rows]]
+    low = [min(v) for v in values]
+    corner = [min(p[d] for line, _ in pieces for p in line) for d in (0, 1)]
+    scale = [(max(p[d] for line, _ in pieces for p in line) - corner[d]) / (max(values[d]) - low[d])
+             for d in (0, 1)]
+    drawn = [tuple(corner[d] + scale[d] * (values[d][k] - low[d]) for d in (0, 1))
+             for k in range(len(rows))]
+    for k in range(len(rows) - 1):
+        middle = [(drawn[k][d] + drawn[k + 1][d]) / 2 for d in (0, 1)]
+        # An event's edge is as stable as the point at its other end.
+        wanted = unstable[k] if not rows[k]["event"] else unstable[k + 1]
+        if rows[k]["event"] and rows[k + 1]["event"]:
+            wanted = next(u for r, u in zip(rows[k:], unstable[k:]) if not r["event"])
+        if min(off(middle, line) for line, dashed in pieces if dashed == wanted) > 0.02:
+            fail(f"{what}: the curve does not lead from row {k} of path.csv to the next, "
+                 f"{'un' if wanted else ''}stable")
+    for line, _ in pieces:
+        for point in line:
+            if min(math.dist(point, d) for d in drawn) > 0.02:
+                fail(f"{what}: the curve has a corner at {point}, path.csv has not")
+    return drawn
+
+
+def check_shapes(what, paths, answer, members, larger):
+    """Start, events and end, told by their colours from the dots of the key."""
+    start = answer["points"][0]["nodes"]
+    stops = [answer["points"][0]] + answer["events"] + [answer["points"][-1]]
+    shapes = [{n: [start[n][d] + larger * (stop["nodes"][n][d] - start[n][d]) for d in (0, 1)]
+               for n in start} for stop in stops]
+    found = [s for s in segments(paths) if not near(s[2].stroke, CURVE)]
+    # The window: some two places that make all members of all shapes be there.
+    nodes = [p for shape in shapes for p in shape.values()]
+    low = [min(p[d] for p in nodes) for d in (0, 1)]
+    high = [max(p[d] for p in nodes) for d in (0, 1)]
+    coloured = [s for s in found if max(s[2].stroke) - min(s[2].stroke) > 0.2
+                and not near(s[2].stroke, (0.8353, 0.3686, 0.0))]
+    ends = [p for s in coloured for p in s[:2]]
+    left, right = min(p[0] for p in ends), max(p[0] for p in ends)
+    bottom = max(p[1] for p in ends)
+    scale = (right - left) / (high[0] - low[0])
+    place = lambda p: (left + scale * (p[0] - low[0]), bottom - scale * (p[1] - low[1]))
+    for i, shape in enumerate(shapes):
+        for a, b in members:
+            if not has_segment(coloured, place(shape[a]), place(shape[b])):
+                return fail(f"{what}: {a}-{b} of shape {i} is not drawn where it is")
+
+
+def check(model, arguments, column, sign, larger, width="page", shapes=True):
+    what = f"{model} {' '.join(arguments)}"
+    with tempfile.TemporaryDirectory() as here:
+        file = os.path.join(here, "a.svg")
+        command = [strut, "path", model, *arguments, "--json", "--plot", file, "--width", width,
+                   "-o", here]
+        run = subprocess.run(command, capture_output=True)
+        if run.returncode != 0:
+            return fail(f"{command}: {run.stderr}")
+        rows = list(csv.DictReader(open(os.path.join(here, "path.csv"), newline="")))
+        page_width, page_height, paths = read(file)
+    answer = json.loads(run.stdout)
+    drawn = check_curve(what, paths, rows, column, sign)
+    if not drawn:
+        return
+    dots = centres(paths, page_width)
+    stops = [0] + [i for i, r in enumerate(rows) if r["event"]] + [len(rows) - 1]
+    for i in stops:
+        if not any(math.dist(dot[:2], drawn[i]) < 0.1 for dot in dots):
+            fail(f"{what}: no dot at {rows[i]}")
+    if shapes:
+        check_shapes(what, paths, answer, members_of(model), larger)
+    for path in paths:
+        for x, y in (p for line in path.lines for p in line):
+            if path.stroke and not (-1 < x < page_width + 1 and -1 < y < page_height + 1):
+                return fail(f"{what}: ({x}, {y}) is beyond the page")
+
+
+check("models/gallery/von-mises.yaml", ["--set", "load=0.1"], "apex.y [m]", -1, 1)
+check("models/gallery/von-mises.yaml", ["--set", "load=0.1"], "apex.y [m]", -1, 1, "column")
+check("models/gallery/half-t-bar.yaml", ["--set", "force=1", "--until", "100"], "n4.x [m]", 1, 200)
+check("models/gallery/x-frame.yaml", ["--set", "down=1", "--until", "10"], "n3.y [m]", -1, 1)
+check("models/gallery/x-frame.yaml", ["--set", "right=1", "--load", "push", "--until", "10"],
+      "n3.x [m]", 1, 1)
+check("models/gallery/x-joint.yaml", ["--set", "load=1", "--until", "15"], "top_right.y [m]", -1,
+      500)
+
+# Names of any script and length, and a node that comes to touch the ground.
+LONG = "a_rather_long_name_of_some_sixty_letters_for_a_mere_node_of_it"
+HOSTILE = f"""strut: 1
+nodes:
+  {LONG}: {{position: [0, 0.02], mass: 1, fixed: x}}
+  {"ש" * 40}: {{position: [-1, 0.1], fixed: both}}
+  {"م" * 41}: {{position: [1, 0.1], fixed: both}}
+members:
+  {"ä" * 60}: {{kind: bar, nodes: [{LONG}, {"ש" * 40}], stiffness: 1000}}
+  b: {{kind: cable, nodes: [{LONG}, {"م" * 41}], stiffness: 1000}}
+ground: {{stiffness: 1e4}}
+loads:
+  {"م" * 50}: {{node: {LONG}, force: [0, -50]}}
+"""
+with tempfile.TemporaryDirectory() as here:
+    model = os.path.join(here, "hostile.yaml")
+    open(model, "w", encoding="utf-8").write(HOSTILE)
+    for size in ("page", "column", "40 mm"):
+        file = os.path.join(here, "a.svg")
+        run = subprocess.run([strut, "path", model, "--load", "م" * 50, "--until", "2", "--plot",
+                              file, "--width", size], capture_output=True, text=True)
+        if run.returncode != 0 or run.stderr:
+            fail(f"names of other scripts, {size}: {run.returncode} {run.stderr}")
+        else:
+            read(file)
+for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
+    run = subprocess.run([strut, "path", "models/gallery/von-mises.yaml", "--set", "load=1",
+                          "--plot", bad], capture_output=True)
+    if run.returncode != code or run.stdout or not run.stderr:
+        fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
+sys.exit(failures > 0)
