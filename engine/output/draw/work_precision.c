@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/draw/work_precision.h"
+
+#include <math.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/palette.h"
+
+static const double MARKER = 2.4, STRIP = 14;
+
+typedef struct diagram {
+  strut_canvas *canvas;
+  const strut_work_precision *wanted;
+  strut_axes axes;
+  strut_box strip; /* above the frame, for those that diverged; no height: none did */
+  bool *front;     /* (count) */
+  size_t *order;   /* (count) of the front by cost */
+  strut_legend_entry *entries;
+} diagram;
+
+static bool diverged(const strut_bargain *b) { return !isfinite(b->error); }
+
+void strut_pareto_front(const strut_bargain *b, size_t count, bool *front) {
+  for (size_t i = 0; i < count; i++) {
+    front[i] = !diverged(&b[i]) && b[i].cost > 0;
+    for (size_t k = 0; k < count && front[i]; k++) {
+      bool no_worse = b[k].cost <= b[i].cost && b[k].error <= b[i].error;
+      bool better = b[k].cost < b[i].cost || b[k].error < b[i].error;
+      front[i] = diverged(&b[k]) || !(no_worse && better);
+    }
+  }
+}
+
+static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_axis *error) {
+  *cost = w->cost;
+  *error = w->error;
+  cost->logarithmic = error->logarithmic = true;
+  cost->low = cost->high = error->low = error->high = NAN;
+  for (size_t i = 0; i < w->count; i++) {
+    const strut_bargain *b = &w->bargains[i];
+    strut_axis_include(cost, b->cost);
+    strut_axis_include(error, b->error);
+    strut_axis_include(error, b->low);
+    strut_axis_include(error, b->high);
+  }
+  strut_axis_settle(cost, 0.06);
+  strut_axis_settle(error, 0.08);
+}
+
+static void place(const diagram *d, const strut_bargain *b, double at[2]) {
+  double error = diverged(b) || !(b->error > 0) ? d->axes.y.high : b->error;
+  strut_axes_point(&d->axes, b->cost, error, at);
+  if (diverged(b)) at[1] = d->strip.y + 0.5 * d->strip.height;
+  if (b->error == 0) at[1] = d->axes.frame.y + d->axes.frame.height; /* better than can be drawn */
+}
+
+static void draw_lines(const diagram *d) {
+  const strut_work_precision *w = d->wanted;
+  for (size_t g = 0; g < w->group_count; g++) {
+    double before[2];
+    bool started = false;
+    strut_pen pen = strut_look_pen(g);
+    for (size_t i = 0; i < w->count; i++) {
+      double at[2];
+      if (w->bargains[i].group != (int)g || diverged(&w->bargains[i])) continue;
+      place(d, &w->bargains[i], at);
+      if (started) strut_draw_segment(d->canvas, before[0], before[1], at[0], at[1], pen);
+      before[0] = at[0];
+      before[1] = at[1];
+      started = true;
+    }
+  }
+}
+
+/* Below and to the left of its steps there is nothing to be had. */
+static void draw_front(const diagram *d) {
+  const strut_work_precision *w = d->wanted;
+  const strut_pen pen = {.colour = strut_grey(0.6), .width = 3.2};
+  double before[2];
+  bool started = false;
+  for (size_t k = 0; k < w->count && d->order[k] < w->count; k++) {
+    double at[2];
+    place(d, &w->bargains[d->order[k]], at);
+    if (started) {
+      strut_draw_segment(d->canvas, before[0], before[1], at[0], before[1], pen);
+      strut_draw_segment(d->canvas, at[0], before[1], at[0], at[1], pen);
+    }
+    before[0] = at[0];
+    before[1] = at[1];
+    started = true;
+  }
+}
+
+static void draw_points(const diagram *d) {
+  const strut_work_precision *w = d->wanted;
+  const strut_font font = {.size = 7, .halo = strut_grey(1), .down = 1};
+  for (size_t i = 0; i < w->count; i++) {
+    const strut_bargain *b = &w->bargains[i];
+    double at[2], low[2], high[2];
+    if (!(b->cost > 0)) continue;
+    place(d, b, at);
+    if (isfinite(b->low) && isfinite(b->high) && b->low > 0) {
+      const strut_pen bar = {.colour = strut_palette_thing((size_t)b->group), .width = 0.7, .butt = true};
+      strut_axes_point(&d->axes, b->cost, b->low, low);
+      strut_axes_point(&d->axes, b->cost, b->high, high);
+      strut_draw_segment(d->canvas, low[0], low[1], high[0], high[1], bar);
+      strut_draw_segment(d->canvas, low[0] - 2, low[1], low[0] + 2, low[1], bar);
+      strut_draw_segment(d->canvas, high[0] - 2, high[1], high[0] + 2, high[1], bar);
+    }
+    strut_draw_marker(d->canvas, (size_t)b->group, at[0], at[1], MARKER);
+    if (d->front[i] && b->label)
+      strut_draw_text(d->canvas, at[0] + 3, at[1] - 2, b->label, font);
+  }
+}
+
+/* The front's indices by cost; `count` ends them. */
+static void sort_front(diagram *d) {
+  const strut_work_precision *w = d->wanted;
+  size_t used = 0;
+  for (size_t i = 0; i < w->count; i++) {
+    if (!d->front[i]) continue;
+    size_t k = used++;
+    for (; k > 0 && w->bargains[d->order[k - 1]].cost > w->bargains[i].cost; k--)
+      d->order[k] = d->order[k - 1];
+    d->order[k] = i;
+  }
+  if (used < w->count) d->order[used] = w->count;
+}
+
+static void draw_strip(const diagram *d) {
+  const strut_fill grey = {.colour = strut_grey(0.94)};
+  const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
+  strut_draw_box(d->canvas, d->strip, &grey, &frame);
+  strut_draw_text(d->canvas, d->strip.x + d->strip.width - 3, d->strip.y + 0.5 * STRIP, "diverged",
+                  (strut_font){.size = 7, .across = 1, .down = 0.5, .colour = strut_grey(0.35)});
+}
+
+static void draw(diagram *d, strut_box box) {
+  const strut_work_precision *w = d->wanted;
+  strut_axis cost, error;
+  double legend[2];
+  bool some_diverged = false;
+  settle_axes(w, &cost, &error);
+  for (size_t g = 0; g < w->group_count; g++)
+    d->entries[g] = (strut_legend_entry){
+        .label = w->groups[g], .look = g, .line = true, .marker = true};
+  strut_legend_size(d->canvas, d->entries, w->group_count, box.width - 40, legend);
+  for (size_t i = 0; i < w->count; i++) some_diverged = some_diverged || diverged(&w->bargains[i]);
+  double top = legend[1] + (some_diverged ? STRIP : 0);
+  d->axes = strut_axes_place(d->canvas, (strut_box){box.x, box.y + top, box.width, box.height - top},
+                             cost, error, NULL);
+  d->strip = d->axes.frame;
+  d->strip.height = some_diverged ? STRIP : 0;
+  d->strip.y -= d->strip.height;
+  strut_draw_axes(d->canvas, &d->axes, NULL);
+  if (some_diverged) draw_strip(d);
+  draw_front(d);
+  draw_lines(d);
+  draw_points(d);
+  strut_draw_legend(d->canvas, d->entries, w->group_count, box.width - 40, d->axes.frame.x, box.y,
+                    false);
+}
+
+strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
+                                       const strut_work_precision *wanted) {
+  diagram d = {.canvas = canvas, .wanted = wanted};
+  d.front = strut_allocate(wanted->count + 1, sizeof *d.front);
+  d.order = strut_allocate(wanted->count + 1, sizeof *d.order);
+  d.entries = strut_allocate(wanted->group_count + 1, sizeof *d.entries);
+  bool good = d.front && d.order && d.entries;
+  if (good) {
+    strut_pareto_front(wanted->bargains, wanted->count, d.front);
+    sort_front(&d);
+    if (wanted->title) {
+      strut_draw_text(canvas, box.x, box.y, wanted->title, (strut_font){.size = 9, .bold = true});
+      box.y += 14;
+      box.height -= 14;
+    }
+    draw(&d, box);
+  }
+  strut_release(d.front);
+  strut_release(d.order);
+  strut_release(d.entries);
+  return good ? STRUT_OK : STRUT_NO_MEMORY;
+}

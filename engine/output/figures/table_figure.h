@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Figures of tables: curves in panels with grey bands.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_FIGURE_H
+#define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_FIGURE_H
+
+#include <stdbool.h>
+
+#include "engine/base/status.h"
+#include "engine/output/table_data.h"
+
+enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
+
+/** What of a table is drawn how. Columns by number, STRUT_NO_COLUMN for none. */
+typedef struct strut_table_figure {
+  const char *title; /* may be NULL */
+  double width;      /* [pt] */
+  int x, y[STRUT_MOST_Y], y_count;
+  int by;            /* a curve for each of its texts */
+  int panels;        /* a panel for each of its texts */
+  int band;          /* grey where it has the text `band_value`: half way to the next points */
+  const char *band_value;
+  bool log_x, log_y;
+} strut_table_figure;
+
+/**
+ * Draws curves into the file `path`. STRUT_USAGE where a column that has to hold numbers does not, or
+ * there are too many panels; else as strut_canvas_open and strut_canvas_commit.
+ */
+STRUT_API strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
+                                          const strut_table *table, strut_error *error);
+
+#endif

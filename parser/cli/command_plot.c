@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_plot.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/figures/table_figure.h"
+#include "parser/cli/plot_options.h"
+#include "parser/cli/streams.h"
+#include "parser/cli/table_file.h"
+#include "parser/diagnostics.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_PLOT, "plot", "FILE", "the figure: FILE ends with .svg, .pdf or .png"},
+    {STRUT_OPTION_WIDTH, "width", "WIDTH",
+     "of the figure: page (180 mm), column (88 mm), or a length such as 120 mm"},
+    {STRUT_OPTION_X, "x", "COLUMN", "along x; the first if not given"},
+    {STRUT_OPTION_Y, "y", "COLUMN,...", "along y; the second if not given"},
+    {STRUT_OPTION_BY, "by", "COLUMN", "a curve for each of what stands there"},
+    {STRUT_OPTION_PANELS, "panels", "COLUMN", "a panel for each of what stands there"},
+    {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey where the column has that text"},
+    {STRUT_OPTION_LOG, "log", "AXES", "logarithmic: x, y or xy"},
+    {STRUT_OPTION_TITLE, "title", "TEXT", "above the figure"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static const char *column_name_at(const void *context, size_t i) {
+  const strut_table *table = context;
+  return i < table->column_count ? table->columns[i].name : NULL;
+}
+
+/* The column of that name, of `length` bytes; STRUT_NO_COLUMN with a message. */
+static int find_column(const strut_table *table, const char *option, const char *name,
+                       size_t length) {
+  char word[200];
+  for (size_t i = 0; i < table->column_count; i++)
+    if (strlen(table->columns[i].name) == length &&
+        memcmp(table->columns[i].name, name, length) == 0)
+      return (int)i;
+  snprintf(word, sizeof word, "%.*s", (int)length, name);
+  const char *near = strut_did_you_mean(word, column_name_at, table);
+  fprintf(stderr, "strut plot: --%s: the table has no column '%s'", option, word);
+  if (near) fprintf(stderr, "; did you mean '%s'?", near);
+  fputc('\n', stderr);
+  return STRUT_NO_COLUMN;
+}
+
+/* An option that names a column: false with a message where there is none of that name. */
+static bool read_column(const strut_arguments *arguments, const strut_table *table,
+                        strut_option_id id, const char *option, int *column) {
+  const char *text = strut_option_text(arguments, id);
+  if (!text) return true;
+  *column = find_column(table, option, text, strlen(text));
+  return *column != STRUT_NO_COLUMN;
+}
+
+static bool read_y(const strut_arguments *arguments, const strut_table *table,
+                   strut_table_figure *figure) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_Y);
+  figure->y_count = 1;
+  figure->y[0] = table->column_count > 1 ? 1 : 0;
+  if (!text) return true;
+  figure->y_count = 0;
+  for (const char *at = text;; at++) {
+    size_t length = strcspn(at, ",");
+    if (figure->y_count == STRUT_MOST_Y) {
+      fprintf(stderr, "strut plot: --y: at most %d columns\n", STRUT_MOST_Y);
+      return false;
+    }
+    int column = find_column(table, "y", at, length);
+    if (column == STRUT_NO_COLUMN) return false;
+    figure->y[figure->y_count++] = column;
+    at += length;
+    if (!*at) return true;
+  }
+}
+
+static bool read_band(const strut_arguments *arguments, const strut_table *table,
+                      strut_table_figure *figure) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_BAND);
+  if (!text) return true;
+  const char *equals = strchr(text, '=');
+  if (!equals) {
+    fprintf(stderr, "strut plot: --band expects COLUMN=TEXT, not '%s'\n", text);
+    return false;
+  }
+  figure->band = find_column(table, "band", text, (size_t)(equals - text));
+  figure->band_value = equals + 1;
+  return figure->band != STRUT_NO_COLUMN;
+}
+
+static bool read_log(const strut_arguments *arguments, strut_table_figure *figure) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_LOG);
+  if (!text) return true;
+  figure->log_x = strcmp(text, "x") == 0 || strcmp(text, "xy") == 0;
+  figure->log_y = strcmp(text, "y") == 0 || strcmp(text, "xy") == 0;
+  if (figure->log_x || figure->log_y) return true;
+  fprintf(stderr, "strut plot: --log expects x, y or xy, not '%s'\n", text);
+  return false;
+}
+
+static strut_status draw(const strut_arguments *arguments, const strut_plot *plot,
+                         const strut_table *table) {
+  strut_table_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
+                               .width = plot->width,
+                               .by = STRUT_NO_COLUMN,
+                               .panels = STRUT_NO_COLUMN,
+                               .band = STRUT_NO_COLUMN};
+  strut_error error = {0};
+  bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
+              read_y(arguments, table, &figure) &&
+              read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
+              read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
+              read_band(arguments, table, &figure) && read_log(arguments, &figure);
+  if (!good) return STRUT_USAGE;
+  strut_status status = strut_table_curves(plot->path, &figure, table, &error);
+  if (status != STRUT_OK) strut_complain(&error);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_plot plot;
+  strut_table table;
+  strut_status status = strut_plot_read(&strut_command_plot, arguments, 0, &plot);
+  if (status != STRUT_OK) return status;
+  if (!plot.path) {
+    fprintf(stderr, "strut plot: where to? give --plot FILE\n");
+    return STRUT_USAGE;
+  }
+  status = strut_table_read(arguments->model, &table);
+  if (status != STRUT_OK) return status;
+  status = draw(arguments, &plot, &table);
+  strut_arena_free(&table.arena);
+  return status;
+}
+
+const strut_command strut_command_plot = {
+    .name = "plot",
+    .model = "TABLE",
+    .summary = "draws curves of a table",
+    .details =
+        "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
+        "strut writes it, or - for the standard input. Units get prefixes, curves are told\n"
+        "apart by colour, dashes and markers, and cells without a number break a curve.\n",
+    .options = options,
+    .run = run,
+};
