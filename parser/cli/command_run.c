@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/command_run.h"
 
+#include <stdio.h>
+
 #include "engine/base/memory.h"
 #include "engine/output/csv.h"
 #include "engine/output/file.h"
@@ -109,6 +111,15 @@ static strut_status print_summary(const strut_arguments *arguments, const strut_
   return status;
 }
 
+/* Last, for it takes longest: what was computed is on the screen by then. */
+static strut_status make_film(strut_run_pictures *pictures, const strut_model *model) {
+  strut_error error = {0};
+  fflush(stdout);
+  strut_status status = strut_run_pictures_film(pictures, model, &error);
+  if (status != STRUT_OK) strut_complain(&error);
+  return status;
+}
+
 static strut_status run_model(const strut_arguments *arguments, const strut_model *model,
                               strut_run_pictures *pictures) {
   kept keep = {0};
@@ -125,6 +136,8 @@ static strut_status run_model(const strut_arguments *arguments, const strut_mode
     }
     strut_status printed = print_summary(arguments, &summary, model->scene);
     if (status == STRUT_OK) status = printed;
+    if (written == STRUT_OK) written = make_film(pictures, model);
+    if (written != STRUT_OK) status = written;
   }
   strut_summary_free(&summary);
   free_results(&keep);
@@ -160,6 +173,7 @@ const strut_command strut_command_run = {
         "summary.json, scene.yaml (the scene as it was run: running it gives the same bits),\n"
         "trajectory.h5 and, as CSV, nodes, members, contacts and energy as far as the scene\n"
         "records them: all of them or, where something fails, none.\n"
+        "--animate makes a film of what the scene records, with the program ffmpeg.\n"
         "Ctrl-C stops the run and keeps what it has so far; a second one kills.\n",
     .options = options,
     .run = run,

@@ -62,14 +62,18 @@ strut_status strut_run_pictures_read(const strut_command *command,
   p->figure.view = (strut_run_view)view;
   p->figure.width = p->plot.width;
   if (status == STRUT_OK) status = read_scale(command, arguments, p);
-  return status == STRUT_OK ? read_times(command, arguments, p) : status;
+  if (status == STRUT_OK) status = read_times(command, arguments, p);
+  p->quiet = arguments->quiet;
+  p->silent = arguments->quiet || arguments->json;
+  return status == STRUT_OK ? strut_run_film_read(command, arguments, &p->film) : status;
 }
 
 strut_sink *strut_run_pictures_sink(strut_run_pictures *p, const strut_scene *scene,
                                     strut_status *status) {
   *status = STRUT_OK;
-  if (!p->plot.path) return NULL;
-  unsigned channels = strut_run_figure_channels(p->figure.view);
+  if (!p->plot.path && !p->film.path) return NULL;
+  unsigned channels = p->plot.path ? strut_run_figure_channels(p->figure.view) : 0;
+  if (p->film.path) channels |= STRUT_FILM_CHANNELS;
   p->sink = strut_trajectory_sink(&p->motion, scene, channels, STRUT_TRAJECTORY_ROOM);
   if (!p->sink) *status = STRUT_NO_MEMORY;
   return p->sink;
@@ -79,6 +83,11 @@ strut_status strut_run_pictures_draw(strut_run_pictures *p, const strut_model *m
                                      const strut_summary *summary, strut_error *error) {
   if (!p->plot.path) return STRUT_OK;
   return strut_run_figure_draw(p->plot.path, &p->figure, model, &p->motion, summary, error);
+}
+
+strut_status strut_run_pictures_film(strut_run_pictures *p, const strut_model *model,
+                                     strut_error *error) {
+  return strut_run_film_make(&p->film, model, &p->motion, p->quiet, p->silent, error);
 }
 
 void strut_run_pictures_free(strut_run_pictures *p) {

@@ -7,6 +7,7 @@
 
 #include "engine/output/figures/run_figure.h"
 #include "parser/cli/plot_options.h"
+#include "parser/cli/run_film.h"
 
 enum { STRUT_MOST_TIMES = 100 };
 
@@ -14,6 +15,8 @@ enum { STRUT_MOST_TIMES = 100 };
 typedef struct strut_run_pictures {
   strut_plot plot;
   strut_run_figure figure;
+  strut_film film;
+  bool quiet, silent; /* no bar; nothing on stdout besides what was asked for */
   double times[STRUT_MOST_TIMES];
   strut_trajectory motion;
   strut_sink *sink; /* that fills the motion; NULL where nothing is drawn */
@@ -25,7 +28,8 @@ typedef struct strut_run_pictures {
       {STRUT_OPTION_DRAW, "draw", "WHAT",                                                         \
        "overview (if not given), period, snapshots or curves"},                                   \
       {STRUT_OPTION_SCALE, "scale", "X,Y", "draw the motion of a period so many times"},          \
-      {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"}
+      {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},     \
+      STRUT_RUN_FILM_OPTIONS
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
 strut_status strut_run_pictures_read(const strut_command *command,
@@ -34,9 +38,12 @@ strut_status strut_run_pictures_read(const strut_command *command,
 /** The sink that the run has to have besides its others, or NULL; *status is its trouble. */
 strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_scene *scene,
                                     strut_status *status);
-/** Draws what was asked for, after the run. */
+/** Draws what was asked for, after the run. The film is not in it. */
 strut_status strut_run_pictures_draw(strut_run_pictures *pictures, const strut_model *model,
                                      const strut_summary *summary, strut_error *error);
+/** Makes the film, where one was asked for, and says what it is. */
+strut_status strut_run_pictures_film(strut_run_pictures *pictures, const strut_model *model,
+                                     strut_error *error);
 void strut_run_pictures_free(strut_run_pictures *pictures);
 
 #endif

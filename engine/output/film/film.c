@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/film/film.h"
+
+#include <math.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/output/film/encoder.h"
+#include "engine/output/film/scene_frame.h"
+
+enum { WIDTH = 1280, HEIGHT = 720, GIF_WIDTH = 640, GIF_HEIGHT = 360 };
+
+static const double PAGE_WIDTH = 512;  /* [pt], the same in all sizes */
+static const double LOOK_AHEAD = 0.6;  /* how far the camera looks around in time [s of film] */
+
+/* Everything that one film needs while it is made. */
+typedef struct making {
+  const strut_film *film;
+  const strut_model *model;
+  const strut_trajectory *motion;
+  size_t shown; /* frames of the motion that show something */
+  strut_film_made *made;
+  strut_camera camera;
+  strut_scenery scenery;
+  strut_moment moment;
+  strut_arena arena;
+} making;
+
+strut_status strut_film_check(const char *path, strut_error *error) {
+  strut_film_format format;
+  strut_file file = {0};
+  strut_status status = strut_encoder_format(path, &format, error);
+  if (status == STRUT_OK) status = strut_encoder_find(error);
+  if (status == STRUT_OK) status = strut_file_open_path(&file, path, error);
+  strut_file_abandon(&file);
+  return status;
+}
+
+static strut_status no_memory(strut_error *error) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while making a film");
+}
+
+/* How many pictures, of what size, and how far apart. */
+static strut_status count_frames(making *m, strut_film_format format, strut_error *error) {
+  const double *time = m->motion->time;
+  strut_film_made *made = m->made;
+  bool gif = format == STRUT_FILM_GIF;
+  m->shown = strut_frames_to_show(m->model, m->motion);
+  if (m->shown == 0)
+    return strut_fail(error, STRUT_DIVERGED, "there is no motion to make a film of");
+  double usual = gif ? STRUT_FILM_GIF_FPS : STRUT_FILM_FPS;
+  double lasts = time[m->shown - 1] - time[0];
+  *made = (strut_film_made){.width = gif ? GIF_WIDTH : WIDTH,
+                            .height = gif ? GIF_HEIGHT : HEIGHT,
+                            .fps = m->film->fps > 0 ? m->film->fps : usual,
+                            .lasts = lasts / m->film->speed};
+  if (made->lasts > STRUT_FILM_LONGEST) {
+    return strut_fail(error, STRUT_USAGE,
+                      "the film would last %.0f s, and more than %d s nobody watches: give a "
+                      "higher --speed, or record less of the run (output: last)",
+                      made->lasts, STRUT_FILM_LONGEST);
+  }
+  made->frames = 1 + (size_t)floor(made->lasts * made->fps + 1e-9);
+  made->shown = m->film->speed / made->fps;
+  made->every = m->shown > 1 ? lasts / (double)(m->shown - 1) : 0;
+  return STRUT_OK;
+}
+
+static double time_of(const making *m, size_t i) {
+  return m->motion->time[0] + (double)i * m->made->shown;
+}
+
+/* Looks through the whole motion for what all pictures must have in common. */
+static bool survey(making *m) {
+  size_t count = m->made->frames;
+  strut_bounds *bounds = strut_arena_allocate(&m->arena, count, sizeof *bounds);
+  if (!bounds || !strut_moment_create(&m->moment, m->model, m->motion, &m->arena)) return false;
+  for (size_t i = 0; i < count; i++) {
+    strut_moment_at(&m->moment, m->motion, m->shown, time_of(m, i));
+    bounds[i] = strut_bounds_none();
+    strut_bounds_add(&bounds[i], m->model, m->moment.q);
+  }
+  return strut_camera_plan(&m->camera, bounds, count, (size_t)(LOOK_AHEAD * m->made->fps),
+                           &m->arena);
+}
+
+static double largest(const double *values, size_t count) {
+  double most = 0;
+  for (size_t i = 0; values && i < count; i++)
+    if (isfinite(values[i])) most = fmax(most, fabs(values[i]));
+  return most;
+}
+
+static void prepare(making *m) {
+  strut_scenery *s = &m->scenery;
+  const strut_trajectory *motion = m->motion;
+  const double *time = motion->time;
+  size_t members = motion->member_count, last = m->shown - 1;
+  *s = (strut_scenery){.model = m->model, .camera = &m->camera, .shown = m->made->shown};
+  strut_scenery_fit(s, (strut_box){0, 0, PAGE_WIDTH, PAGE_WIDTH * HEIGHT / WIDTH});
+  strut_scenery_speed(s, m->film->speed);
+  if (m->moment.force) s->most_force = largest(motion->force, members * m->shown);
+  s->most_contact = largest(motion->contact, 2 * motion->contact_count * m->shown);
+  s->start_time = time[0];
+  s->end_time = time[last];
+  m->moment.frame = 0;
+  strut_moment_at(&m->moment, motion, m->shown, time[last]);
+  double end = strut_moment_travel(&m->moment, m->model);
+  m->moment.frame = 0;
+  strut_moment_at(&m->moment, motion, m->shown, time[0]);
+  s->travelled_from = strut_moment_travel(&m->moment, m->model);
+  if (time[last] > time[0])
+    s->mean_velocity = (end - s->travelled_from) / (time[last] - time[0]);
+  s->travels = true;
+  for (size_t i = 0; i < m->model->scene->node_count; i++)
+    if (m->model->scene->nodes[i].fixed[0]) s->travels = false;
+}
+
+static strut_status draw_frames(making *m, strut_canvas *canvas, strut_encoder *encoder,
+                                strut_error *error) {
+  const strut_film *film = m->film;
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < m->made->frames && status == STRUT_OK; i++) {
+    size_t stride = 0;
+    if (film->interrupt && *film->interrupt)
+      return strut_fail(error, STRUT_INTERRUPTED, "interrupted: there is no film");
+    strut_moment_at(&m->moment, m->motion, m->shown, time_of(m, i));
+    strut_scenery_draw(&m->scenery, canvas, i, &m->moment);
+    const unsigned char *pixels = strut_canvas_pixels(canvas, &stride);
+    if (!pixels) return no_memory(error);
+    status = strut_encoder_frame(encoder, pixels, m->made->width, m->made->height, stride, error);
+    if (film->progress) film->progress(film->progress_context, (double)i / (double)m->made->frames);
+  }
+  return status;
+}
+
+static strut_status encode(making *m, strut_error *error) {
+  strut_encoder encoder;
+  strut_canvas *canvas = NULL;
+  const strut_film_made *made = m->made;
+  strut_status status = strut_canvas_open_pixels(made->width, made->height,
+                                                 made->width / PAGE_WIDTH, &canvas, error);
+  if (status != STRUT_OK) return status;
+  status = strut_encoder_begin(&encoder, m->film->path, made->width, made->height, made->fps, error);
+  if (status == STRUT_OK) {
+    strut_c_locale locale = strut_c_locale_enter();
+    status = draw_frames(m, canvas, &encoder, error);
+    strut_c_locale_leave(locale);
+    if (status == STRUT_OK) {
+      status = strut_encoder_end(&encoder, error);
+    } else {
+      strut_encoder_abandon(&encoder);
+    }
+  }
+  strut_canvas_free(canvas);
+  return status;
+}
+
+strut_status strut_film_make(const strut_film *film, const strut_model *model,
+                             const strut_trajectory *motion, strut_film_made *made,
+                             strut_error *error) {
+  making m = {.film = film, .model = model, .motion = motion, .made = made};
+  strut_film_format format;
+  strut_status status = strut_encoder_format(film->path, &format, error);
+  if (status == STRUT_OK) status = count_frames(&m, format, error);
+  if (status == STRUT_OK && !survey(&m)) status = no_memory(error);
+  if (status == STRUT_OK) {
+    prepare(&m);
+    status = encode(&m, error);
+  }
+  strut_arena_free(&m.arena);
+  return status;
+}

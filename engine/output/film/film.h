@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Films of a recorded motion: the structure true to scale, its forces in colour, the ground passing by.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_FILM_FILM_H
+#define STRUT_ENGINE_OUTPUT_FILM_FILM_H
+
+#include <signal.h>
+
+#include "engine/model/model.h"
+#include "engine/output/trajectory.h"
+
+/** What a film draws on; strut_trajectory_sink is asked for these. */
+#define STRUT_FILM_CHANNELS                                                                        \
+  ((unsigned)STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT)
+
+/** Longest film [s], and the frames per second that a file of that format has by itself. */
+enum { STRUT_FILM_LONGEST = 1800, STRUT_FILM_FPS = 30, STRUT_FILM_GIF_FPS = 25 };
+
+typedef struct strut_film {
+  const char *path; /* .mp4, .webm (1280 x 720 pixels) or .gif (640 x 360); NULL: no film */
+  double speed;     /* of the motion in it: 0.1 is slowed ten times, 1 true */
+  double fps;       /* frames per second; 0: what is usual for the format */
+  const volatile sig_atomic_t *interrupt; /* gives up soon after it becomes non-zero; may be NULL */
+  void (*progress)(void *context, double fraction); /* may be NULL */
+  void *progress_context;
+} strut_film;
+
+/** What was made. */
+typedef struct strut_film_made {
+  size_t frames;
+  int width, height; /* pixels */
+  double fps;
+  double lasts;      /* the film [s] */
+  double every;      /* mean time between frames of the motion [s]; 0 for a single one */
+  double shown;      /* time of the motion between frames of the film [s] */
+} strut_film_made;
+
+/**
+ * Before anything is computed: whether such a film can be written there. STRUT_USAGE for an ending
+ * that is none, STRUT_FILE_TROUBLE for a place that cannot be written to, or without ffmpeg.
+ */
+STRUT_API strut_status strut_film_check(const char *path, strut_error *error);
+/**
+ * Makes the film; positions between two recorded frames are on the straight line between them. The
+ * file appears whole or not at all. STRUT_USAGE for a film longer than STRUT_FILM_LONGEST, or
+ * STRUT_FILE_TROUBLE with what ffmpeg says, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_film_make(const strut_film *film, const strut_model *model,
+                                       const strut_trajectory *motion, strut_film_made *made,
+                                       strut_error *error);
+
+#endif

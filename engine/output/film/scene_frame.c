@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/film/scene_frame.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/output/draw/axes.h"
+#include "engine/output/draw/palette.h"
+#include "engine/output/quantity_text.h"
+
+enum { DIGITS = 3, TEXT = 64, MOST_MARKS = 200 };
+
+static const double EDGE = 14, ABOVE = 34, BELOW = 46; /* of the page [pt] */
+static const double AROUND = 34, ARROW = 26;           /* of the structure [pt] */
+static const double BETWEEN = 70;                      /* marks of the ground, about [pt] */
+static const double LEAST = 0.02; /* of the structure's size, or of 1 m: seen around a point */
+static const double NEAR = 0.5; /* a ground nearer than so many sizes is shown from the start */
+
+static double round_step(double length) {
+  double power = pow(10.0, floor(log10(length)));
+  return length >= 5 * power ? 5 * power : length >= 2 * power ? 2 * power : power;
+}
+
+/* What must be seen around the camera's middle, as bounds; a ground nearby is in it. */
+static strut_bounds around(const strut_scenery *s) {
+  const strut_camera *camera = s->camera;
+  const strut_ground *ground = &s->model->scene->ground;
+  double least = fmax(camera->half[0], camera->half[1]) < LEAST * s->model->size
+                     ? LEAST * s->model->size
+                     : 0;
+  strut_bounds bounds;
+  for (int k = 0; k < 2; k++) {
+    bounds.low[k] = -fmax(camera->half[k], least);
+    bounds.high[k] = fmax(camera->half[k], least);
+  }
+  if (ground->present && ground->slope == 0 && !camera->follows[1]) {
+    double size = fmax(camera->half[0], camera->half[1]);
+    double height = ground->height - camera->middle[0][1];
+    if (height < bounds.low[1] && bounds.low[1] - height <= 2 * NEAR * size)
+      bounds.low[1] = height;
+  }
+  return bounds;
+}
+
+void strut_scenery_fit(strut_scenery *s, strut_box page) {
+  strut_bounds bounds = around(s);
+  strut_box box = {page.x, page.y + ABOVE, page.width, page.height - ABOVE - BELOW};
+  s->window = strut_window_fit(box, bounds, AROUND);
+  s->step = round_step(BETWEEN / s->window.scale);
+}
+
+void strut_scenery_speed(strut_scenery *s, double speed) {
+  double whole = speed < 1 ? 1 / speed : speed;
+  bool round_number = fabs(whole - round(whole)) < 1e-9 * whole;
+  if (speed == 1) {
+    snprintf(s->speed, sizeof s->speed, "true speed");
+  } else if (speed < 1 && round_number) {
+    snprintf(s->speed, sizeof s->speed, "1/%.0f of true speed", whole);
+  } else {
+    snprintf(s->speed, sizeof s->speed, "%.4g %s true speed", speed, speed < 1 ? "of" : "times");
+  }
+}
+
+/* The window of picture i. */
+static strut_window look(const strut_scenery *s, size_t i) {
+  strut_window window = s->window;
+  window.left += s->camera->middle[i][0];
+  window.top += s->camera->middle[i][1];
+  return window;
+}
+
+/* Marks along the ground, numbered with their distance; those of a belt move with it. */
+static void draw_marks(const strut_scenery *s, strut_canvas *canvas, const strut_window *window,
+                       double time) {
+  const strut_ground *ground = &s->model->scene->ground;
+  double tangent[2] = {cos(ground->slope), sin(ground->slope)}, factor;
+  double moved = ground->belt_speed * time;
+  double left = window->left / tangent[0], width = window->box.width / window->scale / tangent[0];
+  double first = ceil((left - moved) / s->step);
+  const char *prefix = strut_prefix(fmax(fabs(left), fabs(left + width)), "m", &factor);
+  const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.9, .butt = true};
+  for (int k = 0; k < MOST_MARKS; k++) {
+    double distance = (first + k) * s->step + moved, point[2], end[2];
+    if (distance > left + width) break;
+    const double at[2] = {distance * tangent[0], ground->height + distance * tangent[1]};
+    char text[TEXT];
+    strut_window_point(window, at, point);
+    end[0] = point[0] + 11 * tangent[1];
+    end[1] = point[1] + 11 * tangent[0];
+    strut_draw_segment(canvas, point[0], point[1], end[0], end[1], pen);
+    if (moved != 0 || ground->belt_speed != 0) continue;
+    snprintf(text, sizeof text, "%.6g %sm", (first + k) * s->step / factor, prefix);
+    const strut_font font = {.size = 7.5, .across = 0.5, .colour = strut_grey(0.3)};
+    double half, high;
+    strut_text_size(canvas, text, font, &half, &high);
+    half *= 0.5;
+    if (end[0] - half < window->box.x || end[0] + half > window->box.x + window->box.width) continue;
+    strut_draw_text(canvas, end[0], end[1] + 1, text, font);
+  }
+}
+
+/* Where there is no ground to pass by, faint lines do. */
+static void draw_lattice(const strut_scenery *s, strut_canvas *canvas,
+                         const strut_window *window) {
+  const strut_pen pen = {.colour = strut_grey(0.9), .width = 0.6, .butt = true};
+  strut_box box = window->box;
+  for (int axis = 0; axis < 2; axis++) {
+    double span = (axis == 0 ? box.width : box.height) / window->scale;
+    double low = axis == 0 ? window->left : window->top - span;
+    double first = ceil(low / s->step);
+    for (int k = 0; k < MOST_MARKS && (first + k) * s->step <= low + span; k++) {
+      double at[2] = {window->left, window->top}, point[2];
+      at[axis] = (first + k) * s->step;
+      strut_window_point(window, at, point);
+      if (axis == 0) {
+        strut_draw_segment(canvas, point[0], box.y, point[0], box.y + box.height, pen);
+      } else {
+        strut_draw_segment(canvas, box.x, point[1], box.x + box.width, point[1], pen);
+      }
+    }
+  }
+}
+
+/* The time, always with as many digits and in the same unit. */
+static void time_text(const strut_scenery *s, double time, char text[TEXT]) {
+  double factor;
+  const char *prefix = strut_prefix(fmax(fabs(s->end_time), fabs(s->start_time)), "s", &factor);
+  double digits = s->shown > 0 ? ceil(-log10(s->shown / factor) - 1e-6) : 0;
+  int decimals = digits < 0 ? 0 : digits > 6 ? 6 : (int)digits;
+  snprintf(text, TEXT, "%.*f %ss", decimals, time / factor, prefix);
+}
+
+static void draw_words(const strut_scenery *s, strut_canvas *canvas, const strut_moment *moment) {
+  strut_box page = strut_canvas_box(canvas);
+  const strut_colour grey = strut_grey(0.35);
+  char text[2 * TEXT];
+  strut_draw_text(canvas, EDGE, EDGE - 4, s->model->scene->name,
+                  (strut_font){.size = 11, .bold = true, .width = 0.65 * page.width});
+  time_text(s, moment->time, text);
+  strut_draw_text(canvas, page.width - EDGE, EDGE - 4, text,
+                  (strut_font){.size = 12, .bold = true, .across = 1});
+  strut_draw_text(canvas, page.width - EDGE, EDGE + 12, s->speed,
+                  (strut_font){.size = 8.5, .across = 1, .colour = grey});
+  if (!s->travels) return;
+  double moved = strut_moment_travel(moment, s->model) - s->travelled_from;
+  if (fabs(moved) < 1e-9 * s->model->size) moved = 0;
+  snprintf(text, sizeof text, "moved %s", strut_quantity_of(moved, DIGITS, "m").text);
+  strut_draw_text(canvas, EDGE, page.height - 36, text, (strut_font){.size = 9});
+  double velocity = s->mean_velocity;
+  if (fabs(velocity) * (s->end_time - s->start_time) < 1e-9 * s->model->size) velocity = 0;
+  snprintf(text, sizeof text, "mean velocity %s", strut_quantity_of(velocity, DIGITS, "m/s").text);
+  strut_draw_text(canvas, EDGE, page.height - 23, text, (strut_font){.size = 9, .colour = grey});
+}
+
+static void draw_scale(const strut_scenery *s, strut_canvas *canvas) {
+  strut_box page = strut_canvas_box(canvas);
+  const strut_colour_scale scale = {
+      .name = "force", .unit = "N", .low = -s->most_force, .high = s->most_force};
+  if (!(s->most_force > 0)) return;
+  strut_draw_colour_scale(canvas, (strut_box){page.width - 190, page.height - 39, 180, 30}, &scale);
+}
+
+/* How far the film is, along the lower edge. */
+static void draw_progress(const strut_scenery *s, strut_canvas *canvas, size_t i) {
+  strut_box page = strut_canvas_box(canvas);
+  double part = s->camera->count > 1 ? (double)i / (double)(s->camera->count - 1) : 1;
+  const strut_fill fill = {.colour = strut_grey(0.75)};
+  strut_draw_box(canvas, (strut_box){0, page.height - 2.5, page.width * part, 2.5}, &fill, NULL);
+}
+
+void strut_scenery_draw(const strut_scenery *s, strut_canvas *canvas, size_t i,
+                        const strut_moment *moment) {
+  strut_window window = look(s, i);
+  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
+  if (s->most_force > 0) {
+    style.colouring = STRUT_COLOUR_FORCE;
+    style.values = moment->force;
+    style.limit = s->most_force;
+    style.slack_forces = moment->force;
+  }
+  bool ground = s->model->scene->ground.present;
+  strut_canvas_clear(canvas, strut_grey(1));
+  strut_canvas_clip(canvas, window.box);
+  if (!ground && (s->camera->follows[0] || s->camera->follows[1])) draw_lattice(s, canvas, &window);
+  strut_draw_ground(canvas, &window, s->model);
+  if (ground) draw_marks(s, canvas, &window, moment->time);
+  strut_draw_structure(canvas, &window, s->model, moment->q, &style);
+  if (moment->contact)
+    strut_draw_contact_forces(canvas, &window, s->model, moment->q,
+                              (const double(*)[2])moment->contact, s->most_contact, ARROW);
+  strut_canvas_unclip(canvas);
+  draw_words(s, canvas, moment);
+  draw_scale(s, canvas);
+  draw_progress(s, canvas, i);
+}
