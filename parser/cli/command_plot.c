@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/table_figure.h"
+#include "engine/output/figures/table_map.h"
+#include "parser/cli/option_values.h"
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
@@ -15,11 +16,15 @@ static const strut_option options[] = {
     {STRUT_OPTION_PLOT, "plot", "FILE", "the figure: FILE ends with .svg, .pdf or .png"},
     {STRUT_OPTION_WIDTH, "width", "WIDTH",
      "of the figure: page (180 mm), column (88 mm), or a length such as 120 mm"},
+    {STRUT_OPTION_KIND, "kind", "KIND", "curves (if not given), map or work-precision"},
     {STRUT_OPTION_X, "x", "COLUMN", "along x; the first if not given"},
     {STRUT_OPTION_Y, "y", "COLUMN,...", "along y; the second if not given"},
-    {STRUT_OPTION_BY, "by", "COLUMN", "a curve for each of what stands there"},
+    {STRUT_OPTION_BY, "by", "COLUMN", "a curve, or a method, for each of what stands there"},
     {STRUT_OPTION_PANELS, "panels", "COLUMN", "a panel for each of what stands there"},
     {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey where the column has that text"},
+    {STRUT_OPTION_LABEL, "label", "COLUMN",
+     "of a map: what is shown; of work-precision: beside the best"},
+    {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "of a map: hatched where it says anything but 0"},
     {STRUT_OPTION_LOG, "log", "AXES", "logarithmic: x, y or xy"},
     {STRUT_OPTION_TITLE, "title", "TEXT", "above the figure"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -100,29 +105,88 @@ static bool read_log(const strut_arguments *arguments, strut_table_figure *figur
   return false;
 }
 
-static strut_status draw(const strut_arguments *arguments, const strut_plot *plot,
-                         const strut_table *table) {
+static strut_status draw_map(const strut_arguments *arguments, const strut_plot *plot,
+                             const strut_table *table, strut_error *error) {
+  int third = table->column_count > 2 ? 2 : STRUT_NO_COLUMN;
+  strut_table_map_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
+                                   .width = plot->width,
+                                   .y = table->column_count > 1 ? 1 : 0,
+                                   .value = third,
+                                   .panels = STRUT_NO_COLUMN,
+                                   .doubt = STRUT_NO_COLUMN};
+  bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
+              read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
+              read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.value) &&
+              read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
+              read_column(arguments, table, STRUT_OPTION_DOUBT, "doubt", &figure.doubt);
+  if (good && figure.value == STRUT_NO_COLUMN) {
+    fprintf(stderr, "strut plot: a map needs a third column\n");
+    good = false;
+  }
+  return good ? strut_table_map(plot->path, &figure, table, error) : STRUT_USAGE;
+}
+
+static strut_status draw_bargains(const strut_arguments *arguments, const strut_plot *plot,
+                                  const strut_table *table, strut_error *error) {
+  strut_table_bargains_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
+                                        .width = plot->width,
+                                        .y = table->column_count > 1 ? 1 : 0,
+                                        .by = STRUT_NO_COLUMN,
+                                        .label = STRUT_NO_COLUMN};
+  bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
+              read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
+              read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
+              read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.label);
+  return good ? strut_table_bargains(plot->path, &figure, table, error) : STRUT_USAGE;
+}
+
+static strut_status draw_curves(const strut_arguments *arguments, const strut_plot *plot,
+                                const strut_table *table, strut_error *error) {
   strut_table_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
                                .width = plot->width,
                                .by = STRUT_NO_COLUMN,
                                .panels = STRUT_NO_COLUMN,
                                .band = STRUT_NO_COLUMN};
-  strut_error error = {0};
   bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
               read_y(arguments, table, &figure) &&
               read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
               read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
               read_band(arguments, table, &figure) && read_log(arguments, &figure);
-  if (!good) return STRUT_USAGE;
-  strut_status status = strut_table_curves(plot->path, &figure, table, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
+}
+
+/* Kinds of diagrams, with the options that go with one of them only. */
+static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
+static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
+                                     const strut_table *table, strut_error *error) = {
+    draw_curves, draw_map, draw_bargains};
+static const struct {
+  strut_option_id id;
+  const char *name;
+  unsigned kinds; /* a bit for each that has it */
+} limited[] = {
+    {STRUT_OPTION_BY, "by", 5},    {STRUT_OPTION_PANELS, "panels", 3}, {STRUT_OPTION_BAND, "band", 1},
+    {STRUT_OPTION_LABEL, "label", 6}, {STRUT_OPTION_DOUBT, "doubt", 2},  {STRUT_OPTION_LOG, "log", 1},
+};
+
+static strut_status read_kind(const strut_arguments *arguments, int *kind) {
+  strut_status status =
+      strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_KIND, kinds, kind);
+  for (size_t i = 0; i < sizeof limited / sizeof *limited && status == STRUT_OK; i++) {
+    if (!strut_option_text(arguments, limited[i].id) || limited[i].kinds >> *kind & 1) continue;
+    fprintf(stderr, "strut plot: --kind %s knows no --%s\n", kinds[*kind], limited[i].name);
+    status = STRUT_USAGE;
+  }
   return status;
 }
 
 static strut_status run(const strut_arguments *arguments) {
   strut_plot plot;
   strut_table table;
-  strut_status status = strut_plot_read(&strut_command_plot, arguments, 0, &plot);
+  strut_error error = {0};
+  int kind = 0;
+  strut_status status = read_kind(arguments, &kind);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_plot, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   if (!plot.path) {
     fprintf(stderr, "strut plot: where to? give --plot FILE\n");
@@ -130,7 +194,8 @@ static strut_status run(const strut_arguments *arguments) {
   }
   status = strut_table_read(arguments->model, &table);
   if (status != STRUT_OK) return status;
-  status = draw(arguments, &plot, &table);
+  status = draws[kind](arguments, &plot, &table, &error);
+  if (error.message[0]) strut_complain(&error);
   strut_arena_free(&table.arena);
   return status;
 }
@@ -138,7 +203,7 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_plot = {
     .name = "plot",
     .model = "TABLE",
-    .summary = "draws curves of a table",
+    .summary = "draws curves, a map or a work-precision diagram of a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
         "strut writes it, or - for the standard input. Units get prefixes, curves are told\n"

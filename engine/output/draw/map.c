@@ -42,6 +42,11 @@ typedef struct mapper {
 
 static void find_range(mapper *m) {
   const strut_map *map = m->map;
+  if (map->value_high > map->value_low) {
+    m->low = map->value_low;
+    m->high = map->value_high;
+    return;
+  }
   m->low = HUGE_VAL;
   m->high = -HUGE_VAL;
   for (size_t k = 0; map->value && k < map->columns * map->rows; k++) {

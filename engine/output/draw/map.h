@@ -16,6 +16,7 @@ typedef struct strut_map {
   size_t category_count;
   const char *const *names;  /* (category_count) */
   const double *value;       /* (rows, columns) where category is NULL; NAN: no answer */
+  double value_low, value_high; /* of the scale of colours; equal: from the values */
   const char *value_name, *value_unit;
   const bool *doubtful;      /* (rows, columns) drawn hatched; or NULL */
   const char *doubt;         /* what the hatching means, for the legend */

@@ -66,6 +66,9 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
       strut_draw_text(canvas, x, y + TICK + 1, set.text[i], own);
     }
   }
-  strut_draw_text(canvas, upright ? box.x : box.x + 0.5 * box.width, box.y, set.label,
-                  (strut_font){.size = TEXT, .across = upright ? 0 : 0.5});
+  /* A long name ends where the box does, rather than beyond the page. */
+  strut_text_size(canvas, set.label, font, &width, &line);
+  double across = !upright ? 0.5 : width > box.width ? 1 : 0;
+  strut_draw_text(canvas, box.x + across * box.width, box.y, set.label,
+                  (strut_font){.size = TEXT, .across = across, .halo = strut_grey(1)});
 }

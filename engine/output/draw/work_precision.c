@@ -92,9 +92,18 @@ static void draw_front(const diagram *d) {
   }
 }
 
+/* Above the point on its right or, at the frame's end, on its left. */
+static void draw_label(const diagram *d, const double at[2], const char *label) {
+  strut_font font = {.size = 7, .halo = strut_grey(1), .down = 1};
+  double width, height, end = d->axes.frame.x + d->axes.frame.width;
+  strut_text_size(d->canvas, label, font, &width, &height);
+  bool right = at[0] + 3 + width < end;
+  font.across = right ? 0 : 1;
+  strut_draw_text(d->canvas, at[0] + (right ? 3 : -3), at[1] - 2, label, font);
+}
+
 static void draw_points(const diagram *d) {
   const strut_work_precision *w = d->wanted;
-  const strut_font font = {.size = 7, .halo = strut_grey(1), .down = 1};
   for (size_t i = 0; i < w->count; i++) {
     const strut_bargain *b = &w->bargains[i];
     double at[2], low[2], high[2];
@@ -109,8 +118,7 @@ static void draw_points(const diagram *d) {
       strut_draw_segment(d->canvas, high[0] - 2, high[1], high[0] + 2, high[1], bar);
     }
     strut_draw_marker(d->canvas, (size_t)b->group, at[0], at[1], MARKER);
-    if (d->front[i] && b->label)
-      strut_draw_text(d->canvas, at[0] + 3, at[1] - 2, b->label, font);
+    if (d->front[i] && b->label) draw_label(d, at, b->label);
   }
 }
 

@@ -7,54 +7,28 @@
 
 #include "engine/output/draw/curves.h"
 #include "engine/output/draw/curves_parts.h"
-#include "engine/output/draw/key.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/figures/table_parts.h"
 
-static const double EDGE = 5, PANEL_WIDTH = 165, PANEL_HEIGHT = 165, TITLE = 15;
-enum { MOST_GROUPS = 40 };
-
-/* The different texts of a column, in their order. */
-typedef struct groups {
-  size_t count;
-  const char *name[MOST_GROUPS];
-} groups;
+static const double PANEL_WIDTH = 165, ASPECT = 0.62, INDENT = 30;
+enum { MOST_ENTRIES = STRUT_MOST_GROUPS * STRUT_MOST_Y + 1 };
 
 typedef struct maker {
   const strut_table_figure *figure;
   const strut_table *table;
-  groups panels, curves;
+  strut_table_groups panels, curves;
   strut_axis x, y;
-  size_t columns;
+  strut_legend_entry *entries;
+  size_t entry_count;
   strut_arena arena;
 } maker;
-
-static bool find_groups(const strut_table *table, int column, size_t most, groups *g) {
-  g->count = 1;
-  g->name[0] = NULL;
-  if (column == STRUT_NO_COLUMN) return true;
-  g->count = 0;
-  for (size_t i = 0; i < table->row_count; i++) {
-    const char *text = table->columns[column].text[i];
-    size_t k = 0;
-    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
-    if (k < g->count) continue;
-    if (g->count == most) return false;
-    g->name[g->count++] = text;
-  }
-  return true;
-}
-
-static bool belongs(const strut_table *table, int column, const char *name, size_t row) {
-  return column == STRUT_NO_COLUMN || strcmp(table->columns[column].text[row], name) == 0;
-}
 
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) {
   const strut_table_figure *f = m->figure;
   size_t count = 0;
   for (size_t i = 0; i < m->table->row_count; i++)
-    if (belongs(m->table, f->panels, m->panels.name[panel], i) &&
-        belongs(m->table, f->by, m->curves.name[curve], i))
+    if (strut_table_belongs(m->table, f->panels, m->panels.name[panel], i) &&
+        strut_table_belongs(m->table, f->by, m->curves.name[curve], i))
       rows[count++] = i;
   return count;
 }
@@ -94,7 +68,9 @@ static const char *axis_name(const strut_table *table, int column) {
   return column == STRUT_NO_COLUMN ? "" : table->columns[column].name;
 }
 
-static strut_status draw_panel(maker *m, strut_canvas *canvas, strut_box box, size_t panel) {
+static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box box,
+                               size_t panel) {
+  maker *m = context;
   const strut_table_figure *f = m->figure;
   size_t most = m->curves.count * (size_t)f->y_count, used = 0, bands = 0;
   size_t *rows = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *rows);
@@ -109,11 +85,7 @@ static strut_status draw_panel(maker *m, strut_canvas *canvas, strut_box box, si
     for (int k = 0; k < f->y_count; k++, used++)
       if (!make_series(m, rows, count, f->y[k], used, &series[used])) return STRUT_NO_MEMORY;
   }
-  title[0] = '\0';
-  if (f->panels != STRUT_NO_COLUMN)
-    snprintf(title, sizeof title, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)),
-             m->table->columns[f->panels].name, m->panels.name[panel],
-             *m->table->columns[f->panels].unit ? " " : "", m->table->columns[f->panels].unit);
+  strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
   const strut_curves curves = {.title = title[0] ? title : NULL,
                                .x = m->x,
                                .y = m->y,
@@ -143,7 +115,8 @@ static void settle_axes(maker *m) {
 }
 
 /* The legend of all panels. Returns how many rows it has. */
-static size_t name_entries(maker *m, strut_legend_entry *entries, char (*text)[200]) {
+static size_t name_entries(maker *m, char (*text)[200]) {
+  strut_legend_entry *entries = m->entries;
   const strut_table_figure *f = m->figure;
   size_t used = 0;
   for (size_t c = 0; c < m->curves.count; c++)
@@ -170,64 +143,50 @@ static size_t name_entries(maker *m, strut_legend_entry *entries, char (*text)[2
   return used;
 }
 
-static strut_status draw(maker *m, const char *path, strut_error *error) {
-  const strut_table_figure *f = m->figure;
-  enum { MOST_ENTRIES = MOST_GROUPS * STRUT_MOST_Y + 1 };
-  strut_legend_entry *entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *entries);
-  char(*text)[200] = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *text);
-  double inner = f->width - 2 * EDGE, legend[2] = {0, 0};
-  strut_canvas *canvas = NULL, *ruler = NULL;
-  if (!entries || !text) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
-  size_t count = name_entries(m, entries, text);
-  strut_status status = strut_canvas_open_pixels(1, 1, 1, &ruler, error);
-  if (status != STRUT_OK) return status;
-  if (count) strut_legend_size(ruler, entries, count, inner, legend);
-  strut_canvas_free(ruler);
-  m->columns = (size_t)fmax(1, fmin(3, floor(inner / PANEL_WIDTH)));
-  if (m->columns > m->panels.count) m->columns = m->panels.count;
-  size_t rows = (m->panels.count + m->columns - 1) / m->columns;
-  double wide = inner / (double)m->columns, high = fmax(PANEL_HEIGHT, fmin(0.62 * wide, 260));
-  double top = EDGE + (f->title ? TITLE : 0);
-  status = strut_canvas_open(path, f->width, top + legend[1] + (double)rows * high + EDGE,
-                             f->title ? f->title : "", &canvas, error);
-  if (status != STRUT_OK) return status;
-  strut_font font = {.size = 9, .bold = true};
-  char fitted[STRUT_FITTED_TEXT];
-  if (f->title)
-    strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, f->title, font, inner, 0, fitted), font);
-  if (count) strut_draw_legend(canvas, entries, count, inner, EDGE + 30, top, false);
-  for (size_t k = 0; k < m->panels.count && status == STRUT_OK; k++)
-    status = draw_panel(m, canvas,
-                        (strut_box){EDGE + (double)(k % m->columns) * wide,
-                                    top + legend[1] + (double)(k / m->columns) * high, wide, high},
-                        k);
-  if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
-  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
-  strut_canvas_free(canvas);
-  return status;
+static void draw_legend(void *context, strut_canvas *canvas, strut_box box) {
+  maker *m = context;
+  strut_draw_legend(canvas, m->entries, m->entry_count, box.width - INDENT, box.x + INDENT, box.y,
+                    false);
 }
 
-static strut_status check_numbers(const strut_table *table, int column, strut_error *error) {
-  if (table->columns[column].value) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE, "column '%s' does not hold numbers",
-                    table->columns[column].name);
+static strut_status draw(maker *m, const char *path, strut_error *error) {
+  strut_canvas *ruler = NULL;
+  double size[2] = {0, 0};
+  m->entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *m->entries);
+  char(*text)[200] = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *text);
+  if (!m->entries || !text)
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  m->entry_count = name_entries(m, text);
+  strut_status status = strut_canvas_open_pixels(1, 1, 1, &ruler, error);
+  if (status != STRUT_OK) return status;
+  if (m->entry_count)
+    strut_legend_size(ruler, m->entries, m->entry_count, m->figure->width - 10 - INDENT, size);
+  strut_canvas_free(ruler);
+  const strut_panel_page page = {.width = m->figure->width,
+                                 .head = size[1],
+                                 .least_width = PANEL_WIDTH,
+                                 .aspect = ASPECT,
+                                 .panels = m->panels.count};
+  return strut_panel_page_draw(path, m->figure->title, &page, m->entry_count ? draw_legend : NULL,
+                               draw_panel, m, error);
 }
 
 strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
                                 const strut_table *table, strut_error *error) {
   maker m = {.figure = figure, .table = table};
-  strut_status status = check_numbers(table, figure->x, error);
+  strut_status status = strut_table_numbers(table, figure->x, error);
   for (int k = 0; k < figure->y_count && status == STRUT_OK; k++)
-    status = check_numbers(table, figure->y[k], error);
-  if (status != STRUT_OK) return status;
-  if (!find_groups(table, figure->panels, STRUT_MOST_PANELS, &m.panels))
-    return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %d panels",
-                      table->columns[figure->panels].name, STRUT_MOST_PANELS);
-  if (!find_groups(table, figure->by, MOST_GROUPS, &m.curves))
-    return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %d curves",
-                      table->columns[figure->by].name, MOST_GROUPS);
-  settle_axes(&m);
-  status = draw(&m, path, error);
+    status = strut_table_numbers(table, figure->y[k], error);
+  if (status == STRUT_OK)
+    status = strut_table_groups_find(table, figure->panels, STRUT_MOST_PANELS, "panels", &m.panels,
+                                     error);
+  if (status == STRUT_OK)
+    status = strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "curves", &m.curves,
+                                     error);
+  if (status == STRUT_OK) {
+    settle_axes(&m);
+    status = draw(&m, path, error);
+  }
   strut_arena_free(&m.arena);
   return status;
 }

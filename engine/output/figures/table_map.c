@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/figures/table_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/output/draw/map.h"
+#include "engine/output/draw/work_precision.h"
+#include "engine/output/figures/table_parts.h"
+
+static const double PANEL_WIDTH = 200, ASPECT = 0.8;
+enum { MOST_CELLS = 4000000 };
+
+typedef struct mapper {
+  const strut_table_map_figure *figure;
+  const strut_table *table;
+  strut_table_groups panels, names;
+  double *xs, *ys;
+  size_t columns, rows;
+  double low, high; /* of the values; equal where there are none or they are all alike */
+  bool some;
+  strut_arena arena;
+} mapper;
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* The different finite values of a column, ascending; NULL: no memory. */
+static double *different(mapper *m, int column, size_t *count) {
+  const double *value = m->table->columns[column].value;
+  double *all = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *all);
+  size_t used = 0, kept = 0;
+  for (size_t i = 0; all && i < m->table->row_count; i++)
+    if (isfinite(value[i])) all[used++] = value[i];
+  if (all && used) qsort(all, used, sizeof *all, ascending);
+  double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 and 0.3 are one place */
+  for (size_t i = 0; i < used; i++)
+    if (!kept || all[i] - all[kept - 1] > grain) all[kept++] = all[i];
+  *count = kept;
+  return all;
+}
+
+/* The place of a value among them: the nearest. */
+static size_t place_of(const double *at, size_t count, double value) {
+  size_t low = 0, high = count - 1;
+  while (low < high) {
+    size_t middle = (low + high) / 2;
+    if (0.5 * (at[middle] + at[middle + 1]) < value) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+static bool is_doubt(const char *text) {
+  static const char *const none[] = {"", "0", "false", "no", "nan", "null"};
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+    if (strcmp(text, none[i]) == 0) return false;
+  return true;
+}
+
+/* What the table says of each cell; arrays of (rows, columns). */
+typedef struct cells {
+  int *category;
+  double *value;
+  bool *doubtful;
+} cells;
+
+static void fill(const mapper *m, size_t panel, cells *c) {
+  const strut_table_map_figure *f = m->figure;
+  const strut_table_column *columns = m->table->columns;
+  for (size_t k = 0; k < m->rows * m->columns; k++) {
+    c->value[k] = NAN;
+    c->category[k] = -1;
+  }
+  for (size_t i = 0; i < m->table->row_count; i++) {
+    double x = columns[f->x].value[i], y = columns[f->y].value[i];
+    if (!isfinite(x) || !isfinite(y)) continue;
+    if (!strut_table_belongs(m->table, f->panels, m->panels.name[panel], i)) continue;
+    size_t k = place_of(m->ys, m->rows, y) * m->columns + place_of(m->xs, m->columns, x);
+    if (columns[f->value].value) c->value[k] = columns[f->value].value[i];
+    for (size_t g = 0; !columns[f->value].value && g < m->names.count; g++)
+      if (strcmp(m->names.name[g], columns[f->value].text[i]) == 0) c->category[k] = (int)g;
+    if (f->doubt != STRUT_NO_COLUMN) c->doubtful[k] = is_doubt(columns[f->doubt].text[i]);
+  }
+}
+
+static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box box, size_t panel) {
+  mapper *m = context;
+  const strut_table_map_figure *f = m->figure;
+  const strut_table_column *x = &m->table->columns[f->x], *y = &m->table->columns[f->y];
+  const strut_table_column *value = &m->table->columns[f->value];
+  size_t count = m->rows * m->columns;
+  cells c = {.category = strut_arena_allocate(&m->arena, count, sizeof(int)),
+             .value = strut_arena_allocate(&m->arena, count, sizeof(double)),
+             .doubtful = strut_arena_allocate(&m->arena, count, sizeof(bool))};
+  char title[300];
+  if (!c.category || !c.value || !c.doubtful) return STRUT_NO_MEMORY;
+  fill(m, panel, &c);
+  strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
+  const strut_map map = {
+      .title = title[0] ? title : NULL,
+      .x = {x->name, x->unit, false, NAN, NAN},
+      .y = {y->name, y->unit, false, NAN, NAN},
+      .columns = m->columns,
+      .rows = m->rows,
+      .xs = m->xs,
+      .ys = m->ys,
+      .category = value->value ? NULL : c.category,
+      .category_count = value->value ? 0 : m->names.count,
+      .names = m->names.name,
+      .value = value->value ? c.value : NULL,
+      .value_low = m->low,
+      .value_high = m->high,
+      .value_name = value->name,
+      .value_unit = value->unit,
+      .doubtful = f->doubt == STRUT_NO_COLUMN ? NULL : c.doubtful,
+      .doubt = f->doubt == STRUT_NO_COLUMN ? NULL : m->table->columns[f->doubt].name};
+  return strut_draw_map(canvas, box, &map);
+}
+
+/* One scale of colours for all panels. */
+static void find_range(mapper *m) {
+  const double *value = m->table->columns[m->figure->value].value;
+  for (size_t i = 0; value && i < m->table->row_count; i++) {
+    if (!isfinite(value[i])) continue;
+    m->low = m->some ? fmin(m->low, value[i]) : value[i];
+    m->high = m->some ? fmax(m->high, value[i]) : value[i];
+    m->some = true;
+  }
+}
+
+static int by_text(const void *a, const void *b) {
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The grid's lines and the categories. */
+static strut_status prepare(mapper *m, strut_error *error) {
+  const strut_table_map_figure *f = m->figure;
+  strut_status status = strut_table_numbers(m->table, f->x, error);
+  if (status == STRUT_OK) status = strut_table_numbers(m->table, f->y, error);
+  if (status == STRUT_OK)
+    status = strut_table_groups_find(m->table, f->panels, STRUT_MOST_PANELS, "panels", &m->panels,
+                                     error);
+  if (status == STRUT_OK && !m->table->columns[f->value].value)
+    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_GROUPS, "categories",
+                                     &m->names, error);
+  if (status != STRUT_OK) return status;
+  qsort(m->names.name, m->names.count, sizeof *m->names.name, by_text);
+  find_range(m);
+  m->xs = different(m, f->x, &m->columns);
+  m->ys = different(m, f->y, &m->rows);
+  if (!m->xs || !m->ys) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (!m->columns || !m->rows || m->rows > MOST_CELLS / m->columns)
+    return strut_fail(error, STRUT_USAGE,
+                      "the map would have %zu by %zu cells: its x and y have to form a grid",
+                      m->columns, m->rows);
+  return STRUT_OK;
+}
+
+strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
+                             const strut_table *table, strut_error *error) {
+  mapper m = {.figure = figure, .table = table};
+  strut_status status = prepare(&m, error);
+  const strut_panel_page page = {.width = figure->width,
+                                 .least_width = PANEL_WIDTH,
+                                 .aspect = ASPECT,
+                                 .panels = m.panels.count};
+  if (status == STRUT_OK)
+    status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_panel, &m, error);
+  strut_arena_free(&m.arena);
+  return status;
+}
+
+typedef struct trader {
+  const strut_table_bargains_figure *figure;
+  const strut_table *table;
+  strut_table_groups methods;
+  strut_bargain *bargains;
+  size_t count;
+} trader;
+
+static strut_status draw_bargains(void *context, strut_canvas *canvas, strut_box box,
+                                  size_t panel) {
+  const trader *t = context;
+  const strut_table_column *x = &t->table->columns[t->figure->x];
+  const strut_table_column *y = &t->table->columns[t->figure->y];
+  (void)panel; /* there is one */
+  const strut_work_precision diagram = {.cost = {x->name, x->unit, true, NAN, NAN},
+                                        .error = {y->name, y->unit, true, NAN, NAN},
+                                        .group_count = t->methods.count,
+                                        .groups = t->methods.name,
+                                        .count = t->count,
+                                        .bargains = t->bargains};
+  return strut_draw_work_precision(canvas, box, &diagram);
+}
+
+static void find_bargains(trader *t) {
+  const strut_table_bargains_figure *f = t->figure;
+  const strut_table_column *columns = t->table->columns;
+  for (size_t i = 0; i < t->table->row_count; i++) {
+    int group = 0;
+    if (!(columns[f->x].value[i] > 0)) continue;
+    for (size_t g = 0; g < t->methods.count; g++)
+      if (strut_table_belongs(t->table, f->by, t->methods.name[g], i)) group = (int)g;
+    t->bargains[t->count++] = (strut_bargain){
+        .group = group,
+        .label = f->label == STRUT_NO_COLUMN ? NULL : columns[f->label].text[i],
+        .cost = columns[f->x].value[i],
+        .error = columns[f->y].value[i],
+        .low = NAN,
+        .high = NAN};
+  }
+}
+
+strut_status strut_table_bargains(const char *path, const strut_table_bargains_figure *figure,
+                                  const strut_table *table, strut_error *error) {
+  trader t = {.figure = figure, .table = table};
+  strut_arena arena = {0};
+  strut_status status = strut_table_numbers(table, figure->x, error);
+  if (status == STRUT_OK) status = strut_table_numbers(table, figure->y, error);
+  if (status == STRUT_OK)
+    status = strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "methods", &t.methods,
+                                     error);
+  if (status == STRUT_OK) {
+    t.bargains = strut_arena_allocate(&arena, table->row_count, sizeof *t.bargains);
+    if (!t.bargains) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  }
+  if (status == STRUT_OK) {
+    if (figure->by == STRUT_NO_COLUMN) t.methods.name[0] = table->columns[figure->y].name;
+    find_bargains(&t);
+    const strut_panel_page page = {
+        .width = figure->width, .least_width = PANEL_WIDTH, .aspect = ASPECT, .panels = 1};
+    status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_bargains, &t, error);
+  }
+  strut_arena_free(&arena);
+  return status;
+}
