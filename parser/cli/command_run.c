@@ -153,6 +153,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = strut_run_pictures_check(&pictures, model, &error);
   if (status == STRUT_OK) {
     status = run_model(arguments, model, &pictures);
   } else {

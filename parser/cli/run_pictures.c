@@ -68,6 +68,11 @@ strut_status strut_run_pictures_read(const strut_command *command,
   return status == STRUT_OK ? strut_run_film_read(command, arguments, &p->film) : status;
 }
 
+strut_status strut_run_pictures_check(const strut_run_pictures *p, const strut_model *model,
+                                      strut_error *error) {
+  return p->plot.path ? strut_run_figure_check(&p->figure, model, error) : STRUT_OK;
+}
+
 strut_sink *strut_run_pictures_sink(strut_run_pictures *p, const strut_scene *scene,
                                     strut_status *status) {
   *status = STRUT_OK;

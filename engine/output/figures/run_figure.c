@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which frames there are to draw, and what they hold. */
 #include "engine/output/figures/run_figure.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
+
+enum { LEAST_SAMPLES = 8 };         /* of a period, or it is not seen */
+static const double BURST = 10.0;   /* a diverging structure so many times its size is none */
+static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
 static const struct {
   double (*height)(strut_run_scene *run);
@@ -26,6 +29,43 @@ unsigned strut_run_figure_channels(strut_run_view view) {
   return STRUT_CHANNEL_POSITION | views[view].channels;
 }
 
+strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_model *model,
+                                    strut_error *error) {
+  strut_span span = strut_scene_span(model->scene);
+  double every = fmax(span.record_every, model->scene->experiment.step), slack = 0.5 * every;
+  for (size_t i = 0; i < figure->time_count; i++)
+    if (!(figure->times[i] >= span.record_start - slack && figure->times[i] <= span.duration + slack))
+      return strut_fail(error, STRUT_USAGE,
+                        "nothing is recorded at %s: the record goes from %s to %s ('output: {last: "
+                        "...}' says what is recorded)",
+                        strut_quantity_of(figure->times[i], 6, "s").text,
+                        strut_quantity_of(span.record_start, 6, "s").text,
+                        strut_quantity_of(span.duration, 6, "s").text);
+  if (figure->view == STRUT_RUN_PERIOD && span.period > 0 &&
+      span.period < LEAST_SAMPLES * every * (1 - 1e-9))
+    return strut_fail(error, STRUT_USAGE,
+                      "a period of %s cannot be drawn from a sample each %s: add 'output: {every: %s, "
+                      "last: 10}' to the model",
+                      strut_quantity_of(span.period, 4, "s").text,
+                      strut_quantity_of(every, 4, "s").text,
+                      strut_quantity_of(span.period / 100, 4, "s").text);
+  return STRUT_OK;
+}
+
+const double *strut_run_positions(const strut_run_scene *run, size_t frame) {
+  return run->motion->position + 2 * frame * run->motion->node_count;
+}
+
+static bool is_shape(const strut_run_scene *run, size_t frame) {
+  const double *q = strut_run_positions(run, frame);
+  for (size_t i = 0; i < 2 * run->motion->node_count; i++)
+    if (!isfinite(q[i])) return false;
+  if (!run->summary || run->summary->status != STRUT_DIVERGED) return true;
+  strut_bounds b = strut_bounds_none();
+  strut_bounds_add(&b, run->model, q);
+  return strut_run_extent(&b) <= BURST * run->model->size;
+}
+
 static double largest(const double *values, size_t count) {
   double most = 0;
   for (size_t i = 0; values && i < count; i++)
@@ -33,70 +73,68 @@ static double largest(const double *values, size_t count) {
   return most;
 }
 
-static strut_status check_times(const strut_run_figure *figure, const strut_trajectory *motion,
-                                strut_error *error) {
-  double first = motion->time[0], last = motion->time[motion->frames - 1];
-  for (size_t i = 0; i < figure->time_count; i++)
-    if (!(figure->times[i] >= first - 1e-9 && figure->times[i] <= last + 1e-9))
-      return strut_fail(error, STRUT_USAGE,
-                        "nothing was recorded at %s: the record goes from %s to %s (output.last and "
-                        "output.every say what is recorded)",
-                        strut_drawn_quantity(figure->times[i], 6, "s").text,
-                        strut_drawn_quantity(first, 6, "s").text, strut_drawn_quantity(last, 6, "s").text);
-  return STRUT_OK;
+/* What is known before anything is drawn. */
+static void prepare(strut_run_scene *run) {
+  const strut_trajectory *m = run->motion;
+  while (run->frames < m->frames && is_shape(run, run->frames)) run->frames++;
+  run->force_limit = largest(m->force, run->frames * m->member_count);
+  double period = strut_scene_span(run->model->scene).period;
+  double all = run->frames ? strut_run_time_from(run, 0) : 0;
+  bool fine = (double)(run->frames - 1) * period >= LEAST_SAMPLES * all * (1 - 1e-9);
+  if (run->frames > 1 && fine && period > 0) run->period = period;
 }
 
 strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
                                    const strut_model *model, const strut_trajectory *motion,
                                    const strut_summary *summary, strut_error *error) {
-  if (!motion->frames || !motion->position)
+  strut_run_scene run = {
+      .figure = figure, .model = model, .motion = motion, .summary = summary, .arrow = 24};
+  if (motion->position) prepare(&run);
+  if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
-  strut_status status = check_times(figure, motion, error);
-  if (status != STRUT_OK) return status;
-  strut_run_scene run = {.figure = figure,
-                         .model = model,
-                         .motion = motion,
-                         .summary = summary,
-                         .period = strut_scene_span(model->scene).period};
-  run.force_limit = largest(motion->force, motion->frames * motion->member_count);
   strut_canvas *canvas = NULL;
-  status = strut_canvas_open(path, figure->width, views[figure->view].height(&run),
-                             model->scene->name, &canvas, error);
+  strut_status status = strut_canvas_open_pixels(1, 1, 1, &run.ruler, error);
+  if (status == STRUT_OK)
+    status = strut_canvas_open(path, figure->width, views[figure->view].height(&run),
+                               model->scene->name, &canvas, error);
   if (status == STRUT_OK) {
     status = views[figure->view].draw(&run, canvas);
     if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
   }
   if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
   strut_canvas_free(canvas);
+  strut_canvas_free(run.ruler);
   strut_arena_free(&run.arena);
   return status;
 }
 
 double *strut_run_shape(strut_run_scene *run, size_t frame) {
-  size_t used = 2 * run->motion->node_count;
   double *q = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *q);
-  if (q) memcpy(q, run->motion->position + frame * used, used * sizeof *q);
+  if (q)
+    memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
   return q;
 }
 
-size_t strut_run_since(const strut_run_scene *run, double duration) {
-  const strut_trajectory *m = run->motion;
-  double from = m->time[m->frames - 1] - duration * (1 + 1e-9);
-  size_t first = m->frames - 1;
-  while (first > 0 && m->time[first - 1] >= from) first--;
-  return m->frames > 1 && first == m->frames - 1 ? m->frames - 2 : first;
+double strut_run_time_from(const strut_run_scene *run, size_t frame) {
+  return run->motion->time[run->frames - 1] - run->motion->time[frame];
 }
 
-double strut_run_measured(const strut_run_scene *run, size_t frame) {
-  const double *q = run->motion->position + 2 * frame * run->motion->node_count;
+size_t strut_run_since(const strut_run_scene *run, double duration) {
+  size_t first = run->frames - 1;
+  while (first > 0 && strut_run_time_from(run, first - 1) <= duration * (1 + 1e-9)) first--;
+  return run->frames > 1 && first == run->frames - 1 ? run->frames - 2 : first;
+}
+
+double strut_run_measured(const strut_run_scene *run, size_t frame, int axis) {
+  const double *q = strut_run_positions(run, frame);
   int32_t node = run->model->scene->experiment.measure_node;
-  if (node >= 0) return q[2 * node];
+  if (node >= 0) return q[2 * node + axis];
   double sum = 0, mass = 0;
-  for (size_t i = 0; i < run->motion->node_count; i++) {
-    sum += run->model->weight[i] * q[2 * i];
+  for (int32_t i = 0; i < run->model->node_count; i++) {
+    sum += run->model->weight[i] * q[2 * i + axis];
     mass += run->model->weight[i];
   }
-  return mass > 0 ? sum / mass : q[0];
+  return mass > 0 ? sum / mass : q[axis];
 }
 
 const char *strut_run_measured_name(const strut_run_scene *run) {
@@ -104,72 +142,36 @@ const char *strut_run_measured_name(const strut_run_scene *run) {
   return node >= 0 ? run->model->scene->nodes[node].name : "centre of mass";
 }
 
-bool strut_run_draw_trails(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                           size_t first, size_t last) {
-  size_t count = last - first + 1, nodes = run->motion->node_count;
-  double(*way)[2] = strut_arena_allocate(&run->arena, count, sizeof *way);
-  for (size_t i = 0; way && i < nodes; i++) {
-    for (size_t f = 0; f < count; f++)
-      memcpy(way[f], run->motion->position + 2 * ((first + f) * nodes + i), sizeof *way);
-    strut_draw_trail(canvas, window, (const double(*)[2])way, count, 0.9);
+double strut_run_ground_at(const strut_run_scene *run, double x) {
+  const strut_ground *ground = &run->model->scene->ground;
+  return ground->height + tan(ground->slope) * x;
+}
+
+double strut_run_extent(const strut_bounds *b) {
+  return fmax(b->high[0] - b->low[0], b->high[1] - b->low[1]);
+}
+
+strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
+  strut_bounds b = strut_bounds_none();
+  strut_bounds_add(&b, run->model, strut_run_positions(run, frame));
+  double missing = SMALLEST * run->model->size - strut_run_extent(&b);
+  const double share[2] = {0.5, 0.15}; /* wide rather than high */
+  for (int d = 0; d < 2 && missing > 0; d++) {
+    b.low[d] -= share[d] * missing;
+    b.high[d] += share[d] * missing;
   }
-  return way;
+  return b;
 }
 
-void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
-  size_t size = 2 * run->motion->contact_count;
-  if (!run->motion->contact) return;
-  run->contact_limit =
-      fmax(run->contact_limit, largest(run->motion->contact + frame * size, size));
+void strut_run_add_ground(const strut_run_scene *run, strut_bounds *b) {
+  if (!run->model->scene->ground.present) return;
+  double ground = strut_run_ground_at(run, 0.5 * (b->low[0] + b->high[0]));
+  if (b->low[1] > ground && b->low[1] - ground < strut_run_extent(b)) b->low[1] = ground;
 }
 
-bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                          size_t frame, bool names) {
-  const strut_trajectory *m = run->motion;
-  double *q = strut_run_shape(run, frame);
-  if (!q) return false;
-  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND, .node_names = names};
-  if (m->force) {
-    style.colouring = STRUT_COLOUR_FORCE;
-    style.values = style.slack_forces = m->force + frame * m->member_count;
-    style.limit = run->force_limit;
-  }
-  strut_draw_ground(canvas, window, run->model);
-  strut_draw_structure(canvas, window, run->model, q, &style);
-  if (m->contact)
-    strut_draw_contact_forces(
-        canvas, window, run->model, q,
-        (const double(*)[2])(m->contact + 2 * frame * m->contact_count), run->contact_limit, 26);
-  return true;
-}
-
-void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  const strut_colour_scale scale = {
-      .name = "force", .unit = "N", .low = -run->force_limit, .high = run->force_limit};
-  if (run->motion->force && run->force_limit > 0) strut_draw_colour_scale(canvas, box, &scale);
-}
-
-double strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, strut_box box,
-                            const char *what) {
-  const strut_summary *s = run->summary;
-  char line[700];
-  double width, height, used;
-  strut_font title = {.size = 9, .bold = true, .width = box.width};
-  strut_font below = {.size = 8, .width = box.width, .colour = strut_grey(0.3)};
-  if (s && s->status != STRUT_OK) below.colour = strut_palette_thing(1);
-  strut_draw_text(canvas, box.x, box.y, run->model->scene->name, title);
-  strut_text_size(canvas, run->model->scene->name, title, &width, &used);
-  used += 1;
-  if (s && s->status != STRUT_OK) {
-    snprintf(line, sizeof line, "%s at %s: %s", strut_status_text(s->status),
-             strut_drawn_quantity(s->duration, 4, "s").text, what);
-  } else if (s && isfinite(s->velocity)) {
-    snprintf(line, sizeof line, "%s; %s moves with %s", what, strut_run_measured_name(run),
-             strut_drawn_quantity(fabs(s->velocity) < 1e-12 ? 0 : s->velocity, 4, "m/s").text);
-  } else {
-    snprintf(line, sizeof line, "%s", what);
-  }
-  strut_draw_text(canvas, box.x, box.y + used, line, below);
-  strut_text_size(canvas, line, below, &width, &height);
-  return used + height + 3;
+double strut_run_drawing_height(const strut_bounds *b, double width, double margin, double least,
+                                double most) {
+  double wide = b->high[0] - b->low[0], high = b->high[1] - b->low[1];
+  double wanted = wide > 0 ? (width - 2 * margin) * high / wide + 2 * margin : most * width;
+  return fmax(fmax(least * width, 2 * margin + 8), fmin(wanted, most * width));
 }

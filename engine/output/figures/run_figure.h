@@ -21,15 +21,21 @@ typedef struct strut_run_figure {
   strut_run_view view;
   double width;        /* [pt] */
   double scale[2];     /* of PERIOD: motion along x and y is drawn so many times; 0: once */
-  size_t time_count;   /* of SNAPSHOTS; 0: six, evenly */
+  size_t time_count;   /* of SNAPSHOTS; 0: six, spread over what was recorded */
   const double *times; /* (time_count) [s]; the frame nearest to each is drawn */
 } strut_run_figure;
 
-/** Channels that a view needs besides positions, strut_channel bits. */
+/** Channels that a view needs, strut_channel bits. */
 STRUT_API unsigned strut_run_figure_channels(strut_run_view view);
 /**
- * Draws it into the file `path`. STRUT_USAGE where there is no frame to draw or a time lies outside of
- * what was recorded; else as strut_canvas_open and strut_canvas_commit.
+ * Whether a run of the model as its scene says will have what the figure draws: STRUT_USAGE with the
+ * reason where a period has too few samples to be seen, or nothing is recorded at a time.
+ */
+STRUT_API strut_status strut_run_figure_check(const strut_run_figure *figure,
+                                              const strut_model *model, strut_error *error);
+/**
+ * Draws it into the file `path`. The summary tells velocity, status and duration. STRUT_USAGE where
+ * there is no frame to draw; STRUT_NO_MEMORY; else as strut_canvas_open and strut_canvas_commit.
  */
 STRUT_API strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
                                              const strut_model *model,

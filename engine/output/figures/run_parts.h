@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_OUTPUT_FIGURES_RUN_PARTS_H
 
 #include "engine/output/draw/axes.h"
+#include "engine/output/draw/key.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/run_figure.h"
 
@@ -15,37 +16,73 @@ typedef struct strut_run_scene {
   const strut_model *model;
   const strut_trajectory *motion;
   const strut_summary *summary;
-  double period;      /* [s]; 0: there is none */
-  double force_limit; /* largest force of a member in any frame [N] */
+  strut_canvas *ruler;  /* to measure texts before there is a page */
+  size_t frames;        /* of the motion; what came after is no shape any more */
+  double period;        /* [s]; 0: there is none, or too few frames in it */
+  double force_limit;   /* largest force of a member in any frame [N] */
   double contact_limit; /* largest force of the ground in the frames drawn [N] */
+  double arrow;         /* length of the arrow for that [pt] */
+  double (*avoid)[2];   /* (2 avoid_count) lines that names keep away from [pt] */
+  size_t avoid_count;
   strut_arena arena;
 } strut_run_scene;
 
-/** Positions of a frame as the model's coordinates, padded, in the arena; NULL: no memory. */
+/** Margins around all figures, and the height of their titles [pt]. */
+#define STRUT_RUN_EDGE 5.0
+#define STRUT_RUN_TITLE 27.0
+
+/** A length of time [s] less than any between two frames. */
+#define STRUT_RUN_MOMENT 1e-9
+
+/** Positions (nodes, 2) of a frame. */
+const double *strut_run_positions(const strut_run_scene *run, size_t frame);
+/** Those as the model's coordinates, padded, in the arena; NULL: no memory. */
 double *strut_run_shape(strut_run_scene *run, size_t frame);
 /** First frame of the last `duration` seconds; there are two frames at least if there are two. */
 size_t strut_run_since(const strut_run_scene *run, double duration);
-/** Where the measured point is along x in a frame [m]. */
-double strut_run_measured(const strut_run_scene *run, size_t frame);
+/** Time from one frame to the last [s]. */
+double strut_run_time_from(const strut_run_scene *run, size_t frame);
+/** Where the measured point is along an axis, 0 or 1, in a frame [m]. */
+double strut_run_measured(const strut_run_scene *run, size_t frame, int axis);
 /** Its name: a node's, or "centre of mass". */
 const char *strut_run_measured_name(const strut_run_scene *run);
-/** The ways of all nodes from one frame to another, a trail each. False: no memory. */
-bool strut_run_draw_trails(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                           size_t first, size_t last);
-/** The frame's structure in colours of force, on the ground, with the ground's forces. */
-bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                          size_t frame, bool names);
+/** Height of the ground's line at x [m]; only where there is one. */
+double strut_run_ground_at(const strut_run_scene *run, double x);
+/** The larger extent of bounds [m]. */
+double strut_run_extent(const strut_bounds *bounds);
+/** Bounds of one frame, not smaller than what can be drawn sensibly. */
+strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame);
+/** Takes the ground into the bounds where it is near them. */
+void strut_run_add_ground(const strut_run_scene *run, strut_bounds *bounds);
+/** Height [pt] of a drawing of these bounds in `width`, between `least` and `most` of the width. */
+double strut_run_drawing_height(const strut_bounds *bounds, double width, double margin,
+                                double least, double most);
+
 /** Takes a frame into account for the length of the ground's arrows, before any is drawn. */
 void strut_run_expect_frame(strut_run_scene *run, size_t frame);
-/** The scale of colours for that. */
+/** The frame's structure in colours of force, on the ground. */
+bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+                          size_t frame);
+/** The forces of the ground on it. */
+void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
+                              const strut_window *window, size_t frame);
+/** A way through (count) positions [m] inside the window's box. */
+void strut_run_draw_way(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+                        const double (*way)[2], size_t count, double width);
+/** Names of the nodes of a shape, off all that was drawn since the last names. */
+void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+                          const double *q);
+/** The scale of the colours of force. */
 void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box);
-/** Title, and below it a line of what came out; returns the height taken [pt]. */
-double strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, strut_box box,
-                            const char *what);
+/** The model's name and a line below it: `what`, and the velocity where wanted, or what failed. */
+void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, const char *what,
+                          bool velocity);
+/** What the arrows mean, for a key; false where there are none. `text` has room for 120 bytes. */
+bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_item *item);
 
-/** Curves for a figure: each a row of panels; used by the overview and by the curves. */
-enum { STRUT_RUN_WAY, STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES, STRUT_RUN_NORMALS, STRUT_RUN_ENERGIES,
-       STRUT_RUN_PANELS };
+/** Curves over time, a kind of quantity in each panel. */
+enum { STRUT_RUN_WAY, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE, STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES,
+       STRUT_RUN_ENERGIES, STRUT_RUN_PANELS };
 /** Whether there is anything to draw in a panel. */
 bool strut_run_panel_wanted(const strut_run_scene *run, int panel);
 /** Draws one from frame `first` on. */

@@ -3,15 +3,23 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-static const double EDGE = 5, TITLE = 38, KEY = 34, MARGIN = 26;
+static const double KEY = 30, MARGIN = 20, CLOSED = 1e-3; /* of the model's size, above the ground */
+
+typedef struct ways {
+  size_t first, count;
+  double *rest;      /* (length) where the ways are exaggerated from */
+  double (*way)[2];  /* (nodes, count) as drawn */
+  bool grounded;     /* some are exaggerated from the ground */
+  strut_bounds bounds;
+} ways;
 
 /* The last period, or all there is where nothing is periodic. */
 static size_t first_frame(const strut_run_scene *run) {
-  const strut_trajectory *m = run->motion;
-  double all = m->time[m->frames - 1] - m->time[0];
+  double all = strut_run_time_from(run, 0);
   return strut_run_since(run, run->period > 0 ? fmin(run->period, all) : all);
 }
 
@@ -19,102 +27,114 @@ static double factor(const strut_run_scene *run, int axis) {
   return run->figure->scale[axis] > 0 ? run->figure->scale[axis] : 1;
 }
 
-/* Where a node's motion is drawn from: its mean place along x and, where there is a ground, the
-   lowest along y, so that what touches the ground is drawn touching it. */
-static void anchor(const strut_run_scene *run, size_t node, size_t first, double at[2]) {
-  const strut_trajectory *m = run->motion;
-  double count = (double)(m->frames - first), lowest = HUGE_VAL;
-  at[0] = at[1] = 0;
-  for (size_t f = first; f < m->frames; f++) {
-    const double *p = m->position + 2 * (f * m->node_count + node);
-    at[0] += p[0] / count;
-    at[1] += p[1] / count;
-    lowest = fmin(lowest, p[1]);
-  }
-  if (run->model->scene->ground.present) at[1] = lowest;
+static bool can_touch(const strut_run_scene *run, size_t node) {
+  for (int32_t i = 0; i < run->model->contacts.count; i++)
+    if ((size_t)run->model->contacts.entry[i].node == node) return true;
+  return false;
 }
 
-typedef struct ways {
-  size_t first, count;
-  double *rest;      /* (length) the shape that motions start from */
-  double (*way)[2];  /* (nodes, count) as drawn */
-  strut_bounds bounds;
-} ways;
+/* Where a node's motion is drawn from: its mean place, of a node that touches the ground the place
+   below that on the ground, so that it is drawn touching it when it does. */
+static void anchor(const strut_run_scene *run, size_t node, ways *w) {
+  double *at = w->rest + 2 * node, lowest = HUGE_VAL;
+  at[0] = at[1] = 0;
+  for (size_t f = w->first; f < run->frames; f++) {
+    const double *p = strut_run_positions(run, f) + 2 * node;
+    for (int d = 0; d < 2; d++) at[d] += p[d] / (double)w->count;
+    if (run->model->scene->ground.present)
+      lowest = fmin(lowest, p[1] - strut_run_ground_at(run, p[0]));
+  }
+  if (!(lowest < CLOSED * run->model->size) || !can_touch(run, node)) return;
+  at[1] = strut_run_ground_at(run, at[0]);
+  w->grounded = true;
+}
 
 static bool find_ways(strut_run_scene *run, ways *w) {
-  const strut_trajectory *m = run->motion;
-  w->first = first_frame(run);
-  w->count = m->frames - w->first;
+  size_t nodes = run->motion->node_count;
+  *w = (ways){.first = first_frame(run)};
+  w->count = run->frames - w->first;
   w->rest = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *w->rest);
-  w->way = strut_arena_allocate(&run->arena, m->node_count * w->count, sizeof *w->way);
-  w->bounds = strut_bounds_none();
+  w->way = strut_arena_allocate(&run->arena, nodes * w->count, sizeof *w->way);
   if (!w->rest || !w->way) return false;
-  for (size_t i = 0; i < m->node_count; i++) {
-    anchor(run, i, w->first, w->rest + 2 * i);
+  w->bounds = strut_run_frame_bounds(run, run->frames - 1);
+  for (size_t i = 0; i < nodes; i++) {
+    anchor(run, i, w);
     for (size_t f = 0; f < w->count; f++)
       for (int d = 0; d < 2; d++) {
-        double moved = m->position[2 * ((w->first + f) * m->node_count + i) + (size_t)d] -
-                       w->rest[2 * i + (size_t)d];
-        double drawn = w->rest[2 * i + (size_t)d] + factor(run, d) * moved;
+        double rest = w->rest[2 * i + (size_t)d];
+        double moved = strut_run_positions(run, w->first + f)[2 * i + (size_t)d] - rest;
+        double drawn = rest + factor(run, d) * moved;
         w->way[i * w->count + f][d] = drawn;
-        if (!isfinite(drawn)) continue;
         w->bounds.low[d] = fmin(w->bounds.low[d], drawn);
         w->bounds.high[d] = fmax(w->bounds.high[d], drawn);
       }
   }
-  strut_bounds_add(&w->bounds, run->model, w->rest);
+  strut_run_add_ground(run, &w->bounds);
   return true;
 }
 
 double strut_run_period_height(strut_run_scene *run) {
   ways w;
-  double width = run->figure->width - 2 * EDGE;
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE;
   if (!find_ways(run, &w)) return width;
-  double aspect = (w.bounds.high[1] - w.bounds.low[1]) / (w.bounds.high[0] - w.bounds.low[0]);
-  double wanted = (width - 2 * MARGIN) * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * MARGIN;
-  return 2 * EDGE + TITLE + KEY + fmax(0.2 * width, fmin(wanted, 0.75 * width));
+  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + KEY +
+         strut_run_drawing_height(&w.bounds, width, MARGIN, 0.16, 0.75);
 }
 
 static void describe(const strut_run_scene *run, const ways *w, char *text, size_t size) {
-  const double *time = run->motion->time;
-  double span = time[run->motion->frames - 1] - time[w->first];
-  int used = snprintf(text, size, "ways of the nodes over %s%s, dark to bright",
-                      run->period > 0 ? "one period, " : "",
-                      strut_drawn_quantity(span, 4, "s").text);
-  if (factor(run, 0) == 1 && factor(run, 1) == 1) return;
-  snprintf(text + used, size - (size_t)used, "; motion %g times along x, %g times along y",
-           factor(run, 0), factor(run, 1));
+  strut_c_locale locale = strut_c_locale_enter();
+  double span = strut_run_time_from(run, w->first);
+  snprintf(text, size, "ways of the nodes over %s%s%s, dark to bright",
+           run->period > 0 ? "one period (" : "", strut_drawn_quantity(span, 4, "s").text,
+           run->period > 0 ? ")" : "");
+  strut_c_locale_leave(locale);
+}
+
+/* What is exaggerated, and from where. */
+static void explain(const strut_run_scene *run, const ways *w, char *text, size_t size) {
+  strut_c_locale locale = strut_c_locale_enter();
+  snprintf(text, size, "Motion drawn %g-fold along x, %g-fold along y, from the mean place of each node%s (grey).",
+           factor(run, 0), factor(run, 1),
+           w->grounded ? ", on the ground where it touches it" : "");
+  strut_c_locale_leave(locale);
+}
+
+static void draw_time_scale(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
+                            strut_box box) {
+  const strut_colour_scale scale = {.name = run->period > 0 ? "part of the period" : "time",
+                                    .unit = run->period > 0 ? "" : "s",
+                                    .high = run->period > 0 ? 1 : strut_run_time_from(run, w->first),
+                                    .sequence = true};
+  if (scale.high > 0) strut_draw_colour_scale(canvas, box, &scale);
 }
 
 strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   ways w;
-  char text[240];
-  double width = run->figure->width - 2 * EDGE, page = strut_canvas_box(canvas).height;
+  char text[240], fitted[STRUT_FITTED_TEXT];
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE, page = strut_canvas_box(canvas).height;
+  double foot = page - STRUT_RUN_EDGE - KEY, scale_width = fmin(150, 0.45 * width);
   if (!find_ways(run, &w)) return STRUT_NO_MEMORY;
   describe(run, &w, text, sizeof text);
-  double used = strut_run_draw_title(run, canvas, (strut_box){EDGE, EDGE, width, TITLE}, text);
-  strut_box box = {EDGE, EDGE + used, width, page - 2 * EDGE - used - KEY};
+  strut_run_draw_title(run, canvas, text, true);
+  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width,
+                   foot - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
   strut_window window = strut_window_fit(box, w.bounds, MARGIN);
-  const strut_structure_style pale = {.colouring = STRUT_COLOUR_ONE,
-                                      .colour = strut_grey(0.75),
-                                      .thinness = 0.6,
-                                      .node_names = true,
-                                      .no_nodes = true};
+  const strut_structure_style pale = {
+      .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.72), .thinness = 0.5};
   strut_draw_ground(canvas, &window, run->model);
   strut_draw_structure(canvas, &window, run->model, w.rest, &pale);
   for (size_t i = 0; i < run->motion->node_count; i++)
-    strut_draw_trail(canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count, 1.5);
+    strut_run_draw_way(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
+                       1.5);
+  strut_run_draw_names(run, canvas, &window, w.rest);
+  window.box.y = foot - box.height + KEY; /* at the foot, where no structure is */
   strut_draw_yardstick(canvas, &window);
-  const strut_colour_scale scale = {
-      .name = run->period > 0 ? "part of the period" : "time", .unit = run->period > 0 ? "" : "s",
-      .low = 0,
-      .high = run->period > 0 ? 1
-                              : run->motion->time[run->motion->frames - 1] -
-                                    run->motion->time[w.first],
-      .sequence = true};
-  double wide = fmin(170, 0.5 * width);
-  if (scale.high > 0)
-    strut_draw_colour_scale(canvas, (strut_box){EDGE + width - wide, page - EDGE - KEY, wide, KEY},
-                            &scale);
+  double left = STRUT_RUN_EDGE + 0.34 * width, right = STRUT_RUN_EDGE + width - scale_width;
+  strut_font note = {.size = 7, .colour = strut_grey(0.3), .width = right - left - 6, .down = 0.5};
+  explain(run, &w, text, sizeof text);
+  if (factor(run, 0) != 1 || factor(run, 1) != 1)
+    strut_draw_text(canvas, left, foot + 0.5 * KEY,
+                    strut_text_fit(canvas, text, note, note.width, KEY, fitted), note);
+  draw_time_scale(run, canvas, &w, (strut_box){right, foot, scale_width, KEY});
   return STRUT_OK;
 }

@@ -6,107 +6,192 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-enum { USUAL = 6 };
+enum { USUAL = 6, MOST_NAMED = 10 };
 
-static const double EDGE = 5, TITLE = 26, LINE = 12, MARGIN = 12, NARROW = 150, SCALE = 34;
+static const double LINE = 12, MARGIN = 15, ARROW = 18, GAP = 4, FOOT = 28; /* [pt] */
+static const double NARROWEST = 105, NAMED = 130;  /* cells, and those with names [pt] */
+static const double TALLEST = 0.75;  /* of the page's width */
+static const double COMMON = 1.8;    /* shapes no further apart share a window, in their sizes */
 
-/* How the panels stand. */
+/* How the cells stand, and what they show. */
 typedef struct grid {
   size_t count, columns, rows;
-  double size[2];   /* largest width and height of a shape [m] */
-  double low;       /* lowest point of all shapes [m] */
-  double cell[2];   /* [pt] */
+  bool common[2]; /* all show the same part of the plane along that axis */
+  strut_bounds all;
+  double size[2]; /* of that part, or of the largest shape [m] */
+  double cell[2]; /* [pt] */
 } grid;
+
+/* The usual instants are spread evenly over the record; where many periods lie between them, each
+   is a little further in its period than the one before, or all would look alike. */
+static double usual_time(const strut_run_scene *run, size_t i, size_t count) {
+  double all = strut_run_time_from(run, 0), between = count > 1 ? all / (double)(count - 1) : 0;
+  if (run->period > 0 && between > 1.2 * run->period) {
+    double part = 1.0 / (double)(count - 1);
+    between = (floor(between / run->period - part) + part) * run->period;
+  }
+  return run->motion->time[run->frames - 1] - between * (double)(count - 1 - i);
+}
 
 static size_t frame_of(const strut_run_scene *run, size_t i, size_t count) {
   const strut_trajectory *m = run->motion;
-  if (!run->figure->time_count) return count > 1 ? i * (m->frames - 1) / (count - 1) : 0;
-  double time = run->figure->times[i];
+  double time = run->figure->time_count ? run->figure->times[i] : usual_time(run, i, count);
   size_t best = 0;
-  for (size_t f = 1; f < m->frames; f++)
+  for (size_t f = 1; f < run->frames; f++)
     if (fabs(m->time[f] - time) < fabs(m->time[best] - time)) best = f;
   return best;
 }
 
-static void bounds_of_frame(const strut_run_scene *run, size_t frame, strut_bounds *b) {
-  *b = strut_bounds_none();
-  strut_bounds_add(b, run->model, run->motion->position + 2 * frame * run->motion->node_count);
+/* Instants to draw: those asked for that the run came to. */
+static size_t count_of(const strut_run_scene *run) {
+  const strut_run_figure *figure = run->figure;
+  if (!figure->time_count) return run->frames < USUAL ? run->frames : USUAL;
+  if (!run->summary || run->summary->status == STRUT_OK) return figure->time_count;
+  size_t last = run->frames - 1, count = 0;
+  double end = run->motion->time[last] +
+               (last > 0 ? run->motion->time[last] - run->motion->time[last - 1] : STRUT_RUN_MOMENT);
+  while (count < figure->time_count && figure->times[count] <= end) count++;
+  return count > 0 ? count : 1;
 }
 
-static grid lay_out(const strut_run_scene *run) {
-  const strut_run_figure *figure = run->figure;
-  grid g = {.count = figure->time_count, .low = HUGE_VAL};
-  if (!g.count) g.count = run->motion->frames < USUAL ? run->motion->frames : USUAL;
-  double highest = -HUGE_VAL;
-  for (size_t i = 0; i < g.count; i++) {
-    strut_bounds b;
-    bounds_of_frame(run, frame_of(run, i, g.count), &b);
-    g.size[0] = fmax(g.size[0], b.high[0] - b.low[0]);
-    g.low = fmin(g.low, b.low[1]);
-    highest = fmax(highest, b.high[1]);
+static void find_sizes(const strut_run_scene *run, grid *g) {
+  double shape[2] = {0, 0};
+  g->all = strut_bounds_none();
+  for (size_t i = 0; i < g->count; i++) {
+    strut_bounds b = strut_run_frame_bounds(run, frame_of(run, i, g->count));
+    strut_run_add_ground(run, &b);
+    for (int d = 0; d < 2; d++) {
+      shape[d] = fmax(shape[d], b.high[d] - b.low[d]);
+      g->all.low[d] = fmin(g->all.low[d], b.low[d]);
+      g->all.high[d] = fmax(g->all.high[d], b.high[d]);
+    }
   }
-  if (run->model->scene->ground.present && run->model->scene->ground.slope == 0)
-    g.low = fmin(g.low, run->model->scene->ground.height);
-  g.size[1] = highest - g.low;
-  double width = figure->width - 2 * EDGE;
-  g.columns = (size_t)fmax(1, floor(width / NARROW));
-  if (g.columns > 3) g.columns = 3;
-  if (g.columns > g.count) g.columns = g.count;
-  g.rows = (g.count + g.columns - 1) / g.columns;
-  g.cell[0] = width / (double)g.columns;
-  double aspect = g.size[0] > 0 ? g.size[1] / g.size[0] : 1;
-  double wanted = (g.cell[0] - 2 * MARGIN) * aspect + 2 * MARGIN + 8;
-  g.cell[1] = LINE + fmax(40, fmin(wanted, 1.4 * g.cell[0]));
+  double most = COMMON * fmax(shape[0], shape[1]);
+  for (int d = 0; d < 2; d++) {
+    double together = g->all.high[d] - g->all.low[d];
+    g->common[d] = together <= fmax(COMMON * shape[d], 0.5 * most);
+    g->size[d] = g->common[d] ? together : shape[d];
+  }
+}
+
+/* What is left free below the shapes, for arrows [pt]. */
+static double below(const strut_run_scene *run) {
+  return (run->model->contacts.count ? fmax(ARROW, MARGIN) + 3 : MARGIN) + GAP;
+}
+
+/* As many columns as make the shapes largest on a page that is not too tall. */
+static grid lay_out(const strut_run_scene *run) {
+  grid g = {.count = count_of(run)};
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE, best = 0;
+  find_sizes(run, &g);
+  for (size_t columns = 1; columns <= g.count; columns++) {
+    size_t rows = (g.count + columns - 1) / columns;
+    double cell = width / (double)columns;
+    if (cell < NARROWEST && columns > 1) break;
+    double other = LINE + MARGIN + below(run);
+    double tallest = fmax(TALLEST * width / (double)rows, other + 30);
+    double scale = fmin((cell - 2 * MARGIN) / g.size[0], (tallest - other) / g.size[1]);
+    if (!(scale > best * (1 + 1e-9))) continue;
+    best = scale;
+    g.columns = columns;
+    g.rows = rows;
+    g.cell[0] = cell;
+    g.cell[1] = scale * g.size[1] + other;
+  }
   return g;
 }
 
 double strut_run_snapshots_height(strut_run_scene *run) {
   grid g = lay_out(run);
-  return 2 * EDGE + TITLE + (double)g.rows * g.cell[1] + SCALE;
+  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + (double)g.rows * g.cell[1] + FOOT;
 }
 
-/* One shape: centred on itself, so that its place is told in words. */
+static strut_window window_of(const strut_run_scene *run, const grid *g, size_t frame,
+                              strut_box cell) {
+  strut_bounds b = strut_run_frame_bounds(run, frame);
+  strut_run_add_ground(run, &b);
+  for (int d = 0; d < 2; d++) {
+    double middle = 0.5 * (b.low[d] + b.high[d]);
+    b.low[d] = g->common[d] ? g->all.low[d] : middle - 0.5 * g->size[d];
+    b.high[d] = g->common[d] ? g->all.high[d] : middle + 0.5 * g->size[d];
+  }
+  /* What is below the shapes for arrows is no part of the window. */
+  strut_box box = {cell.x, cell.y + LINE, cell.width, cell.height - LINE - below(run) + MARGIN};
+  return strut_window_fit(box, b, MARGIN);
+}
+
+/* Where the measured point was in the first of them, so that the way it went is seen. */
+static void mark_start(const strut_run_scene *run, strut_canvas *canvas, const grid *g,
+                       const strut_window *window) {
+  size_t first = frame_of(run, 0, g->count);
+  const double start[2] = {strut_run_measured(run, first, 0), g->all.low[1]};
+  double at[2];
+  strut_window_point(window, start, at);
+  if (g->common[0])
+    strut_draw_segment(canvas, at[0], window->box.y + 2, at[0], at[1],
+                       (strut_pen){.colour = strut_grey(0.6), .width = 0.6, .dash = {2, 2}});
+}
+
 static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, size_t i,
                      strut_box cell) {
-  size_t frame = frame_of(run, i, g->count);
-  strut_bounds b;
-  char text[200];
-  bounds_of_frame(run, frame, &b);
-  double middle = 0.5 * (b.low[0] + b.high[0]);
-  const strut_bounds window_bounds = {{middle - 0.5 * g->size[0], g->low},
-                                      {middle + 0.5 * g->size[0], g->low + g->size[1]}};
-  strut_box box = {cell.x, cell.y + LINE, cell.width, cell.height - LINE};
-  strut_window window = strut_window_fit(box, window_bounds, MARGIN);
-  double way = strut_run_measured(run, frame) - strut_run_measured(run, 0);
-  snprintf(text, sizeof text, "%c) t = %s, way %s", (char)('a' + (int)(i % 26)),
-           strut_drawn_quantity(run->motion->time[frame], 5, "s").text,
-           strut_drawn_quantity(fabs(way) < 1e-9 * run->model->size ? 0 : way, 3, "m").text);
-  strut_draw_text(canvas, cell.x + 4, cell.y, text, (strut_font){.size = 8});
-  strut_canvas_clip(canvas, cell);
-  bool good = strut_run_draw_frame(run, canvas, &window, frame, g->cell[0] > 120);
+  size_t frame = frame_of(run, i, g->count), first = frame_of(run, 0, g->count);
+  strut_window window = window_of(run, g, frame, cell);
+  double *q = strut_run_shape(run, frame);
+  double way = strut_run_measured(run, frame, 0) - strut_run_measured(run, first, 0);
+  char text[200], fitted[STRUT_FITTED_TEXT];
+  const strut_font font = {.size = 8};
+  int used = snprintf(text, sizeof text, "%s",
+                      strut_drawn_quantity(run->motion->time[frame], 6, "s").text);
+  if (i > 0 && fabs(way) > 1e-6 * run->model->size)
+    snprintf(text + used, sizeof text - (size_t)used, ", x %s%s", way > 0 ? "+" : "",
+             strut_drawn_quantity(way, 3, "m").text);
+  strut_draw_text(canvas, cell.x + 4, cell.y,
+                  strut_text_fit(canvas, text, font, cell.width - 6, 0, fitted), font);
+  strut_canvas_clip(canvas, (strut_box){cell.x, cell.y + LINE, cell.width, cell.height - LINE});
+  mark_start(run, canvas, g, &window);
+  bool good = q && strut_run_draw_frame(run, canvas, &window, frame);
+  strut_run_draw_reactions(run, canvas, &window, frame);
+  if (good && run->model->node_count <= MOST_NAMED && cell.width > NAMED)
+    strut_run_draw_names(run, canvas, &window, q);
   strut_canvas_unclip(canvas);
-  if (i == 0) { /* at the foot of the page, where no structure is */
-    window.box.y = strut_canvas_box(canvas).height - EDGE - window.box.height;
-    strut_draw_yardstick(canvas, &window);
-  }
+  run->avoid_count = 0;
   return good;
+}
+
+static void draw_foot(strut_run_scene *run, strut_canvas *canvas, const grid *g, strut_box foot) {
+  strut_window window =
+      window_of(run, g, frame_of(run, 0, g->count), (strut_box){foot.x, 0, g->cell[0], g->cell[1]});
+  char text[120];
+  strut_key_item item;
+  window.box.y = foot.y + foot.height - window.box.height;
+  strut_draw_yardstick(canvas, &window);
+  double left = foot.x + 0.36 * g->cell[0] + 14, scale = fmin(150, 0.45 * foot.width);
+  if (strut_run_arrow_item(run, text, &item))
+    strut_draw_key(canvas,
+                   (strut_box){left, foot.y + 0.5 * foot.height - 4,
+                               foot.x + foot.width - scale - left, foot.height},
+                   &item, 1);
+  strut_run_draw_scale(run, canvas,
+                       (strut_box){foot.x + foot.width - scale, foot.y, scale, foot.height});
 }
 
 strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   grid g = lay_out(run);
-  double width = run->figure->width - 2 * EDGE;
-  char what[80];
-  snprintf(what, sizeof what, "%zu instants at one scale", g.count);
-  strut_run_draw_title(run, canvas, (strut_box){EDGE, EDGE, width, TITLE}, what);
+  char what[200];
+  double top = STRUT_RUN_EDGE + STRUT_RUN_TITLE;
+  snprintf(what, sizeof what, "%zu instants at one scale%s%s%s", g.count,
+           g.common[0] ? "; dashed: where " : "; each in the middle",
+           g.common[0] ? strut_run_measured_name(run) : "", g.common[0] ? " was at first" : "");
+  strut_run_draw_title(run, canvas, what, false);
+  run->arrow = ARROW;
   for (size_t i = 0; i < g.count; i++) strut_run_expect_frame(run, frame_of(run, i, g.count));
   for (size_t i = 0; i < g.count; i++) {
-    strut_box cell = {EDGE + (double)(i % g.columns) * g.cell[0],
-                      EDGE + TITLE + (double)(i / g.columns) * g.cell[1], g.cell[0], g.cell[1]};
+    strut_box cell = {STRUT_RUN_EDGE + (double)(i % g.columns) * g.cell[0],
+                      top + (double)(i / g.columns) * g.cell[1], g.cell[0], g.cell[1]};
     if (!draw_one(run, canvas, &g, i, cell)) return STRUT_NO_MEMORY;
   }
-  double wide = fmin(170, 0.6 * width);
-  strut_run_draw_scale(run, canvas,
-                       (strut_box){EDGE + width - wide,
-                                   EDGE + TITLE + (double)g.rows * g.cell[1] + 2, wide, SCALE - 2});
+  draw_foot(run, canvas, &g,
+            (strut_box){STRUT_RUN_EDGE, top + (double)g.rows * g.cell[1],
+                        run->figure->width - 2 * STRUT_RUN_EDGE, FOOT});
   return STRUT_OK;
 }
