@@ -87,6 +87,7 @@ static strut_status simulate(const strut_model *model, const strut_arguments *ar
   if (status != STRUT_OK) return strut_fail(error, status, "out of memory");
   if (look) keep->sinks[keep->sink_count++] = look;
   strut_progress progress = strut_progress_begin(arguments->quiet);
+  progress.span = strut_scene_span(model->scene).duration;
   const strut_run_options run = {
       .force = arguments->force,
       .interrupt = interrupt,

@@ -8,7 +8,9 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { WIDTH = 30, LINE = 79 };
+#include "parser/cli/terminal.h"
+
+enum { WIDTH = 30, USUAL = 80, PARTS = 8, BAR_ROOM = 3 * WIDTH + 1, TEXT = 96, LEAST = 8 };
 
 /* A run shorter than this needs no bar [s]. */
 static const double PATIENCE = 0.5;
@@ -23,7 +25,12 @@ strut_progress strut_progress_begin(bool quiet) {
   const char *no_colour = getenv("NO_COLOR"), *terminal = getenv("TERM");
   bool plain = (no_colour && *no_colour) || !terminal || strcmp(terminal, "dumb") == 0;
   return (strut_progress){
-      .wanted = !quiet && isatty(STDERR_FILENO), .colour = !plain, .start = now()};
+      .wanted = !quiet && isatty(STDERR_FILENO),
+      .colour = !plain,
+      .unicode = strut_terminal_unicode(),
+      .start = now(),
+      .columns = strut_terminal_columns(STDERR_FILENO, USUAL),
+  };
 }
 
 static void write_time(char *text, size_t size, double seconds) {
@@ -39,16 +46,57 @@ static void write_time(char *text, size_t size, double seconds) {
   }
 }
 
+/* "46.2 of 110 s, ", in the unit of the whole; nothing where no time passes. */
+static void write_simulated(char *text, size_t size, double fraction, double span) {
+  static const char *const units[] = {"s", "ms", "us"};
+  int unit = 0;
+  *text = '\0';
+  if (!(span > 0)) return;
+  for (; unit < 2 && span < 1; unit++) span *= 1000;
+  snprintf(text, size, "%.1f of %.5g %s, ", fraction * span, span, units[unit]);
+}
+
+/* A bar of so many columns: in blocks down to an eighth of one, or in ASCII. */
+static void write_bar(char *bar, int width, double fraction, bool unicode) {
+  double part = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
+  int done = (int)(part * width * PARTS);
+  for (int i = 0; i < width; i++) {
+    int here = done - PARTS * i;
+    if (!unicode) {
+      *bar++ = here >= PARTS ? '#' : '.';
+    } else if (here > 0 && here < PARTS) { /* U+2588 is a whole block, U+258F an eighth */
+      bar += snprintf(bar, 4, "\xe2\x96%c", 0x88 + PARTS - here);
+    } else {
+      bar += snprintf(bar, 4, here > 0 ? "\xe2\x96\x88" : "\xe2\x96\x91");
+    }
+  }
+  *bar = '\0';
+}
+
 void strut_progress_show(void *context, double fraction) {
   strut_progress *progress = context;
-  char bar[WIDTH + 1] = {0}, left[32];
+  char bar[BAR_ROOM], left[32], simulated[48], text[TEXT];
   double elapsed = now() - progress->start;
   if (elapsed < PATIENCE) return;
-  int done = (int)(fraction * WIDTH);
-  for (int i = 0; i < WIDTH; i++) bar[i] = i < done ? '#' : '.';
   write_time(left, sizeof left, fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
+  write_simulated(simulated, sizeof simulated, fraction, progress->span);
+  double percent = floor(100.0 * fraction);
+  int length = snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
+  int room = progress->columns - 1 - length; /* the last column would break the line */
+  if (room < LEAST) {
+    length = snprintf(text, sizeof text, " %3.0f %%, %s left", percent, left);
+    room = progress->columns - 1 - length;
+  }
+  int width = room > WIDTH ? WIDTH : room > 0 ? room : 0;
+  write_bar(bar, width, fraction, progress->unicode);
   const char *on = progress->colour ? "\033[36m" : "", *off = progress->colour ? "\033[0m" : "";
-  fprintf(stderr, "\r%s%s%s %3.0f %%, %s left      ", on, bar, off, floor(100.0 * fraction), left);
+  int blank = room - width < 6 ? room - width : 6; /* over what a longer line has left */
+  fprintf(stderr, "\r%s%s%s%.*s", on, bar, off, progress->columns - 1, text);
+  if (progress->colour) {
+    fprintf(stderr, "\033[K");
+  } else if (blank > 0) {
+    fprintf(stderr, "%*s", blank, "");
+  }
   fflush(stderr);
   progress->shown = true;
 }
@@ -58,7 +106,7 @@ void strut_progress_end(strut_progress *progress) {
   if (progress->colour) {
     fprintf(stderr, "\r\033[K");
   } else {
-    fprintf(stderr, "\r%*s\r", LINE, "");
+    fprintf(stderr, "\r%*s\r", progress->columns - 1, "");
   }
   fflush(stderr);
   progress->shown = false;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * A bar with the time left, on a terminal only.
+ * A bar with how far it is and the time left, on a terminal only; one line, as wide as there is room.
  */
 #ifndef STRUT_PARSER_CLI_PROGRESS_H
 #define STRUT_PARSER_CLI_PROGRESS_H
@@ -11,7 +11,10 @@ typedef struct strut_progress {
   bool wanted;  /* stderr is a terminal and nobody asked for quiet */
   bool colour;  /* the terminal knows escape sequences and NO_COLOR is not set */
   bool shown;   /* there is a bar to erase */
+  bool unicode; /* the locale writes UTF-8: the bar is made of blocks */
   double start; /* [s] of the monotonic clock */
+  double span;  /* simulated time that the whole stands for [s]; 0: it is not told */
+  int columns;  /* of the terminal */
 } strut_progress;
 
 strut_progress strut_progress_begin(bool quiet);

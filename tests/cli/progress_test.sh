@@ -17,16 +17,33 @@ grep -q 'left' out && fail "a bar in a pipe"
 if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
   # on_terminal WORD...: the same on a terminal of its own; what it shows is in out.
   on_terminal() {
-    script -qec "timeout --foreground -s INT 2 '$strut' run '$hopper' $long $*" /dev/null \
+    script -qec "stty cols ${columns:-80}; timeout --foreground -s INT 2 '$strut' run '$hopper' $long $*" /dev/null \
       >out 2>err </dev/null
     tr '\r' '\n' <out >lines && mv lines out
   }
+  # widest: columns of the longest line with a bar, colours left out
+  widest() {
+    sed "s/$(printf '\033')\\[[0-9;]*[mK]//g" out | grep left | LC_ALL=C.UTF-8 wc -L
+  }
   TERM=xterm
-  export TERM
+  LC_ALL=C.UTF-8
+  export TERM LC_ALL
   unset NO_COLOR
   on_terminal
   out_has "left"
   out_has " %, "
+  out_has " of 1e+06 s, "
+  out_has "░░░"
+  grep -q "^$(printf '\033')\\[K" out || fail "the bar is not erased"
+  columns=40
+  on_terminal
+  out_has "left"
+  [ "$(widest)" -eq 39 ] || fail "wider than the terminal: $(widest)"
+  columns=80
+  LC_ALL=C
+  on_terminal
+  out_has "....."
+  grep -q "░" out && fail "blocks where the locale has none"
   grep -q "$(printf '\033')" out || fail "no colour on a terminal"
   NO_COLOR=1
   export NO_COLOR
