@@ -15,7 +15,7 @@
  *   motion: null or {
  *     frames, recorded, every: as in strut_trajectory, status: completed|diverged|interrupted,
  *     track: node index or null for the centre of mass (as the scene measures)
- *     time, position, length, force, contact, energy: null or a block (position is always there);
+ *     time, position, force, contact, energy: null or a block (time and position are always there);
  *     energy_names: [text, ...]; weights: [kg, ...] of the nodes, for the centre of mass }
  *   equilibria: null or [{name, label, fate, verdict, energy [J], stands: bool,
  *     position: [x, y, ...], force: [N, ...] of members, contacts: [node index, ...],
@@ -44,13 +44,23 @@ typedef struct strut_page {
   const strut_model *model;
   const strut_trajectory *motion;     /* NULL: nothing moves */
   const strut_equilibria *equilibria; /* NULL: none are shown */
+  const char *remark;                 /* why no equilibria are shown, or NULL */
   const char *summary;                /* the text of summary.json, or NULL */
   const char *yaml;                   /* the scene as text */
   size_t most_bytes;                  /* of the data, about; 0: 4 million. Frames are left out
-                                         evenly until they fit */
+                                         evenly until they fit, down to two */
 } strut_page;
 
-/** The whole file in a block of strut_allocate, or NULL with the error filled. */
-STRUT_API char *strut_page_html(const strut_page *page, strut_error *error);
+/** The frames on a page; 0 where nothing moves. */
+typedef struct strut_page_frames {
+  size_t shown, recorded;
+} strut_page_frames;
+
+/**
+ * The whole file, the same bytes each time, in a block of strut_allocate; or NULL with the error.
+ * `frames` may be NULL.
+ */
+STRUT_API char *strut_page_html(const strut_page *page, strut_page_frames *frames,
+                                strut_error *error);
 
 #endif

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a run amounts to as rows of text, from its summary.json. */
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/output/page/page_parts.h"
+#include "engine/output/quantity_text.h"
+
+enum { DIGITS = 4, MOST_CONTACTS = 12, LABEL = 300, VALUE = 800 };
+
+typedef struct rows {
+  strut_json *json;
+  cJSON *to;
+  const cJSON *from; /* the summary */
+} rows;
+
+static void add_row(rows *r, const char *label, const char *value) {
+  cJSON *row = strut_json_object(r->json, r->to, NULL);
+  strut_json_text(r->json, row, "label", label);
+  strut_json_text(r->json, row, "value", value);
+}
+
+/* NAN where there is no such number. */
+static double number(const cJSON *from, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(from, key);
+  return cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
+}
+
+static const char *text(const cJSON *from, const char *key) {
+  return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(from, key));
+}
+
+static strut_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
+}
+
+static void add_quantity(rows *r, const char *label, const char *key, const char *unit) {
+  double value = number(r->from, key);
+  if (isfinite(value)) add_row(r, label, in(value, unit).text);
+}
+
+static void add_status(rows *r) {
+  const char *status = text(r->from, "status"), *reason = text(r->from, "reason");
+  char value[VALUE];
+  if (!status) return;
+  snprintf(value, sizeof value, "%s%s%s", status, reason ? ": " : "", reason ? reason : "");
+  add_row(r, "run", value);
+}
+
+static void add_velocity(rows *r, const strut_scene *scene) {
+  int32_t node = scene->experiment.measure_node;
+  char label[LABEL], value[VALUE];
+  double spread = number(r->from, "velocity_spread"), from = number(r->from, "window_start");
+  if (!isfinite(number(r->from, "velocity"))) return;
+  snprintf(label, sizeof label, "mean velocity of %s",
+           node >= 0 ? scene->nodes[node].name : "the centre of mass");
+  snprintf(value, sizeof value, "%s%s%s, from %s on", in(number(r->from, "velocity"), "m/s").text,
+           isfinite(spread) ? ", spread " : "", isfinite(spread) ? in(spread, "m/s").text : "",
+           isfinite(from) ? in(from, "s").text : "the start");
+  add_row(r, label, value);
+}
+
+static void add_steps(rows *r) {
+  char value[VALUE];
+  double step = number(r->from, "step"), limit = number(r->from, "step_limit");
+  double steps = number(r->from, "steps"), settled = number(r->from, "settle_time");
+  add_quantity(r, "duration", "duration", "s");
+  if (settled > 0) add_row(r, "settling before", in(settled, "s").text);
+  if (!isfinite(step) || !isfinite(steps)) return;
+  snprintf(value, sizeof value, "%.0f of %s", steps, in(step, "s").text);
+  add_row(r, "steps", value);
+  add_row(r, "largest stable step", isfinite(limit) ? in(limit, "s").text : "no limit");
+}
+
+static void add_contacts(rows *r) {
+  const cJSON *contacts = cJSON_GetObjectItemCaseSensitive(r->from, "contacts"), *contact;
+  char label[LABEL], value[VALUE];
+  int shown = 0;
+  cJSON_ArrayForEach(contact, contacts) {
+    double duty = number(contact, "duty"), height = number(contact, "max_height");
+    if (!isfinite(duty) || !contact->string) continue;
+    if (shown++ == MOST_CONTACTS) {
+      snprintf(value, sizeof value, "%d more", cJSON_GetArraySize(contacts) - MOST_CONTACTS);
+      add_row(r, "contacts", value);
+      return;
+    }
+    snprintf(label, sizeof label, "contact of %s", contact->string);
+    snprintf(value, sizeof value, "%.1f %% of the time, up to %s high", 100 * duty,
+             in(height, "m").text);
+    add_row(r, label, value);
+  }
+}
+
+/* Works and losses that there are, and what is left over. */
+static void add_energy(rows *r) {
+  static const struct {
+    const char *key, *label;
+  } parts[] = {
+      {"drive_work", "work of the drives"},
+      {"load_work", "work of the loads"},
+      {"belt_work", "work of the belt"},
+      {"dissipated_members", "lost in members"},
+      {"dissipated_contact", "lost in contacts"},
+      {"dissipated_friction", "lost to friction"},
+  };
+  const cJSON *energy = cJSON_GetObjectItemCaseSensitive(r->from, "energy");
+  char value[VALUE];
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    double amount = number(energy, parts[i].key);
+    if (isfinite(amount) && amount != 0) add_row(r, parts[i].label, in(amount, "J").text);
+  }
+  double residual = number(energy, "residual"), moved = number(energy, "moved");
+  if (!isfinite(residual)) return;
+  if (moved > 0)
+    snprintf(value, sizeof value, "%s, %.1e of all that was exchanged", in(residual, "J").text,
+             fabs(residual) / moved);
+  else
+    snprintf(value, sizeof value, "%s", in(residual, "J").text);
+  add_row(r, "missing in the energy balance", value);
+}
+
+void strut_page_add_summary(strut_json *json, const char *summary, const strut_scene *scene) {
+  rows r = {.json = json, .to = strut_json_array(json, json->root, "summary")};
+  if (!summary) return;
+  strut_c_locale locale = strut_c_locale_enter();
+  cJSON *root = cJSON_Parse(summary);
+  r.from = root;
+  if (cJSON_IsObject(root)) {
+    add_status(&r);
+    add_velocity(&r, scene);
+    add_steps(&r);
+    add_contacts(&r);
+    add_energy(&r);
+  } else {
+    add_row(&r, "summary", "summary.json cannot be read");
+  }
+  cJSON_Delete(root);
+  strut_c_locale_leave(locale);
+}
