@@ -3,8 +3,8 @@
 #
 # strut_embed_files(SOURCE HEADER LIST...): generates SOURCE, which includes HEADER and defines for
 # each LIST "NAME|file|file ..." an array "const strut_embedded NAME[]" of its files in order, closed
-# by a row of NULL. HEADER declares the arrays and strut_embedded, {const char *text; size_t length};
-# texts have a NUL behind them.
+# by a row of NULL. HEADER declares the arrays and the type strut_embedded, which begins with the text
+# (const char *, a NUL behind it) and its length (size_t).
 #
 # The same file is the script that writes SOURCE (cmake -P).
 

@@ -22,7 +22,7 @@ enum { SEARCH_ALL, SEARCH_NONE };
 
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "FILE", "the page: FILE ends with .html"},
-    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH", "all, as 'strut equilibria' finds them; or none"},
+    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH", "all shapes at rest, or none"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a model's parameter another value"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "do not say what was written"},
     {STRUT_OPTION_END, NULL, NULL, NULL},

@@ -34,7 +34,8 @@ static void add_part(strut_buffer *to, const strut_page *page, const char *name,
   } else if (strncmp(name, "style", 5) == 0) {
     add_elements(to, strut_page_styles, "style");
   } else if (strncmp(name, "data", 4) == 0) {
-    strut_buffer_add(to, "<script type=\"application/json\" id=\"strut-data\">\n%s</script>\n", data);
+    strut_buffer_add(to, "<script type=\"application/json\" id=\"strut-data\">\n");
+    strut_buffer_add(to, "%s</script>\n", data);
   } else if (strncmp(name, "scripts", 7) == 0) {
     strut_buffer_add(to, "<!--\n%s-->\n", strut_page_notice->text);
     add_elements(to, strut_page_scripts, "script");

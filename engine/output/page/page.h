@@ -3,9 +3,9 @@
  * The page: one HTML file that shows a run or a model, without a network, in any browser.
  *
  * What the program writes is data; what the page does with them is in page.html, page.css and
- * page/.js beside this header, and in Debian's dygraphs, all put into the library at build time. The
- * data are one JSON object in <script type="application/json" id="strut-data">, in which '<' is
- * written as an escape, so that no name can end it:
+ * the scripts beside this header, and in Debian's dygraphs, all put into the library at build time.
+ * The data are one JSON object in <script type="application/json" id="strut-data">, in which '<', '>'
+ * and '&' are written as escapes, so that no name can end it:
  *
  *   strut, name, description, source: texts
  *   nodes: [{name, fixed: [bool, bool]}], members: [{name, from, to, kind: bar|spring|cable}]
@@ -21,12 +21,13 @@
  *     position: [x, y, ...], force: [N, ...] of members, contacts: [node index, ...],
  *     normal: [N, ...], lowest: smallest eigenvalue [N/m]}]
  *   equilibria_remark: text; equilibria_left_out: how many are not listed for size
+ *     those people want to see first come first
  *   barriers: [{from, to, height [J]}]  indices into equilibria; only if both are listed
  *   summary: [{label, value}]           rows of text, ready to show
  *   yaml: text of the scene
  *   study: null
  *
- * A block is {columns, quantum, bytes}: integers n of `frames` rows, (frames, columns), a value being
+ * A block is {columns, quantum, bytes}: integers n of `frames` rows, (frames, columns); a value is
  * n * quantum. Column after column, the first number as it is, the second as its difference to the
  * first, from then on the second difference; each as zigzag (2 n, or -2 n - 1 where n < 0) in
  * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay

@@ -15,8 +15,8 @@ typedef struct strut_embedded {
 
 /*
  * Each ends with a row of NULL. In the template, page.html, four comments are replaced:
- * strut:title by the title's text, strut:style by <style> elements, strut:data by the <script> element
- * of the data, strut:scripts by <script> elements.
+ * strut:title by the title's text, strut:style by <style> elements, strut:data by the <script>
+ * element of the data, strut:scripts by <script> elements.
  */
 extern const strut_embedded strut_page_template[];
 extern const strut_embedded strut_page_styles[];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Arrays over time as blocks of few bytes: page.h says how. Also which frames of a motion those are.
+ * Arrays over time as blocks of few bytes: page.h says how.
  */
 #ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_BLOCKS_H
 #define STRUT_ENGINE_OUTPUT_PAGE_PAGE_BLOCKS_H
@@ -27,8 +27,8 @@ STRUT_API double strut_rows_largest(const strut_rows *rows);
 #define STRUT_MOST_QUANTA 562949953421312.0 /* 2^49 */
 
 /**
- * The largest number of the form 1, 2 or 5 times a power of ten that is not above `wanted`; but never
- * so small that a value of magnitude `largest` has more than STRUT_MOST_QUANTA of it.
+ * The largest number of the form 1, 2 or 5 times a power of ten that is not above `wanted`; but
+ * never so small that a value of magnitude `largest` has more than STRUT_MOST_QUANTA of it.
  */
 STRUT_API double strut_round_quantum(double wanted, double largest);
 /** Whether every value of rows is a whole multiple of `quantum`, to the last bits of a double. */

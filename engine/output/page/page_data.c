@@ -4,6 +4,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/page/page_parts.h"
+#include "engine/output/summary_rows.h"
 
 struct cJSON;
 
@@ -78,7 +79,8 @@ static char *still_data(const strut_page *page) {
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);
   if (!strut_page_add_equilibria(&json, page)) json.failed = true;
-  strut_page_add_summary(&json, page->summary, scene);
+  struct cJSON *rows = strut_json_array(&json, json.root, "summary");
+  strut_summary_rows(&json, rows, page->summary, scene);
   if (!add_yaml(&json, page->yaml)) json.failed = true;
   strut_json_text(&json, json.root, "study", NULL);
   return strut_json_end(&json);
@@ -99,8 +101,8 @@ static const char *escape(const unsigned char *at, size_t *taken) {
   }
 }
 
-/* Appends JSON as it may stand in <script>, without what cJSON puts between things: a line's end and a
-   tab are never within a text. */
+/* Appends JSON as it may stand in <script>, without what cJSON puts between things: a line's end and
+   a tab are never within a text. */
 static void add_safe(strut_buffer *buffer, const char *json) {
   const char *from = json;
   for (const char *at = json;; at++) {

@@ -74,8 +74,8 @@ static double time_quantum(const motion *m) {
   return strut_round_quantum(TIME_QUANTUM * span, strut_rows_largest(time));
 }
 
-/* The scale of forces and energies: the largest of all, but of a diverged run's first half, for what
-   it ends with would make everything else nothing. */
+/* The scale of forces and energies: the largest of all, but of a diverged run's first half, for
+   beside what it ends with everything else would be nothing. */
 static double scale_of(const motion *m, const strut_rows *rows, double largest) {
   bool diverged = m->page->motion->status == STRUT_DIVERGED || m->frames < m->page->motion->frames;
   strut_rows half = *rows;
@@ -148,9 +148,9 @@ static void add_head(strut_buffer *buffer, const motion *m) {
   const strut_trajectory *t = m->page->motion;
   bool cut = m->frames < t->frames;
   strut_status status = cut ? STRUT_DIVERGED : t->status;
-  strut_buffer_add(buffer, "{\"frames\":%zu,\"recorded\":%zu,\"every\":%zu,\"status\":\"%s\",\"track\":",
-                   strut_rows_taken(&m->rows[0]), t->recorded, t->every * m->rows[0].every,
-                   strut_status_text(status));
+  strut_buffer_add(buffer, "{\"frames\":%zu,\"recorded\":%zu,\"every\":%zu",
+                   strut_rows_taken(&m->rows[0]), t->recorded, t->every * m->rows[0].every);
+  strut_buffer_add(buffer, ",\"status\":\"%s\",\"track\":", strut_status_text(status));
   int32_t track = m->page->model->scene->experiment.measure_node;
   if (track >= 0)
     strut_buffer_add(buffer, "%d", (int)track);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a run amounts to as rows of text, from its summary.json. */
+#include "engine/output/summary_rows.h"
+
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/output/page/page_parts.h"
 #include "engine/output/quantity_text.h"
 
 enum { DIGITS = 4, MOST_CONTACTS = 12, LABEL = 300, VALUE = 800 };
@@ -121,8 +121,9 @@ static void add_energy(rows *r) {
   add_row(r, "missing in the energy balance", value);
 }
 
-void strut_page_add_summary(strut_json *json, const char *summary, const strut_scene *scene) {
-  rows r = {.json = json, .to = strut_json_array(json, json->root, "summary")};
+void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
+                        const strut_scene *scene) {
+  rows r = {.json = json, .to = to};
   if (!summary) return;
   strut_c_locale locale = strut_c_locale_enter();
   cJSON *root = cJSON_Parse(summary);
