@@ -7,7 +7,7 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, WAY_PIECES = 40 };
+enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, WAY_PIECES = 40, LINE = 600 };
 
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it does not move */
 
@@ -108,12 +108,23 @@ static double velocity_of(const strut_run_scene *run) {
   return way > STANDING * run->model->size ? s->velocity : 0;
 }
 
+/* Adds the velocity to the line, with the point's name where that leaves it short enough. */
+static void say_velocity(const strut_run_scene *run, strut_canvas *canvas, double velocity,
+                         double room, strut_font font, char line[LINE]) {
+  size_t used = strlen(line);
+  double width, height;
+  strut_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
+  snprintf(line + used, LINE - used, "; velocity of %s %s", strut_run_measured_name(run), text.text);
+  strut_text_size(canvas, line, font, &width, &height);
+  if (width > room) snprintf(line + used, LINE - used, "; velocity %s", text.text);
+}
+
 void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, const char *what,
                           bool velocity) {
   const strut_summary *s = run->summary;
   double room = strut_canvas_box(canvas).width - 2 * STRUT_RUN_EDGE, width, height;
   const double arrow = 18, x = STRUT_RUN_EDGE, y = STRUT_RUN_EDGE + 12;
-  char line[600], fitted[STRUT_FITTED_TEXT];
+  char line[LINE], fitted[STRUT_FITTED_TEXT];
   const strut_font title = {.size = 9, .bold = true};
   strut_font below = {.size = 8, .colour = strut_grey(0.3)};
   bool failed = s && s->status != STRUT_OK;
@@ -125,11 +136,9 @@ void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, cons
              s->status == STRUT_DIVERGED ? "diverged" : "stopped",
              strut_drawn_quantity(s->duration, 4, "s").text,
              strut_drawn_quantity(run->motion->time[run->frames - 1], 4, "s").text, what);
-  else if (velocity)
-    snprintf(line, sizeof line, "%s; velocity of %s %s", what, strut_run_measured_name(run),
-             strut_drawn_quantity(v, 4, "m/s").text);
   else
     snprintf(line, sizeof line, "%s", what);
+  if (velocity) say_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);
   strut_draw_text(canvas, x, STRUT_RUN_EDGE,
                   strut_text_fit(canvas, run->model->scene->name, title, room, 0, fitted), title);
   strut_text_fit(canvas, line, below, v != 0 ? room - arrow - 6 : room, 0, fitted);

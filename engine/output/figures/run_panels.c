@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Curves of what was recorded: one kind of quantity in each panel. */
 #include <math.h>
+#include <string.h>
 
 #include "engine/output/draw/curves.h"
 #include "engine/output/figures/run_parts.h"
@@ -197,6 +198,18 @@ static void find_range(const panel *p, size_t frames, int kind,
   strut_axis_settle(axis, ROOM);
 }
 
+/* Long names are cut, so that the legend fits. */
+static bool fit_labels(strut_run_scene *run, double width, panel *p) {
+  char fitted[STRUT_FITTED_TEXT];
+  for (size_t i = 0; i < p->count; i++) {
+    if (!p->labels[i]) continue;
+    strut_text_fit(run->ruler, p->labels[i], (strut_font){.size = 7.5}, width, 0, fitted);
+    p->labels[i] = strut_arena_text(&run->arena, fitted, strlen(fitted));
+    if (!p->labels[i]) return false;
+  }
+  return true;
+}
+
 strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
                                   int kind, size_t first) {
   static const char *const names[][2] = {
@@ -208,6 +221,7 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
   if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill(run, kind, first, &p)))
     return STRUT_NO_MEMORY;
   if (kind == STRUT_RUN_WAY && p.count == 1) p.name = "x displacement";
+  if (!fit_labels(run, 0.4 * box.width, &p)) return STRUT_NO_MEMORY;
   strut_series series[MOST_CURVES];
   for (size_t i = 0; i < p.count; i++)
     series[i] = (strut_series){.label = p.labels[i],

@@ -7,11 +7,12 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-static const double KEY = 30, MARGIN = 20, CLOSED = 1e-3; /* of the model's size, above the ground */
+static const double KEY = 30, NOTE = 28, WIDE = 380, MARGIN = 20, CLOSED = 1e-3; /* of the model's size, above the ground */
 
 typedef struct ways {
   size_t first, count;
   double *rest;      /* (length) where the ways are exaggerated from */
+  double *shape;     /* (length) that is drawn beneath: those places, or the last shape */
   double (*way)[2];  /* (nodes, count) as drawn */
   bool grounded;     /* some are exaggerated from the ground */
   strut_bounds bounds;
@@ -25,6 +26,10 @@ static size_t first_frame(const strut_run_scene *run) {
 
 static double factor(const strut_run_scene *run, int axis) {
   return run->figure->scale[axis] > 0 ? run->figure->scale[axis] : 1;
+}
+
+static bool exaggerated(const strut_run_scene *run) {
+  return factor(run, 0) != 1 || factor(run, 1) != 1;
 }
 
 static bool can_touch(const strut_run_scene *run, size_t node) {
@@ -70,33 +75,52 @@ static bool find_ways(strut_run_scene *run, ways *w) {
       }
   }
   strut_run_add_ground(run, &w->bounds);
-  return true;
+  /* Mean places are no shape where the motion is large: only what is exaggerated needs them. */
+  w->shape = exaggerated(run) ? w->rest : strut_run_shape(run, run->frames - 1);
+  return w->shape;
+}
+
+/* What stands below the drawing: in a narrow one the note has lines of its own. */
+static double foot_height(const strut_run_scene *run) {
+  return run->figure->width < WIDE && exaggerated(run) ? KEY + NOTE : KEY;
 }
 
 double strut_run_period_height(strut_run_scene *run) {
   ways w;
   double width = run->figure->width - 2 * STRUT_RUN_EDGE;
   if (!find_ways(run, &w)) return width;
-  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + KEY +
+  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + foot_height(run) +
          strut_run_drawing_height(&w.bounds, width, MARGIN, 0.16, 0.75);
 }
 
 static void describe(const strut_run_scene *run, const ways *w, char *text, size_t size) {
   strut_c_locale locale = strut_c_locale_enter();
   double span = strut_run_time_from(run, w->first);
-  snprintf(text, size, "ways of the nodes over %s%s%s, dark to bright",
+  snprintf(text, size, "%s%s%s%s, dark to bright",
+           run->figure->width < WIDE ? "" : "ways of the nodes over ",
            run->period > 0 ? "one period (" : "", strut_drawn_quantity(span, 4, "s").text,
            run->period > 0 ? ")" : "");
   strut_c_locale_leave(locale);
 }
 
-/* What is exaggerated, and from where. */
-static void explain(const strut_run_scene *run, const ways *w, char *text, size_t size) {
+/* What is exaggerated, and from where: between yardstick and scale, or above both. */
+static void draw_note(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
+                      strut_box box) {
+  char text[240], fitted[STRUT_FITTED_TEXT];
+  bool narrow = run->figure->width < WIDE;
+  if (!exaggerated(run)) return;
   strut_c_locale locale = strut_c_locale_enter();
-  snprintf(text, size, "Motion drawn %g-fold along x, %g-fold along y, from the mean place of each node%s (grey).",
+  snprintf(text, sizeof text,
+           "Motion drawn %g-fold along x and %g-fold along y, from each node's mean place (grey)%s.",
            factor(run, 0), factor(run, 1),
-           w->grounded ? ", on the ground where it touches it" : "");
+           w->grounded ? ", on the ground where it touches that" : "");
   strut_c_locale_leave(locale);
+  double indent = narrow ? 0 : 0.34 * (run->figure->width - 2 * STRUT_RUN_EDGE);
+  strut_font note = {.size = 7, .colour = strut_grey(0.3)};
+  note.width = narrow ? run->figure->width - 2 * STRUT_RUN_EDGE : box.width - indent;
+  note.down = narrow ? 0 : 0.5;
+  strut_draw_text(canvas, box.x + indent, narrow ? box.y : box.y + 0.5 * box.height,
+                  strut_text_fit(canvas, text, note, note.width, box.height, fitted), note);
 }
 
 static void draw_time_scale(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
@@ -110,31 +134,28 @@ static void draw_time_scale(const strut_run_scene *run, strut_canvas *canvas, co
 
 strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   ways w;
-  char text[240], fitted[STRUT_FITTED_TEXT];
+  char text[240];
   double width = run->figure->width - 2 * STRUT_RUN_EDGE, page = strut_canvas_box(canvas).height;
   double foot = page - STRUT_RUN_EDGE - KEY, scale_width = fmin(150, 0.45 * width);
+  double end = page - STRUT_RUN_EDGE - foot_height(run);
   if (!find_ways(run, &w)) return STRUT_NO_MEMORY;
   describe(run, &w, text, sizeof text);
   strut_run_draw_title(run, canvas, text, true);
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width,
-                   foot - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
+                   end - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
   strut_window window = strut_window_fit(box, w.bounds, MARGIN);
   const strut_structure_style pale = {
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.72), .thinness = 0.5};
   strut_draw_ground(canvas, &window, run->model);
-  strut_draw_structure(canvas, &window, run->model, w.rest, &pale);
+  strut_draw_structure(canvas, &window, run->model, w.shape, &pale);
   for (size_t i = 0; i < run->motion->node_count; i++)
     strut_run_draw_way(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
                        1.5);
-  strut_run_draw_names(run, canvas, &window, w.rest);
-  window.box.y = foot - box.height + KEY; /* at the foot, where no structure is */
+  strut_run_draw_names(run, canvas, &window, w.shape);
+  window.box.y = page - STRUT_RUN_EDGE - box.height; /* at the foot, where no structure is */
   strut_draw_yardstick(canvas, &window);
-  double left = STRUT_RUN_EDGE + 0.34 * width, right = STRUT_RUN_EDGE + width - scale_width;
-  strut_font note = {.size = 7, .colour = strut_grey(0.3), .width = right - left - 6, .down = 0.5};
-  explain(run, &w, text, sizeof text);
-  if (factor(run, 0) != 1 || factor(run, 1) != 1)
-    strut_draw_text(canvas, left, foot + 0.5 * KEY,
-                    strut_text_fit(canvas, text, note, note.width, KEY, fitted), note);
+  double right = STRUT_RUN_EDGE + width - scale_width;
+  draw_note(run, canvas, &w, (strut_box){STRUT_RUN_EDGE, end, right - STRUT_RUN_EDGE - 6, KEY});
   draw_time_scale(run, canvas, &w, (strut_box){right, foot, scale_width, KEY});
   return STRUT_OK;
 }

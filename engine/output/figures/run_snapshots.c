@@ -10,12 +10,16 @@ enum { USUAL = 6, MOST_NAMED = 10 };
 
 static const double LINE = 12, MARGIN = 15, ARROW = 18, GAP = 4, FOOT = 28; /* [pt] */
 static const double NARROWEST = 105, NAMED = 130;  /* cells, and those with names [pt] */
-static const double TALLEST = 0.75;  /* of the page's width */
-static const double COMMON = 1.8;    /* shapes no further apart share a window, in their sizes */
+static const double TALLEST = 0.95;  /* all cells together, of the page's width */
+static const double LEAST = 12, WIDE = 380, KEY_LINE = 12; /* [pt] */
+static const double COMMON = 2.2;    /* shapes no further apart share a window, in their sizes */
+
+static const double SEEN = 2e-3;     /* of the drawing: the measured point moves so much at least */
 
 /* How the cells stand, and what they show. */
 typedef struct grid {
   size_t count, columns, rows;
+  bool moves;     /* the measured point, to be seen */
   bool common[2]; /* all show the same part of the plane along that axis */
   strut_bounds all;
   double size[2]; /* of that part, or of the largest shape [m] */
@@ -66,6 +70,12 @@ static void find_sizes(const strut_run_scene *run, grid *g) {
       g->all.high[d] = fmax(g->all.high[d], b.high[d]);
     }
   }
+  size_t first = frame_of(run, 0, g->count);
+  for (size_t i = 0; i < g->count; i++) {
+    size_t frame = frame_of(run, i, g->count);
+    double way = strut_run_measured(run, frame, 0) - strut_run_measured(run, first, 0);
+    g->moves = g->moves || fabs(way) > SEEN * strut_run_extent(&g->all);
+  }
   double most = COMMON * fmax(shape[0], shape[1]);
   for (int d = 0; d < 2; d++) {
     double together = g->all.high[d] - g->all.low[d];
@@ -89,7 +99,7 @@ static grid lay_out(const strut_run_scene *run) {
     double cell = width / (double)columns;
     if (cell < NARROWEST && columns > 1) break;
     double other = LINE + MARGIN + below(run);
-    double tallest = fmax(TALLEST * width / (double)rows, other + 30);
+    double tallest = fmax(TALLEST * width / (double)rows, other + LEAST);
     double scale = fmin((cell - 2 * MARGIN) / g.size[0], (tallest - other) / g.size[1]);
     if (!(scale > best * (1 + 1e-9))) continue;
     best = scale;
@@ -101,9 +111,14 @@ static grid lay_out(const strut_run_scene *run) {
   return g;
 }
 
+static double foot_height(const strut_run_scene *run) {
+  bool narrow = run->figure->width < WIDE && run->model->contacts.count;
+  return narrow ? FOOT + KEY_LINE : FOOT;
+}
+
 double strut_run_snapshots_height(strut_run_scene *run) {
   grid g = lay_out(run);
-  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + (double)g.rows * g.cell[1] + FOOT;
+  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + (double)g.rows * g.cell[1] + foot_height(run);
 }
 
 static strut_window window_of(const strut_run_scene *run, const grid *g, size_t frame,
@@ -127,9 +142,22 @@ static void mark_start(const strut_run_scene *run, strut_canvas *canvas, const g
   const double start[2] = {strut_run_measured(run, first, 0), g->all.low[1]};
   double at[2];
   strut_window_point(window, start, at);
-  if (g->common[0])
+  if (g->common[0] && g->moves)
     strut_draw_segment(canvas, at[0], window->box.y + 2, at[0], at[1],
                        (strut_pen){.colour = strut_grey(0.6), .width = 0.6, .dash = {2, 2}});
+}
+
+/* As many digits as tell the instants apart, and one more. */
+static int digits_of(const strut_run_scene *run, const grid *g) {
+  double least = HUGE_VAL, latest = 0;
+  for (size_t i = 0; i < g->count; i++) {
+    double time = run->motion->time[frame_of(run, i, g->count)];
+    double before = i ? run->motion->time[frame_of(run, i - 1, g->count)] : -HUGE_VAL;
+    latest = fmax(latest, fabs(time));
+    if (fabs(time - before) > STRUT_RUN_MOMENT) least = fmin(least, fabs(time - before));
+  }
+  double digits = isfinite(least) && latest > 0 ? ceil(log10(latest / least)) + 2 : 4;
+  return (int)fmax(3, fmin(digits, 9));
 }
 
 static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, size_t i,
@@ -141,7 +169,7 @@ static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, 
   char text[200], fitted[STRUT_FITTED_TEXT];
   const strut_font font = {.size = 8};
   int used = snprintf(text, sizeof text, "%s",
-                      strut_drawn_quantity(run->motion->time[frame], 6, "s").text);
+                      strut_drawn_quantity(run->motion->time[frame], digits_of(run, g), "s").text);
   if (i > 0 && fabs(way) > 1e-6 * run->model->size)
     snprintf(text + used, sizeof text - (size_t)used, ", x %s%s", way > 0 ? "+" : "",
              strut_drawn_quantity(way, 3, "m").text);
@@ -165,12 +193,17 @@ static void draw_foot(strut_run_scene *run, strut_canvas *canvas, const grid *g,
   strut_key_item item;
   window.box.y = foot.y + foot.height - window.box.height;
   strut_draw_yardstick(canvas, &window);
-  double left = foot.x + 0.36 * g->cell[0] + 14, scale = fmin(150, 0.45 * foot.width);
-  if (strut_run_arrow_item(run, text, &item))
-    strut_draw_key(canvas,
-                   (strut_box){left, foot.y + 0.5 * foot.height - 4,
-                               foot.x + foot.width - scale - left, foot.height},
-                   &item, 1);
+  double scale = fmin(150, 0.45 * foot.width);
+  strut_box key = {foot.x, foot.y, foot.width, KEY_LINE}; /* a line of its own, or between both */
+  if (foot.height > FOOT) {
+    foot.y += KEY_LINE;
+    foot.height -= KEY_LINE;
+  } else {
+    key.x += 0.36 * g->cell[0] + 14;
+    key.y += 0.5 * foot.height - 4;
+    key.width -= 0.36 * g->cell[0] + 14 + scale;
+  }
+  if (strut_run_arrow_item(run, text, &item)) strut_draw_key(canvas, key, &item, 1);
   strut_run_draw_scale(run, canvas,
                        (strut_box){foot.x + foot.width - scale, foot.y, scale, foot.height});
 }
@@ -178,10 +211,11 @@ static void draw_foot(strut_run_scene *run, strut_canvas *canvas, const grid *g,
 strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   grid g = lay_out(run);
   char what[200];
+  bool marked = g.common[0] && g.moves;
   double top = STRUT_RUN_EDGE + STRUT_RUN_TITLE;
   snprintf(what, sizeof what, "%zu instants at one scale%s%s%s", g.count,
-           g.common[0] ? "; dashed: where " : "; each in the middle",
-           g.common[0] ? strut_run_measured_name(run) : "", g.common[0] ? " was at first" : "");
+           marked ? "; dashed: where " : g.common[0] ? "" : "; each in the middle",
+           marked ? strut_run_measured_name(run) : "", marked ? " was at first" : "");
   strut_run_draw_title(run, canvas, what, false);
   run->arrow = ARROW;
   for (size_t i = 0; i < g.count; i++) strut_run_expect_frame(run, frame_of(run, i, g.count));
@@ -192,6 +226,6 @@ strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   }
   draw_foot(run, canvas, &g,
             (strut_box){STRUT_RUN_EDGE, top + (double)g.rows * g.cell[1],
-                        run->figure->width - 2 * STRUT_RUN_EDGE, FOOT});
+                        run->figure->width - 2 * STRUT_RUN_EDGE, foot_height(run)});
   return STRUT_OK;
 }
