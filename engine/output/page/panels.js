@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Words around the drawings: summary, sampling, the scene's text. */
+"use strict";
+(function (page) {
+  function fillSummary(data) {
+    const body = document.querySelector("#summary tbody");
+    for (const row of data.summary || []) {
+      const line = document.createElement("tr");
+      for (const text of [row.label, row.value]) {
+        const cell = document.createElement("td");
+        cell.dir = "auto";
+        cell.textContent = text;
+        line.append(cell);
+      }
+      body.append(line);
+    }
+    document.getElementById("summary-section").hidden = !(data.summary || []).length;
+  }
+
+  function samplingText(data) {
+    const motion = data.motion;
+    const made = "Written by strut " + data.strut + "; nothing on it comes from a network.";
+    if (!motion) return "A model at rest: no motion is on this page. " + made;
+    const kept = motion.frames === motion.recorded ? "All " + motion.frames + " recorded frames"
+      : motion.frames + " of " + motion.recorded + " recorded frames (every " + motion.every +
+        (motion.every === 2 ? "nd" : "th") + ")";
+    const rounded = [["positions", "position", "m"], ["forces", "force", "N"],
+      ["contact forces", "contact", "N"]]
+      .filter(([, key]) => motion[key])
+      .map(([name, key, unit]) => name + " to " + page.quantity(motion[key].quantum, unit, 3));
+    const ended = motion.status === "completed" ? "" : " The run did not complete: it " +
+      (motion.status === "diverged" ? "diverged." : "was interrupted.");
+    return kept + " are on this page, rounded: " + rounded.join(", ") + "." + ended + " " + made;
+  }
+
+  page.fillPanels = function (data) {
+    document.getElementById("name").textContent = data.name || "Unnamed";
+    document.getElementById("source").textContent =
+      [data.description, data.source].filter(Boolean).join(" \u2014 ");
+    fillSummary(data);
+    document.getElementById("sampling").textContent = samplingText(data);
+    document.getElementById("yaml").textContent = data.yaml || "";
+    document.getElementById("scene").hidden = !data.yaml;
+    const copy = document.getElementById("copy");
+    copy.hidden = !(navigator.clipboard && navigator.clipboard.writeText);
+    copy.addEventListener("click", async () => {
+      try {
+        await navigator.clipboard.writeText(data.yaml);
+        copy.textContent = "Copied";
+      } catch {
+        copy.textContent = "Select the text to copy it";
+      }
+    });
+    const more = data.equilibria_left_out
+      ? data.equilibria_left_out + " further equilibria are left out for size. " : "";
+    document.getElementById("remark").textContent = more + (data.equilibria_remark || "");
+    document.getElementById("cards-section").hidden =
+      !(data.equilibria || []).length && !data.equilibria_remark;
+  };
+})(window.strutPage);

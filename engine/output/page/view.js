@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Drawing a structure true to scale on a canvas: for the stage and for the cards. */
+"use strict";
+(function (page) {
+  const SIGNED = [[10, 31, 102], [47, 74, 158], [125, 131, 144], [201, 139, 69], [245, 163, 26]];
+  const SEQUENCE = [[42, 15, 84], [51, 80, 140], [31, 138, 140], [85, 181, 103], [211, 203, 47]];
+  const KINDS = { bar: 0, spring: 1, cable: 2 };
+  const WIDTHS = [4.2, 2.4, 1.5];
+
+  function between(anchors, part) {
+    const place = Math.min(Math.max(part, 0), 1) * (anchors.length - 1);
+    const i = Math.min(Math.floor(place), anchors.length - 2), t = place - i;
+    const mix = anchors[i].map((v, k) => Math.round(v + t * (anchors[i + 1][k] - v)));
+    return "rgb(" + mix.join(",") + ")";
+  }
+  page.signedColour = (value) => between(SIGNED, 0.5 + 0.5 * value);
+  page.sequenceColour = (value) => between(SEQUENCE, value);
+
+  /* Colours of the style sheet, read once for each scheme. */
+  page.theme = function () {
+    const style = getComputedStyle(document.documentElement), theme = {};
+    for (const name of ["paper", "ink", "soft", "line", "bar", "spring", "cable", "slack", "casing",
+      "warm", "accent"]) theme[name] = style.getPropertyValue("--" + name).trim();
+    return theme;
+  };
+
+  /* The context of a canvas, its pixels those of the screen; size in CSS pixels. */
+  page.prepareCanvas = function (canvas) {
+    const ratio = window.devicePixelRatio || 1;
+    const width = canvas.clientWidth, height = canvas.clientHeight;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    const context = canvas.getContext("2d");
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    return { context, width, height };
+  };
+
+  /* What does not change from frame to frame. */
+  page.structureOf = function (data) {
+    const count = data.members.length;
+    const shades = count > 500 ? 9 : 33; /* strokes cost more than members */
+    const from = new Int32Array(count), to = new Int32Array(count), kind = new Uint8Array(count);
+    data.members.forEach((m, j) => {
+      from[j] = m.from;
+      to[j] = m.to;
+      kind[j] = KINDS[m.kind];
+    });
+    const buckets = 3 * shades + 1; /* the last: slack cables */
+    return { data, count, from, to, kind, shades, buckets, bucket: new Int32Array(count),
+      start: new Int32Array(buckets + 1), order: new Int32Array(count) };
+  };
+
+  page.boundsOf = function (position) {
+    const b = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < position.length; i += 2) {
+      b[0] = Math.min(b[0], position[i]);
+      b[1] = Math.min(b[1], position[i + 1]);
+      b[2] = Math.max(b[2], position[i]);
+      b[3] = Math.max(b[3], position[i + 1]);
+    }
+    return b;
+  };
+
+  /* A camera {x, y, scale} that shows the bounds in a picture of this size. */
+  page.fit = function (bounds, width, height, margin, size) {
+    const wide = Math.max(bounds[2] - bounds[0], 0), high = Math.max(bounds[3] - bounds[1], 0);
+    const scale = Math.min((width - 2 * margin) / (wide || size * 1e-3),
+      (height - 2 * margin) / (high || size * 1e-3));
+    const largest = Math.min(width, height) / (0.05 * size);
+    return { x: 0.5 * (bounds[0] + bounds[2]), y: 0.5 * (bounds[1] + bounds[3]),
+      scale: Math.min(scale, largest) };
+  };
+
+  function thinness(s, position, camera) {
+    let sum = 0, step = Math.max(1, Math.floor(s.count / 200)), n = 0;
+    for (let j = 0; j < s.count; j += step, n++)
+      sum += Math.hypot(position[2 * s.to[j]] - position[2 * s.from[j]],
+        position[2 * s.to[j] + 1] - position[2 * s.from[j] + 1]);
+    return n ? Math.min(1, Math.max(0.16, sum / n * camera.scale / 45)) : 1;
+  }
+
+  /* Sorts members into buckets of one pen each. */
+  function sortMembers(s, shape, limit) {
+    const middle = (s.shades - 1) / 2, last = s.buckets - 1;
+    s.start.fill(0);
+    for (let j = 0; j < s.count; j++) {
+      let b;
+      const force = shape.force ? shape.force[j] : 0;
+      if (s.kind[j] === 2 && shape.force && !(force > 0)) b = last;
+      else {
+        const part = limit > 0 ? Math.max(-1, Math.min(1, force / limit)) : 0;
+        b = s.kind[j] * s.shades + Math.round(middle * (part + 1));
+      }
+      s.bucket[j] = b;
+      s.start[b + 1]++;
+    }
+    for (let b = 0; b < s.buckets; b++) s.start[b + 1] += s.start[b];
+    const next = s.start.slice();
+    for (let j = 0; j < s.count; j++) s.order[next[s.bucket[j]]++] = j;
+  }
+
+  function trace(c, s, first, last, px, py) {
+    c.beginPath();
+    for (let k = first; k < last; k++) {
+      const j = s.order[k];
+      c.moveTo(px[s.from[j]], py[s.from[j]]);
+      c.lineTo(px[s.to[j]], py[s.to[j]]);
+    }
+  }
+
+  function drawMembers(c, s, shape, options, px, py, thin) {
+    const theme = options.theme, coloured = options.colour && shape.force;
+    const plain = [theme.bar, theme.spring, theme.cable], slack = s.buckets - 1;
+    sortMembers(s, shape, coloured ? options.limit : 0);
+    c.lineCap = s.count > 500 ? "butt" : "round";
+    if (coloured && s.count <= 500) { /* an edge keeps light colours apart from the paper */
+      c.strokeStyle = theme.casing;
+      for (let kind = 0; kind < 2; kind++) {
+        c.lineWidth = (WIDTHS[kind] + 1.4) * thin;
+        trace(c, s, s.start[kind * s.shades], s.start[(kind + 1) * s.shades], px, py);
+        c.stroke();
+      }
+    }
+    for (let b = 0; b < s.buckets; b++) {
+      if (s.start[b] === s.start[b + 1]) continue;
+      const kind = b === slack ? 2 : Math.floor(b / s.shades);
+      c.lineWidth = Math.max(0.5, WIDTHS[kind] * thin * (b === slack ? 0.7 : 1));
+      c.strokeStyle = b === slack ? theme.slack : coloured
+        ? page.signedColour((b % s.shades) / (s.shades - 1) * 2 - 1) : plain[kind];
+      c.setLineDash(b === slack ? [4, 3] : []);
+      trace(c, s, s.start[b], s.start[b + 1], px, py);
+      c.stroke();
+    }
+    c.setLineDash([]);
+  }
+
+  function drawSupports(c, data, px, py, theme) {
+    c.strokeStyle = theme.soft;
+    c.fillStyle = theme.paper;
+    c.lineWidth = 1.2;
+    data.nodes.forEach((node, i) => {
+      if (!node.fixed[0] && !node.fixed[1]) return;
+      const turn = node.fixed[1] ? 0 : Math.PI / 2, both = node.fixed[0] && node.fixed[1];
+      c.save();
+      c.translate(px[i], py[i]);
+      c.rotate(turn);
+      c.beginPath();
+      c.moveTo(0, 0);
+      c.lineTo(6.5, 11);
+      c.lineTo(-6.5, 11);
+      c.closePath();
+      c.fill();
+      c.stroke();
+      c.beginPath();
+      c.moveTo(-9, both ? 11 : 14.5);
+      c.lineTo(9, both ? 11 : 14.5);
+      c.stroke();
+      c.restore();
+    });
+  }
+
+  function drawNodes(c, data, px, py, options) {
+    const theme = options.theme, count = data.nodes.length;
+    if (count > 400) return;
+    c.fillStyle = theme.paper;
+    c.strokeStyle = theme.ink;
+    c.lineWidth = 1.2;
+    const radius = options.small ? 1.8 : 3.2;
+    for (let i = 0; i < count; i++) {
+      c.beginPath();
+      c.arc(px[i], py[i], radius, 0, 2 * Math.PI);
+      c.fill();
+      c.stroke();
+    }
+    if (!options.names || count > 60) return;
+    let mx = 0, my = 0;
+    for (let i = 0; i < count; i++) mx += px[i] / count, my += py[i] / count;
+    c.font = "italic 13px system-ui, 'DejaVu Sans', sans-serif";
+    c.textBaseline = "middle";
+    c.lineWidth = 3;
+    for (let i = 0; i < count; i++) { /* outwards, where the structure is not */
+      const dx = px[i] - mx, dy = py[i] - my, r = Math.hypot(dx, dy) || 1;
+      const name = data.nodes[i].name;
+      c.textAlign = dx > 0.3 * r ? "left" : dx < -0.3 * r ? "right" : "center";
+      const x = px[i] + 9 * dx / r, y = py[i] + 14 * (dy / r || -1);
+      c.strokeStyle = theme.paper;
+      c.strokeText(name.length > 24 ? name.slice(0, 23) + "\u2026" : name, x, y);
+      c.fillStyle = theme.ink;
+      c.fillText(name.length > 24 ? name.slice(0, 23) + "\u2026" : name, x, y);
+    }
+  }
+
+  function roundLength(rough) {
+    const power = Math.pow(10, Math.floor(Math.log10(rough))), part = rough / power;
+    return power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
+  }
+
+  /* The ground's line, body, and marks that scroll with it. */
+  function drawGround(c, ground, camera, width, height, options) {
+    if (!ground) return;
+    const theme = options.theme, slope = Math.tan(ground.slope);
+    const yAt = (x) => ground.height + slope * x;
+    const sx = (x) => width / 2 + (x - camera.x) * camera.scale;
+    const sy = (y) => height / 2 - (y - camera.y) * camera.scale;
+    const left = camera.x - width / 2 / camera.scale, right = camera.x + width / 2 / camera.scale;
+    const ends = [[sx(left), sy(yAt(left))], [sx(right), sy(yAt(right))]];
+    c.fillStyle = theme.line;
+    c.globalAlpha = 0.35;
+    c.beginPath();
+    c.moveTo(ends[0][0], ends[0][1]);
+    c.lineTo(ends[1][0], ends[1][1]);
+    c.lineTo(ends[1][0], ends[1][1] + 4 * height);
+    c.lineTo(ends[0][0], ends[0][1] + 4 * height);
+    c.fill();
+    c.globalAlpha = 1;
+    c.strokeStyle = theme.soft;
+    c.lineWidth = 1.2;
+    c.beginPath();
+    c.moveTo(ends[0][0], ends[0][1]);
+    c.lineTo(ends[1][0], ends[1][1]);
+    c.stroke();
+    if (options.small) return;
+    const step = roundLength(110 / camera.scale);
+    c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+    c.fillStyle = theme.soft;
+    c.textAlign = "center";
+    c.textBaseline = "top";
+    for (let k = Math.ceil(left / step); k * step <= right; k++) {
+      const x = sx(k * step), y = sy(yAt(k * step));
+      c.beginPath();
+      c.moveTo(x, y);
+      c.lineTo(x, y + 6);
+      c.stroke();
+      c.fillText(page.quantity(k * step, "m", 4), x, y + 8);
+    }
+  }
+
+  function drawArrow(c, x1, y1, x2, y2) {
+    const length = Math.hypot(x2 - x1, y2 - y1);
+    if (length < 2) return;
+    const ux = (x2 - x1) / length, uy = (y2 - y1) / length, head = Math.min(9, length);
+    c.beginPath();
+    c.moveTo(x1, y1);
+    c.lineTo(x2 - 0.8 * head * ux, y2 - 0.8 * head * uy);
+    c.stroke();
+    c.beginPath();
+    c.moveTo(x2, y2);
+    c.lineTo(x2 - head * ux - 0.4 * head * uy, y2 - head * uy + 0.4 * head * ux);
+    c.lineTo(x2 - head * ux + 0.4 * head * uy, y2 - head * uy - 0.4 * head * ux);
+    c.fill();
+  }
+
+  /* The ground's forces: what pushes ends at its node, friction begins there. */
+  function drawForces(c, data, shape, options, px, py) {
+    if (!shape.contact || !options.arrows || !(options.contactLimit > 0)) return;
+    const slope = data.ground ? data.ground.slope : 0, longest = options.small ? 16 : 46;
+    const tangent = [Math.cos(slope), Math.sin(slope)];
+    c.strokeStyle = c.fillStyle = options.theme.warm;
+    c.lineWidth = 2;
+    data.contacts.forEach((node, i) => {
+      const normal = Math.min(1.6, shape.contact[2 * i] / options.contactLimit) * longest;
+      const along = Math.max(-1.6, Math.min(1.6, shape.contact[2 * i + 1] / options.contactLimit)) *
+        longest;
+      drawArrow(c, px[node] + normal * tangent[1], py[node] + normal * tangent[0], px[node],
+        py[node]);
+      drawArrow(c, px[node], py[node], px[node] + along * tangent[0], py[node] - along * tangent[1]);
+    });
+  }
+
+  /* Draws a shape {position, force, contact, trails} as the camera sees it. */
+  page.drawStructure = function (canvas, s, shape, camera, options) {
+    const { context: c, width, height } = page.prepareCanvas(canvas), data = s.data;
+    const count = data.nodes.length, px = new Float64Array(count), py = new Float64Array(count);
+    const place = (x, y) => [width / 2 + (x - camera.x) * camera.scale,
+      height / 2 - (y - camera.y) * camera.scale];
+    for (let i = 0; i < count; i++) {
+      px[i] = width / 2 + (shape.position[2 * i] - camera.x) * camera.scale;
+      py[i] = height / 2 - (shape.position[2 * i + 1] - camera.y) * camera.scale;
+    }
+    drawGround(c, data.ground, camera, width, height, options);
+    if (!options.small || count <= 60) drawSupports(c, data, px, py, options.theme);
+    for (const trail of shape.trails || []) {
+      c.lineWidth = 1.6;
+      c.lineCap = "round";
+      const pieces = Math.min(12, trail.length / 2 - 1);
+      for (let k = 0; k < pieces; k++) {
+        const first = Math.floor(k * (trail.length / 2 - 1) / pieces);
+        const last = Math.floor((k + 1) * (trail.length / 2 - 1) / pieces);
+        c.strokeStyle = page.sequenceColour((k + 0.5) / pieces);
+        c.beginPath();
+        for (let i = first; i <= last; i++) c.lineTo(...place(trail[2 * i], trail[2 * i + 1]));
+        c.stroke();
+      }
+    }
+    drawMembers(c, s, shape, options, px, py,
+      thinness(s, shape.position, camera) * (options.small ? 0.6 : 1));
+    drawNodes(c, data, px, py, options);
+    drawForces(c, data, shape, options, px, py);
+  };
+
+  /* A number with a prefix: "9.78 mm/s". */
+  page.quantity = function (value, unit, digits) {
+    if (value === null || value === undefined || !isFinite(value)) return "\u2013";
+    if (value === 0) return "0 " + unit;
+    const prefixes = ["f", "p", "n", "\u00b5", "m", "", "k", "M", "G", "T"];
+    const size = Math.abs(Number(value.toPrecision(digits)));
+    const group = Math.min(Math.max(Math.floor(Math.log10(size) / 3 + 1e-12), -5), 4);
+    const number = Number((value / Math.pow(1000, group)).toPrecision(digits));
+    return String(number).replace("-", "\u2212") + " " + prefixes[group + 5] + unit;
+  };
+
+  /* The scale of colours: low at the foot. */
+  page.drawColourScale = function (canvas, limit, theme) {
+    const { context: c, height } = page.prepareCanvas(canvas), top = 24, bottom = height - 8;
+    c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+    c.fillStyle = theme.soft;
+    c.textBaseline = "top";
+    c.textAlign = "right";
+    c.fillText("force", 80, 4);
+    for (let y = top; y < bottom; y++) {
+      c.fillStyle = page.signedColour(1 - 2 * (y - top) / (bottom - top));
+      c.fillRect(68, y, 12, 1.5);
+    }
+    c.fillStyle = theme.soft;
+    c.textBaseline = "middle";
+    for (const part of [1, 0, -1])
+      c.fillText(page.quantity(part * limit, "N", 3), 62,
+        Math.min(bottom - 5, Math.max(top + 5, top + (1 - part) / 2 * (bottom - top))));
+  };
+})(window.strutPage);
