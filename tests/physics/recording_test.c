@@ -55,9 +55,11 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 }
 
 static memory first, second;
+static unsigned first_wants, second_wants; /* channels of their own */
 
 static strut_status run(const strut_scene *scene, strut_error *error) {
-  strut_sink sinks[] = {{&first, begin, rows, end, 0}, {&second, begin, rows, end, 0}};
+  strut_sink sinks[] = {{&first, begin, rows, end, first_wants},
+                        {&second, begin, rows, end, second_wants}};
   strut_sink *all[] = {&sinks[0], &sinks[1]};
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
   strut_model *model = motion_compile(scene);
@@ -74,6 +76,7 @@ static int clean(void **unused) {
   (void)unused;
   memset(&first, 0, sizeof first);
   memset(&second, 0, sizeof second);
+  first_wants = second_wants = 0;
   return 0;
 }
 
@@ -185,6 +188,56 @@ static void test_every_channel_holds_what_it_says(void **unused) {
     motion_steps(&m, 100);
   }
   motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+/* Columns of a part that are those of the whole. */
+static void check_part(const memory *part, const memory *whole, unsigned channels) {
+  size_t columns = 1;
+  assert_int_equal(part->channels, channels);
+  assert_int_equal(part->count, whole->count);
+  for (size_t k = 0, w = 0; k < part->channel_count; k++, w++) {
+    while (!(channels & 1u << w)) w++; /* the k-th of its bits is the w-th of all six */
+    size_t size = part->items[k] * part->components[k];
+    assert_int_equal(size, whole->items[w] * whole->components[w]);
+    assert_int_equal(part->offset[k], columns);
+    columns += size;
+    for (size_t i = 0; i < part->count; i++) {
+      assert_same_bits(part->row[i][0], whole->row[i][0]);
+      assert_memory_equal(part->row[i] + part->offset[k], whole->row[i] + whole->offset[w],
+                          size * sizeof(double));
+    }
+  }
+  assert_int_equal(part->width, columns);
+}
+
+/* A sink may want channels that the scene does not record, and changes nothing for the others. */
+static void test_each_sink_gets_the_channels_it_wants(void **unused) {
+  (void)unused;
+  static const unsigned pairs[][2] = {
+      {STRUT_CHANNEL_POSITION | STRUT_CHANNEL_CONTACT, 0},
+      {0, STRUT_CHANNEL_VELOCITY},
+      {STRUT_CHANNEL_ENERGY, STRUT_CHANNEL_FORCE | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_CONTACT},
+      {63, STRUT_CHANNEL_POSITION}};
+  static memory whole;
+  strut_scene scene;
+  strut_error error;
+  strut_scene_init(&scene);
+  structure_crawler(&scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&scene, 1e-4, 0.1);
+  scene.experiment.output_every = 5e-4;
+  scene.experiment.channels = 63;
+  assert_int_equal(run(&scene, &error), STRUT_OK);
+  whole = first;
+  assert_int_equal(whole.count, 201);
+  scene.experiment.channels = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_ENERGY;
+  for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++) {
+    clean(NULL);
+    first_wants = pairs[p][0], second_wants = pairs[p][1];
+    assert_int_equal(run(&scene, &error), STRUT_OK);
+    check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : scene.experiment.channels);
+    check_part(&second, &whole, pairs[p][1] ? pairs[p][1] : scene.experiment.channels);
+  }
   strut_scene_free(&scene);
 }
 
@@ -316,6 +369,7 @@ int main(void) {
       cmocka_unit_test_setup(test_rows_are_a_thousandth_apart_if_nothing_is_said, clean),
       cmocka_unit_test_setup(test_no_step_is_recorded_twice, clean),
       cmocka_unit_test_setup(test_every_channel_holds_what_it_says, clean),
+      cmocka_unit_test_setup(test_each_sink_gets_the_channels_it_wants, clean),
       cmocka_unit_test_setup(test_recording_changes_no_bit, clean),
       cmocka_unit_test_setup(test_a_sink_that_fails_stops_the_run, clean),
       cmocka_unit_test_setup(test_a_sink_that_cannot_begin, clean),

@@ -140,7 +140,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   double end = page - STRUT_RUN_EDGE - foot_height(run);
   if (!find_ways(run, &w)) return STRUT_NO_MEMORY;
   describe(run, &w, text, sizeof text);
-  strut_run_draw_title(run, canvas, text, true);
+  strut_run_draw_title(run, canvas, text, run->figure->width >= WIDE);
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width,
                    end - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
   strut_window window = strut_window_fit(box, w.bounds, MARGIN);

@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A recorded motion in memory: as the run had it, as its file gives it back, thinned, refused. */
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/hdf5.h"
+#include "engine/output/trajectory.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+#include "tests/unit/scratch.h"
+
+enum { ALL = 63 };
+
+static void crawler(strut_scene *scene, double every) {
+  strut_scene_init(scene);
+  structure_crawler(scene, 10, 1e-4, 0.1, false);
+  motion_experiment(scene, 1e-4, 0.1);
+  scene->experiment.output_every = every;
+  scene->experiment.channels = ALL;
+}
+
+/* Runs with a file in the scratch directory where `file` says so, and fills the trajectory. */
+static strut_status record(const strut_scene *scene, unsigned channels, size_t room, bool file,
+                           strut_trajectory *t) {
+  strut_sink *sinks[2] = {strut_trajectory_sink(t, scene, channels, room)};
+  if (file) sinks[1] = strut_hdf5_create(scratch_path(""), "strut: 1\n");
+  strut_model *model = motion_compile(scene);
+  strut_run_options options = {.sinks = sinks, .sink_count = file ? 2 : 1, .force = true};
+  strut_summary summary = {0};
+  strut_error error = {0};
+  strut_status status = strut_simulate(model, &options, &summary, &error);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  strut_trajectory_sink_free(sinks[0]);
+  if (file) strut_hdf5_free(sinks[1]);
+  return status;
+}
+
+static void assert_same(const double *a, const double *b, size_t count) {
+  assert_int_equal(!a, !b);
+  if (a) assert_memory_equal(a, b, count * sizeof *a);
+}
+
+static void assert_same_motion(const strut_trajectory *a, const strut_trajectory *b) {
+  size_t n = a->frames;
+  assert_int_equal(b->frames, n);
+  assert_int_equal(b->every, a->every);
+  assert_int_equal(b->recorded, a->recorded);
+  assert_int_equal(b->node_count, a->node_count);
+  assert_int_equal(b->member_count, a->member_count);
+  assert_int_equal(b->contact_count, a->contact_count);
+  assert_int_equal(b->status, a->status);
+  assert_memory_equal(b->contact_node, a->contact_node, a->contact_count * sizeof(int32_t));
+  assert_same(a->time, b->time, n);
+  assert_same(a->position, b->position, 2 * n * a->node_count);
+  assert_same(a->velocity, b->velocity, 2 * n * a->node_count);
+  assert_same(a->length, b->length, n * a->member_count);
+  assert_same(a->force, b->force, n * a->member_count);
+  assert_same(a->contact, b->contact, 2 * n * a->contact_count);
+  assert_same(a->energy, b->energy, n * STRUT_ENERGIES);
+}
+
+static void test_the_file_gives_back_what_the_run_had(void **unused) {
+  (void)unused;
+  strut_trajectory taken = {0}, read = {0};
+  strut_scene scene;
+  strut_error error = {0};
+  scratch_make();
+  crawler(&scene, 1e-3);
+  assert_int_equal(record(&scene, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  assert_int_equal(taken.frames, 101);
+  assert_int_equal(taken.recorded, 101);
+  assert_int_equal(taken.every, 1);
+  assert_int_equal(taken.contact_count, 5);
+  assert_int_equal(taken.contact_node[3], 3);
+  assert_near(taken.time[100], 0.1, 1e-12);
+  assert_int_equal(strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read,
+                                         &error),
+                   STRUT_OK);
+  assert_same_motion(&taken, &read);
+  strut_trajectory_free(&read);
+  strut_trajectory_free(&taken);
+  strut_scene_free(&scene);
+  scratch_remove();
+}
+
+/* A sink takes what it asks for, whatever the scene records; the file has what the scene says. */
+static void test_channels_of_its_own(void **unused) {
+  (void)unused;
+  strut_trajectory taken = {0}, read = {0};
+  strut_scene scene;
+  scratch_make();
+  crawler(&scene, 1e-3);
+  scene.experiment.channels = STRUT_CHANNEL_LENGTH;
+  unsigned wanted = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_ENERGY;
+  assert_int_equal(record(&scene, wanted, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  assert_true(taken.position && taken.energy && taken.time);
+  assert_true(!taken.length && !taken.force && !taken.velocity && !taken.contact);
+  assert_int_equal(
+      strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
+      STRUT_OK);
+  assert_true(read.length && !read.position && !read.energy);
+  strut_trajectory_free(&read);
+  strut_trajectory_free(&taken);
+  strut_scene_free(&scene);
+  scratch_remove();
+}
+
+/* Every so many-th sample from the first on, and the last: the same frames as without a limit. */
+static void check_thinned(const strut_trajectory *few, const strut_trajectory *all, size_t room) {
+  size_t frame = 1 + 2 * few->node_count + few->member_count, n = few->frames;
+  assert_int_equal(few->recorded, all->frames);
+  assert_true(few->every > 1 && (few->every & (few->every - 1)) == 0);
+  assert_true(n * frame <= room + frame); /* the last one may come on top */
+  assert_true(2 * (n + 1) * frame >= room / 2);
+  for (size_t i = 0; i < n; i++) {
+    size_t at = i + 1 < n ? i * few->every : all->frames - 1;
+    assert_same_bits(few->time[i], all->time[at]);
+    assert_memory_equal(few->position + 2 * i * few->node_count,
+                        all->position + 2 * at * few->node_count,
+                        2 * few->node_count * sizeof(double));
+    assert_memory_equal(few->force + i * few->member_count, all->force + at * few->member_count,
+                        few->member_count * sizeof(double));
+  }
+}
+
+static void test_thinned_to_the_room(void **unused) {
+  (void)unused;
+  static const size_t rooms[] = {200, 1000, 5000, 12345, 19000};
+  strut_trajectory all = {0};
+  strut_scene scene;
+  scratch_make();
+  crawler(&scene, 1e-4);
+  scene.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE;
+  assert_int_equal(record(&scene, 0, STRUT_TRAJECTORY_ROOM, true, &all), STRUT_OK);
+  assert_int_equal(all.frames, 1001);
+  for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
+    strut_trajectory few = {0};
+    assert_int_equal(record(&scene, 0, rooms[i], false, &few), STRUT_OK);
+    check_thinned(&few, &all, rooms[i]);
+    strut_trajectory_free(&few);
+    assert_int_equal(strut_trajectory_read(scratch_path(""), &scene, rooms[i], &few, NULL),
+                     STRUT_OK);
+    check_thinned(&few, &all, rooms[i]);
+    strut_trajectory_free(&few);
+  }
+  strut_trajectory_free(&all);
+  strut_scene_free(&scene);
+  scratch_remove();
+}
+
+static void test_a_run_that_diverged_is_marked(void **unused) {
+  (void)unused;
+  strut_trajectory taken = {0}, read = {0};
+  strut_scene scene;
+  scratch_make();
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1.1, 0, 1);
+  build_sized(&scene, STRUT_BAR, 0, 1, 2e5, 1, 0, 1);
+  motion_experiment(&scene, 0.01, 10); /* w dt = 4.5 */
+  scene.experiment.output_every = 0.01;
+  assert_int_equal(record(&scene, 0, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_DIVERGED);
+  assert_int_equal(taken.status, STRUT_DIVERGED);
+  assert_true(taken.frames > 1);
+  assert_int_equal(
+      strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
+      STRUT_OK);
+  assert_same_motion(&taken, &read);
+  strut_trajectory_free(&read);
+  strut_trajectory_free(&taken);
+  strut_scene_free(&scene);
+  scratch_remove();
+}
+
+static void refused(const strut_scene *scene, const char *directory, const char *why) {
+  strut_trajectory t = {0};
+  strut_error error = {0};
+  assert_int_equal(strut_trajectory_read(directory, scene, STRUT_TRAJECTORY_ROOM, &t, &error),
+                   STRUT_FILE_TROUBLE);
+  if (!strstr(error.message, why)) fail_msg("'%s' does not say '%s'", error.message, why);
+  assert_non_null(strstr(error.message, "trajectory.h5"));
+  strut_trajectory_free(&t);
+}
+
+static void test_refusals(void **unused) {
+  (void)unused;
+  strut_trajectory taken = {0};
+  strut_scene scene;
+  scratch_make();
+  crawler(&scene, 1e-3);
+  refused(&scene, scratch_path("nowhere"), "No such file");
+  assert_int_equal(record(&scene, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  const char *name = scene.nodes[2].name;
+  scene.nodes[2].name = "another";
+  refused(&scene, scratch_path(""), "another structure");
+  scene.nodes[2].name = name;
+  name = scene.members[8].name;
+  scene.members[8].name = "another";
+  refused(&scene, scratch_path(""), "another structure");
+  scene.members[8].name = name;
+  scene.contact_count--;
+  refused(&scene, scratch_path(""), "another structure");
+  scene.contact_count++;
+  scene.node_count--;
+  refused(&scene, scratch_path(""), "another structure");
+  scene.node_count++;
+  FILE *file = fopen(scratch_path("trajectory.h5"), "r+b"); /* its first bytes */
+  assert_true(file && fputs("this is no HDF5 file", file) > 0 && fclose(file) == 0);
+  refused(&scene, scratch_path(""), "not an HDF5 file");
+  strut_trajectory_free(&taken);
+  strut_scene_free(&scene);
+  scratch_remove();
+}
+
+static void test_every_allocation_may_fail(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  crawler(&scene, 1e-4);
+  strut_model *model = motion_compile(&scene);
+  strut_status status = STRUT_NO_MEMORY;
+  for (int64_t n = 0; status != STRUT_OK; n++) {
+    strut_trajectory t = {0};
+    strut_summary summary = {0};
+    strut_error error = {0};
+    strut_fail_allocation_after(n);
+    strut_sink *sink = strut_trajectory_sink(&t, &scene, ALL, 20000);
+    strut_run_options options = {.sinks = &sink, .sink_count = 1, .force = true};
+    status = sink ? strut_simulate(model, &options, &summary, &error) : STRUT_NO_MEMORY;
+    strut_fail_allocation_after(-1);
+    if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+    strut_summary_free(&summary);
+    strut_trajectory_sink_free(sink);
+    strut_trajectory_free(&t);
+    assert_true(n < 1000);
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_file_gives_back_what_the_run_had),
+      cmocka_unit_test(test_channels_of_its_own),
+      cmocka_unit_test(test_thinned_to_the_room),
+      cmocka_unit_test(test_a_run_that_diverged_is_marked),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_every_allocation_may_fail),
+  };
+  return cmocka_run_group_tests_name("trajectory", tests, NULL, NULL);
+}
