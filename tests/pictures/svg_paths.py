@@ -2,7 +2,7 @@
 """The lines and areas of an SVG as Cairo writes it, in points on the page; letters left out.
 
 Cairo 1.16 puts colours into style="...", 1.18 into attributes of their own; both place things with
-matrices. What is read here is the same for both.
+matrices, docs/smaller.awk tells lines by their steps. What is read here is the same for all.
 """
 import re
 import xml.etree.ElementTree as tree
@@ -46,12 +46,25 @@ class Path:
         self.width = float(get("stroke-width", "1"))
         dash = get("stroke-dasharray", "none")
         self.dash = None if dash == "none" else [float(n) for n in NUMBER.findall(dash)]
-        self.curved = "C" in element.get("d", "")
+        self.curved = "c" in element.get("d", "").lower()
         self.lines = []
-        for command, rest in re.findall(r"([MLCZHV])([^MLCZHV]*)", element.get("d", "")):
+        here = start = (0.0, 0.0)
+        for command, rest in re.findall(r"([MLCZHVmlczhv])([^MLCZHVmlczhv]*)", element.get("d", "")):
             n = [float(t) for t in NUMBER.findall(rest)]
-            points = [placed(matrix, n[i], n[i + 1]) for i in range(0, len(n) - 1, 2)]
-            if command == "M":
+            if command in "Zz":
+                here = start
+                continue
+            if command in "HhVv":  # the other coordinate stays
+                stays = 0.0 if command.islower() else here[command == "H"]
+                n = [v for t in n for v in ((t, stays) if command in "Hh" else (stays, t))]
+            points = []
+            for i in range(0, len(n) - 1, 2):
+                if i % (6 if command in "Cc" else 2) == 0:
+                    origin = here if command.islower() else (0.0, 0.0)
+                here = (origin[0] + n[i], origin[1] + n[i + 1])
+                points.append(placed(matrix, *here))
+            if command in "Mm":
+                start = (origin[0] + n[0], origin[1] + n[1])
                 self.lines.append(points)
             elif points and self.lines:
                 self.lines[-1] += points

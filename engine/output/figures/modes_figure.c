@@ -18,6 +18,7 @@ static const double TURN = 6.283185307179586476925;
 static const double GAP = 12.0, EDGE = 4.0, MARGIN = 13.0; /* [pt] */
 static const double NARROWEST = 112.0;  /* panel, for its title [pt] */
 static const double TALLEST = 190.0;    /* drawing inside a panel [pt] */
+static const double COVERED = 0.12;     /* of a panel, by names */
 static const double NODE = 2.3;         /* radius of a node as drawn [pt] */
 static const double TITLE_LINE = 11.5, WORD_LINES = 19.0;
 static const double UNSTRAINED = 1e-9;  /* strain that is rounding, in units of motion over size */
@@ -166,8 +167,7 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
     if (isfinite(mode->damping_ratio) && mode->damping_ratio > 0 && used > 0)
       snprintf(title + used, TITLE - (size_t)used, ", \xCE\xB6 = %.2g", mode->damping_ratio);
   } else if (mode->kind == STRUT_MODE_UNSTABLE) {
-    snprintf(title, TITLE, "mode %zu: unstable, e-fold in %s", number,
-             strut_drawn_quantity(1.0 / sqrt(-mode->eigenvalue), 3, "s").text);
+    snprintf(title, TITLE, "mode %zu: unstable", number);
   } else {
     snprintf(title, TITLE, "mode %zu: %s", number,
              mode->kind == STRUT_MODE_RIGID ? "rigid-body motion" : "mechanism");
@@ -176,9 +176,16 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
 }
 
 /* What moves; which members give way is told by colours. */
-static void words_of(const strut_mode *mode, char words[TITLE + 1]) {
+static void words_of(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
   const char *end = strchr(mode->description, ';');
-  snprintf(words, TITLE + 1, "%.*s",
+  char growth[TITLE / 2] = "";
+  if (mode->kind == STRUT_MODE_UNSTABLE) {
+    strut_c_locale locale = strut_c_locale_enter();
+    snprintf(growth, sizeof growth, "grows e-fold in %s: ",
+             strut_drawn_quantity(1.0 / sqrt(-mode->eigenvalue), 3, "s").text);
+    strut_c_locale_leave(locale);
+  }
+  snprintf(words, TITLE + TITLE / 2, "%s%.*s", growth,
            strut_text_bytes(mode->description, end ? (int)(end - mode->description) : TITLE),
            mode->description);
 }
@@ -191,7 +198,7 @@ static void draw_head(figure *f, strut_box box, size_t number) {
   const strut_mode *mode = &f->modes->list[number];
   const strut_font bold = {.size = 8, .bold = true};
   const strut_font plain = word_font(box.width);
-  char text[TITLE + 1], fitted[STRUT_FITTED_TEXT];
+  char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
   title_of(mode, number + 1, text);
   strut_draw_text(f->canvas, box.x, box.y,
                   strut_text_fit(f->canvas, text, bold, box.width, 0, fitted), bold);
@@ -233,6 +240,19 @@ static size_t draw_ways(figure *f, const strut_window *window, double (*ways)[2]
   return count;
 }
 
+/* Whether names cover little enough of the drawing; words name those that matter anyway. */
+static bool names_fit(figure *f, strut_box box) {
+  double covered = 0.0;
+  if (f->model->node_count > NAMED) return false;
+  for (int32_t i = 0; i < f->model->node_count; i++) {
+    double width, height;
+    strut_text_size(f->canvas, f->model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
+                    &height);
+    covered += width * height;
+  }
+  return covered <= COVERED * box.width * box.height;
+}
+
 static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t number) {
   draw_head(f, box, number);
   box.y += f->head;
@@ -260,7 +280,7 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
   }
   strut_draw_structure(f->canvas, &window, f->model, f->plus, &bent);
   size_t ways = draw_ways(f, &window, f->ways);
-  if (f->model->node_count <= NAMED)
+  if (names_fit(f, box))
     strut_draw_names(f->canvas, &window, f->model, f->plus, true, false,
                      (const double(*)[2])f->ways, ways);
 }
@@ -316,7 +336,7 @@ static strut_status measure(figure *f, double width, const strut_key_item *items
   *key = strut_key_height(ruler, width - 2 * EDGE, items, count);
   double words = 0.0;
   for (size_t k = 0; k < f->count; k++) {
-    char text[TITLE + 1], fitted[STRUT_FITTED_TEXT];
+    char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
     double wide, high;
     words_of(&f->modes->list[f->shown[k]], text);
     const strut_font font = word_font(f->panel_width);
