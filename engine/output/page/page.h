@@ -2,10 +2,10 @@
 /**
  * The page: one HTML file that shows a run or a model, without a network, in any browser.
  *
- * What the program writes is data; what the page does with them is in page.html, page.css and
- * the scripts beside this header, and in Debian's dygraphs, all put into the library at build time.
- * The data are one JSON object in <script type="application/json" id="strut-data">, in which '<', '>'
- * and '&' are written as escapes, so that no name can end it:
+ * What the program writes is data; what the page does with them is in page.html, page.css and the
+ * scripts beside this header, and in Debian's dygraphs, all put into the library at build time. The
+ * data are one JSON object in <script type="application/json" id="strut-data">, in which '<', '>' and
+ * '&' are written as escapes, so that no name can end it:
  *
  *   strut, name, description, source: texts
  *   nodes: [{name, fixed: [bool, bool]}], members: [{name, from, to, kind: bar|spring|cable}]

@@ -101,8 +101,8 @@ static const char *escape(const unsigned char *at, size_t *taken) {
   }
 }
 
-/* Appends JSON as it may stand in <script>, without what cJSON puts between things: a line's end and
-   a tab are never within a text. */
+/* Appends JSON as it may stand in <script>, without what cJSON puts between things: the end of a
+   line and a tab are never within a text. */
 static void add_safe(strut_buffer *buffer, const char *json) {
   const char *from = json;
   for (const char *at = json;; at++) {

@@ -8,12 +8,14 @@
 #include "engine/output/page/page_blocks.h"
 #include "engine/output/page/page_parts.h"
 
-/* Quanta: of positions in sizes, of what is drawn as curves and colours in the largest of all. */
-static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, TIME_QUANTUM = 1e-12;
+/* Quanta: of positions in sizes; of what is drawn as curves and colours in the largest of all, but
+   of energies in that of the smallest column; of times that are no whole steps in their span. */
+static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTUM = 1e-3,
+                    LEAST_QUANTUM = 1e-10, TIME_QUANTUM = 1e-12;
 /* A diverged run is shown until it is so many sizes from where it began. */
 static const double FAR = 1e3;
 
-enum { BLOCKS = 5 };
+enum { TIME, POSITION, FORCE, CONTACT, ENERGY, BLOCKS };
 static const char *const keys[BLOCKS] = {"time", "position", "force", "contact", "energy"};
 static const char *const energy_names[STRUT_ENERGIES] = {
     "kinetic",   "elastic",   "gravity",            "contact",            "drive_work",
@@ -49,7 +51,7 @@ static size_t count_frames(const motion *m) {
       const strut_rows *rows = &m->rows[b];
       if (rows->values && !finite(rows->values + f * rows->columns, rows->columns)) return f;
     }
-    const double *q = m->rows[1].values + f * m->rows[1].columns;
+    const double *q = m->rows[POSITION].values + f * m->rows[POSITION].columns;
     if (!near(m->page->model, q, diverged ? FAR : most)) return f;
   }
   return t->frames;
@@ -57,17 +59,17 @@ static size_t count_frames(const motion *m) {
 
 static void take_rows(motion *m) {
   const strut_trajectory *t = m->page->motion;
-  m->rows[0] = (strut_rows){t->time, t->frames, 1, 1};
-  m->rows[1] = (strut_rows){t->position, t->frames, 2 * t->node_count, 1};
-  m->rows[2] = (strut_rows){t->force, t->frames, t->member_count, 1};
-  m->rows[3] = (strut_rows){t->contact, t->frames, 2 * t->contact_count, 1};
-  m->rows[4] = (strut_rows){t->energy, t->frames, STRUT_ENERGIES, 1};
+  m->rows[TIME] = (strut_rows){t->time, t->frames, 1, 1};
+  m->rows[POSITION] = (strut_rows){t->position, t->frames, 2 * t->node_count, 1};
+  m->rows[FORCE] = (strut_rows){t->force, t->frames, t->member_count, 1};
+  m->rows[CONTACT] = (strut_rows){t->contact, t->frames, 2 * t->contact_count, 1};
+  m->rows[ENERGY] = (strut_rows){t->energy, t->frames, STRUT_ENERGIES, 1};
   m->frames = count_frames(m);
   for (int b = 0; b < BLOCKS; b++) m->rows[b].frames = m->frames;
 }
 
 static double time_quantum(const motion *m) {
-  const strut_rows *time = &m->rows[0];
+  const strut_rows *time = &m->rows[TIME];
   double step = m->page->model->scene->experiment.step;
   if (strut_rows_multiples(time, step)) return step;
   double span = time->values[m->frames - 1] - time->values[0];
@@ -84,15 +86,33 @@ static double scale_of(const motion *m, const strut_rows *rows, double largest) 
   return scale > 0 ? scale : largest;
 }
 
+/* Energies of one column may be tiny beside those of another, and are curves all the same: the
+   quantum suits the smallest column, within what a block holds at little cost. */
+static double energy_quantum(const motion *m, const strut_rows *rows, double scale) {
+  double wanted = VALUE_QUANTUM * scale;
+  for (size_t c = 0; c < rows->columns; c++) {
+    double largest = 0;
+    for (size_t f = 0; f < m->frames; f++) {
+      double value = fabs(rows->values[f * rows->columns + c]);
+      if (value > largest) largest = value;
+    }
+    if (largest > 0 && COLUMN_QUANTUM * largest < wanted) wanted = COLUMN_QUANTUM * largest;
+  }
+  return fmax(wanted, LEAST_QUANTUM * scale);
+}
+
+static double wanted_quantum(const motion *m, int b, double largest) {
+  if (b == POSITION) return POSITION_QUANTUM * m->page->model->size;
+  double scale = scale_of(m, &m->rows[b], largest);
+  return b == ENERGY ? energy_quantum(m, &m->rows[b], scale) : VALUE_QUANTUM * scale;
+}
+
 static void choose_quanta(motion *m) {
-  m->quantum[0] = time_quantum(m);
-  for (int b = 1; b < BLOCKS; b++) {
-    const strut_rows *rows = &m->rows[b];
-    if (!rows->values) continue;
-    double largest = strut_rows_largest(rows);
-    double wanted = b == 1 ? POSITION_QUANTUM * m->page->model->size
-                           : VALUE_QUANTUM * scale_of(m, rows, largest);
-    m->quantum[b] = strut_round_quantum(wanted, largest);
+  m->quantum[TIME] = time_quantum(m);
+  for (int b = POSITION; b < BLOCKS; b++) {
+    if (!m->rows[b].values) continue;
+    double largest = strut_rows_largest(&m->rows[b]);
+    m->quantum[b] = strut_round_quantum(wanted_quantum(m, b, largest), largest);
   }
 }
 
@@ -117,7 +137,7 @@ static size_t encode(motion *m, size_t every) {
    bytes, so that two halvings at once are right where four times the room is filled. */
 static bool fit(motion *m, size_t room) {
   size_t every = 1, bytes;
-  while ((bytes = encode(m, every)) > room && strut_rows_taken(&m->rows[0]) > 2) {
+  while ((bytes = encode(m, every)) > room && strut_rows_taken(&m->rows[TIME]) > 2) {
     size_t more = 2;
     while (bytes / room >= 2 * more) more *= 2;
     every *= more;
@@ -149,7 +169,7 @@ static void add_head(strut_buffer *buffer, const motion *m) {
   bool cut = m->frames < t->frames;
   strut_status status = cut ? STRUT_DIVERGED : t->status;
   strut_buffer_add(buffer, "{\"frames\":%zu,\"recorded\":%zu,\"every\":%zu",
-                   strut_rows_taken(&m->rows[0]), t->recorded, t->every * m->rows[0].every);
+                   strut_rows_taken(&m->rows[TIME]), t->recorded, t->every * m->rows[TIME].every);
   strut_buffer_add(buffer, ",\"status\":\"%s\",\"track\":", strut_status_text(status));
   int32_t track = m->page->model->scene->experiment.measure_node;
   if (track >= 0)
@@ -186,6 +206,6 @@ void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t 
     add_motion(buffer, &m);
   else
     buffer->failed = true;
-  *frames = (strut_page_frames){strut_rows_taken(&m.rows[0]), page->motion->recorded};
+  *frames = (strut_page_frames){strut_rows_taken(&m.rows[TIME]), page->motion->recorded};
   free_blocks(&m);
 }

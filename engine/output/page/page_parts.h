@@ -13,8 +13,8 @@
 char *strut_page_data(const strut_page *page, strut_page_frames *frames);
 
 /**
- * Adds the keys equilibria, equilibria_remark, equilibria_left_out and barriers. False when memory is
- * out.
+ * Adds the keys equilibria, equilibria_remark, equilibria_left_out and barriers. False when memory
+ * is out.
  */
 bool strut_page_add_equilibria(strut_json *json, const strut_page *page);
 

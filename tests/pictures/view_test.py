@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `strut view` writes: its data, taken apart again, are those of the run; no name breaks out.
+
+usage: view_test.py STRUT
+"""
+import base64
+import csv
+import html.parser
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import zlib
+
+strut = os.path.abspath(sys.argv[1])
+models = os.path.abspath("models")
+failures = 0
+
+
+def check(good, text):
+    global failures
+    if not good:
+        failures += 1
+        print("FAILED:", text)
+
+
+def run(*words, code=0):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    check(done.returncode == code,
+          f"strut {' '.join(words)}: exit code {done.returncode}, not {code}: {done.stderr[:300]}")
+    return done
+
+
+class Page(html.parser.HTMLParser):
+    """Elements, texts of scripts, and everything that would ask somebody else."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.tags, self.scripts, self.title, self.outside, self.inside = [], [], "", [], None
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        self.bytes = len(text.encode())
+        self.feed(text)
+        self.close()
+        data = [text for kind, text in self.scripts if ("id", "strut-data") in kind]
+        check(len(data) == 1, f"{path}: {len(data)} elements of data")
+        self.raw = data[0]
+        self.data = json.loads(self.raw, parse_constant=lambda word: check(False, word))
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.inside = tag
+        if tag == "script":
+            self.scripts.append((attributes, ""))
+        self.outside += [value for name, value in attributes if name in ("src", "href")]
+
+    def handle_endtag(self, tag):
+        self.inside = None
+
+    def handle_data(self, data):
+        if self.inside == "script":
+            kind, text = self.scripts[-1]
+            self.scripts[-1] = (kind, text + data)
+        elif self.inside == "title":
+            self.title += data
+
+
+def integers(data):
+    number, shift = 0, 0
+    for byte in data:
+        number |= (byte & 127) << shift
+        shift += 7
+        if not byte & 128:
+            yield number >> 1 if not number & 1 else -(number >> 1) - 1
+            number, shift = 0, 0
+
+
+def columns(block, frames):
+    """The block's columns of values, each of `frames` numbers, all bytes used."""
+    number = list(integers(zlib.decompress(base64.b64decode(block["bytes"], validate=True), -15)))
+    check(len(number) == frames * block["columns"], "a block of another length")
+    found = []
+    for c in range(block["columns"]):
+        n = slope = 0
+        column = []
+        for f, z in enumerate(number[c * frames:(c + 1) * frames]):
+            slope = z if f < 2 else slope + z
+            n = z if f == 0 else n + slope
+            check(abs(n) <= 2 ** 49, "a number too large")
+            column.append(n * block["quantum"])
+        found.append(column)
+    return found
+
+
+def table(path, keep=lambda name: True):
+    """Times and columns of a CSV file."""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return [[float(row[i]) for row in rows] for i, name in enumerate(head)
+            if i == 0 or keep(name)]
+
+
+def same(block, frames, wanted, what):
+    for c, (found, column) in enumerate(zip(columns(block, frames), wanted, strict=True)):
+        for f in range(frames):
+            if not abs(found[f] - column[f]) <= 0.5000001 * block["quantum"]:
+                check(False, f"{what}, column {c}, frame {f}: {found[f]} is not {column[f]}")
+                return
+
+
+def crawler():
+    run("run", f"{models}/crawler/crawler.yaml", "-o", "crawl", "-q")
+    said = run("view", "crawl", "-o", "crawl.html")
+    page = Page("crawl.html")
+    motion = page.data["motion"]
+    check(said.stdout == f"crawl.html: 1001 frames, {1e-6 * page.bytes:.1f} MB\n", said.stdout)
+    check(not page.outside, f"asks for {page.outside}")
+    check(page.title == "Nine-member multistable crawler", page.title)
+    check(any("Dygraph" in text for _, text in page.scripts), "no dygraphs")
+    text = open("crawl.html", encoding="utf-8").read()
+    check("Permission is hereby granted" in text and "Vanderkam" in text, "no licence of dygraphs")
+    check("<!--strut:" not in text, "a placeholder is left")
+    check((motion["frames"], motion["recorded"], motion["every"]) == (1001, 1001, 1), "frames")
+    check(motion["status"] == "completed" and motion["track"] is None, "status")
+    check(abs(sum(motion["weights"]) - 0.14) < 1e-12, "weights")
+    nodes = table("crawl/nodes.csv")
+    check(columns(motion["time"], 1001)[0] == nodes[0], "times are not exact")
+    same(motion["position"], 1001, nodes[1:], "positions")
+    same(motion["force"], 1001, table("crawl/members.csv", lambda n: ".force" in n)[1:], "forces")
+    same(motion["contact"], 1001, table("crawl/contacts.csv")[1:], "contacts")
+    check(motion["position"]["quantum"] == 5e-8, "quantum of positions")
+    check(motion["energy"] is None, "energies that were not recorded")
+    velocity = json.load(open("crawl/summary.json"))["velocity"]
+    rows = {row["label"]: row["value"] for row in page.data["summary"]}
+    check(rows["run"] == "completed" and
+          rows["mean velocity of the centre of mass"].startswith(f"{1e3 * velocity:.4g} mm/s"),
+          f"summary: {rows}")
+    run("view", "crawl", "-o", "again.html", "-q")
+    check(open("again.html").read() == text, "not the same bytes twice")
+    cards(page.data, "crawl/scene.yaml")
+
+
+def cards(data, scene):
+    """The cards are equilibria that strut finds; those that stand come first, the named ones ahead."""
+    found = {e["name"]: e for e in json.loads(run("equilibria", scene, "--json").stdout)["equilibria"]}
+    listed = data["equilibria"]
+    check(len(listed) == 40 and len(listed) + data["equilibria_left_out"] == len(found), "cards")
+    check([card["name"] for card in listed[:4]] == ["III", "III-2", "I", "II"],
+          f"first: {[card['name'] for card in listed[:4]]}")
+    standing = [name for name, e in found.items() if e["fate"] == "stands"]
+    check(set(standing) <= {card["name"] for card in listed}, "some that stand have no card")
+    for card in listed:
+        other = found[card["name"]]
+        where = [x for node in data["nodes"] for x in other["nodes"][node["name"]]]
+        check(all(abs(a - b) <= 5.001e-9 * abs(b) for a, b in zip(card["position"], where)), "shape")
+        check(card["energy"] == other["energy"] and card["verdict"] == other["verdict"] and
+              card["stands"] == (other["fate"] == "stands"), f"card {card['name']}")
+        forces = other["forces"].values()
+        check(all(abs(a - b) <= 5.001e-9 * abs(b) for a, b in zip(card["force"], forces)), "forces")
+        if card["stands"]: # what presses on the ground carries the whole
+            check(abs(sum(card["normal"]) - 0.14 * 9.81) < 1e-5, f"normals of {card['name']}")
+    for barrier in data["barriers"]:
+        check(0 <= barrier["from"] < 40 and 0 <= barrier["to"] < 40 and barrier["height"] > 0,
+              f"barrier {barrier}")
+
+
+def everything(name, *changes):
+    """The crawler's scene as a file: with everything recorded from the start, every millisecond."""
+    with open(f"{models}/crawler/crawler.yaml", encoding="utf-8") as file:
+        scene = file.read()
+    scene = "\n".join(line for line in scene.splitlines() if not line.startswith("output:"))
+    for old, new in changes:
+        check(old in scene, f"the crawler has no '{old}'")
+        scene = scene.replace(old, new)
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(scene + "\noutput: {every: 1 ms, "
+                   "channels: [position, velocity, length, force, contact, energy]}\n")
+
+
+def short_run():
+    everything("short.yaml", ("periods: 1100", "periods: 20"), ("last: 100", "last: 10"))
+    run("run", "short.yaml", "-o", "short", "-q")
+    run("view", "short", "-o", "short.html")
+    motion = Page("short.html").data["motion"]
+    check(len(motion["energy_names"]) == 10 == motion["energy"]["columns"], "energies")
+    head = open("short/energy.csv", encoding="utf-8").readline()
+    places = [head.find(name) for name in motion["energy_names"]]
+    check(places == sorted(places) and places[0] > 0, "energies have other names")
+    energy = table("short/energy.csv")
+    same(motion["energy"], motion["frames"], energy[1:11], "energies")
+    check(max(energy[1]) > 100 * motion["energy"]["quantum"], "the kinetic energy is lost")
+
+
+def paper_run():
+    """The whole of the paper's run, every millisecond, with everything recorded."""
+    everything("paper.yaml")
+    run("run", "paper.yaml", "-o", "paper", "-q")
+    run("view", "paper", "-o", "paper.html")
+    page = Page("paper.html")
+    motion = page.data["motion"]
+    check(page.bytes < 5e6, f"the paper's run takes {page.bytes} bytes")
+    check(motion["recorded"] == 110001 and motion["frames"] * motion["every"] >= 110001, "frames")
+    time = columns(motion["time"], motion["frames"])[0]
+    check(len(time) == motion["frames"] and time[0] == 0 and abs(time[-1] - 110) < 1e-9, "times")
+
+
+HOSTILE = ["</script><script>alert(1)</script>", "<!--<script> -->]]> & \"quotes\" 'more'",
+           "שלום <b>עולם</b> \u2028line"]
+NAMES = ["שלום", "مرحبا", "наука", "a" * 60, "_-.", "0"]
+
+
+def hostile():
+    """Texts that would like to be markup; the language keeps markup out of the names of things."""
+    quoted = [json.dumps(text, ensure_ascii="\u2028" in text) for text in HOSTILE]
+    lines = ["strut: 1", f"name: {quoted[0]}", f"description: {quoted[1]}", f"source: {quoted[2]}",
+             "nodes:", f"  {NAMES[0]}: {{position: [0, 0], fixed: both}}"]
+    lines += [f"  {name}: {{position: [{i + 1}, {i % 2}], mass: 1}}"
+              for i, name in enumerate(NAMES[1:])]
+    lines += ["members:"]
+    for one, two in zip(NAMES, NAMES[1:]):
+        lines.append(f"  {one}: {{kind: bar, nodes: [{one}, {two}], stiffness: 1000}}")
+    with open("hostile.yaml", "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")
+    run("view", f"{models}/gallery/x-frame.yaml", "-o", "plain.html")
+    run("view", "hostile.yaml", "-o", "hostile.html")
+    plain, page = Page("plain.html"), Page("hostile.html")
+    check(page.tags == plain.tags, "names add elements")
+    check(page.title == HOSTILE[0], f"title {page.title}")
+    check([page.data[key] for key in ("name", "description", "source")] == HOSTILE, "texts")
+    check([node["name"] for node in page.data["nodes"]] == NAMES, "names of nodes")
+    check([m["name"] for m in page.data["members"]] == NAMES[:-1], "names of members")
+    check([(m["from"], m["to"]) for m in page.data["members"]] ==
+          [(i, i + 1) for i in range(len(NAMES) - 1)], "ends of members")
+    check([node["fixed"] for node in page.data["nodes"][:2]] == [[True, True], [False, False]],
+          "supports")
+    check(not any(c in page.raw for c in "<>&\u2028\u2029"), "the data are not escaped")
+    check(page.data["motion"] is None and page.data["study"] is None, "a model does not move")
+    check("alert(1)" in page.data["yaml"], "the scene's text")
+
+
+def diverged():
+    """A step too large: frames end where the structure leaves all bounds, and the page says so."""
+    everything("wild.yaml")
+    run("run", "wild.yaml", "--set", "step=0.5 ms", "--set", "friction=0", "--force", "-o", "wild",
+        "-q", code=3)
+    run("view", "wild", "-o", "wild.html")
+    data = Page("wild.html").data
+    motion = data["motion"]
+    check(motion["status"] == "diverged" and 1 <= motion["frames"] < motion["recorded"],
+          f"diverged: {motion['status']}, {motion['frames']} of {motion['recorded']}")
+    check(motion["position"]["quantum"] == 5e-8, "what diverges takes the motion's digits")
+    check(data["summary"][0]["value"].startswith("diverged: "), f"{data['summary'][0]}")
+
+
+def alone():
+    """Nothing at rest, and nothing looked for: the page says why there are no cards."""
+    with open("falling.yaml", "w", encoding="utf-8") as file:
+        file.write("strut: 1\nnodes: {stone: {position: [0, 1], mass: 1}}\ngravity: [0, -9.81]\n")
+    run("view", "falling.yaml", "-o", "falling.html")
+    data = Page("falling.html").data
+    check(not data["equilibria"] and len(data["equilibria_remark"]) > 10, "no word on equilibria")
+    run("view", f"{models}/gallery/x-frame.yaml", "--equilibria", "none", "-o", "none.html")
+    data = Page("none.html").data
+    check(data["equilibria"] is None and data["equilibria_remark"], "equilibria all the same")
+
+
+with tempfile.TemporaryDirectory() as work:
+    os.chdir(work)
+    crawler()
+    short_run()
+    paper_run()
+    hostile()
+    diverged()
+    alone()
+print("ok" if failures == 0 else f"{failures} failed")
+sys.exit(failures > 0)
