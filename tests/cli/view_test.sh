@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# strut view: what it says, files that appear whole or not at all, and refusals.
+. "$(dirname "$0")/lib.sh"
+
+cat >swing.yaml <<'END'
+strut: 1
+name: Swing
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
+members: {ab: {kind: bar, nodes: [a, b], stiffness: 1e4}}
+gravity: [0, -9.81]
+solver: {step: 1 ms}
+run: {duration: 0.2 s}
+output: {every: 1 ms, channels: [position, force]}
+END
+expect 0 run swing.yaml -q -o swing
+
+# A run, a model, a model on the standard input.
+expect 0 view swing -o swing.html
+err_empty
+[ "$(sed 's/, [0-9.]* MB$//' out)" = "swing.html: 201 frames" ] || fail "says: $(cat out)"
+expect 0 view swing/ -o Swing.HTM -q
+out_empty
+same swing.html Swing.HTM
+expect 0 view swing.yaml -o model.html
+[ "$(sed 's/: [0-9.]* MB$//' out)" = "model.html" ] || fail "says: $(cat out)"
+grep -q '"motion":null' model.html || fail "a model moves"
+"$strut" view - -o - </dev/null >out 2>err
+[ $? -eq 1 ] || fail "-o -"
+"$strut" view - -o stdin.html -q <swing.yaml >out 2>err || fail "a model on the standard input"
+sed 's/"swing.yaml"//' model.html | cmp -s - stdin.html || fail "another page from the standard input"
+[ "$(ls -A | grep -c html)" -eq 3 ] || fail "$(ls -A)"
+
+# The same page in any locale and with any number of threads.
+for locale in C C.UTF-8 de_DE.UTF-8; do
+  LC_ALL=$locale OMP_NUM_THREADS=1 expect 0 view swing -o again.html -q
+  same swing.html again.html
+done
+expect 0 view swing.yaml --equilibria none -o none.html
+expect 0 view swing.yaml --equilibria all -o again.html
+same model.html again.html
+
+# Wrong use: a sentence, and nothing is written.
+expect 1 view swing
+err_has "give -o FILE.html"
+expect 1 view swing -o page.pdf
+err_has "ends with .html"
+expect 1 view swing -o .html
+expect 1 view swing -o page.html --equilibria some
+err_has "some"
+expect 1 view swing -o page.html --set x=1
+err_has "--set needs a model"
+expect 1 view -o page.html
+err_has "RUN|MODEL is missing"
+expect 1 view swing -o page.html --plot a.svg
+absent page.html
+
+# Files: where the page cannot go is found out first; what is no run is said to be none.
+expect 4 view no-such-model.yaml -o no/such/folder/page.html
+err_has "no/such/folder"
+mkdir folder.html
+expect 4 view swing -o folder.html
+expect 4 view nowhere -o page.html
+err_has "nowhere"
+mkdir empty
+expect 4 view empty -o page.html
+err_has "holds no run"
+cp -r swing still
+rm still/trajectory.h5
+expect 4 view still -o page.html
+err_has "no recorded motion"
+echo nonsense >still/trajectory.h5
+expect 4 view still -o page.html
+cp -r swing damaged
+echo '{"status": ' >damaged/summary.json
+expect 0 view damaged -o damaged.html -q
+grep -q '"value":"summary.json cannot be read"' damaged.html || fail "nothing on the summary"
+rm damaged/summary.json
+expect 0 view damaged -o damaged.html -q
+grep -q '"summary":\[\]' damaged.html || fail "rows from no summary"
+sed 's/\[position, force\]/[force]/' swing.yaml >blind.yaml
+expect 0 run blind.yaml -q -o blind
+expect 4 view blind -o page.html
+err_has "recorded no positions"
+expect 2 view /dev/null -o page.html
+absent page.html
+if small_disk 16; then
+  expect 4 view swing -o disk/page.html
+  [ -z "$(ls -A disk)" ] || fail "left on a full disk: $(ls -A disk)"
+  no_disk
+fi
+
+done_testing
