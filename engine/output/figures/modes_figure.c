@@ -12,7 +12,7 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 
-enum { NAMED = 12, SWUNG = 40, TITLE = 200 };
+enum { NAMED = 12, SWUNG = 40, LED = 200, TITLE = 200 }; /* of nodes, members, nodes; bytes */
 
 static const double TURN = 6.283185307179586476925;
 static const double GAP = 12.0, EDGE = 4.0, MARGIN = 13.0; /* [pt] */
@@ -119,7 +119,8 @@ static void find_bounds(figure *f) {
     strut_bounds_add(&f->bounds[k], f->model, f->modes->q);
     swing(f, &f->modes->list[f->shown[k]]);
     strut_bounds_add(&f->bounds[k], f->model, f->plus);
-    strut_bounds_add(&f->bounds[k], f->model, f->minus);
+    if (f->model->node_count <= LED || f->model->scene->member_count <= SWUNG)
+      strut_bounds_add(&f->bounds[k], f->model, f->minus);
     widen(&f->all, &f->bounds[k]);
   }
 }
@@ -227,7 +228,7 @@ static void draw_motion(figure *f, const strut_window *window) {
 /* Returns how many; (2 for each) where they begin and end. */
 static size_t draw_ways(figure *f, const strut_window *window, double (*ways)[2]) {
   size_t count = 0;
-  for (int32_t i = 0; i < f->model->node_count; i++) {
+  for (int32_t i = 0; i < f->model->node_count && f->model->node_count <= LED; i++) {
     double *from = ways[2 * count], *to = ways[2 * count + 1];
     strut_window_point(window, f->minus + 2 * i, from);
     strut_window_point(window, f->plus + 2 * i, to);
@@ -315,8 +316,9 @@ static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
   if (f->modes->closed_count)
     items[count++] = (strut_key_item){
         .sign = STRUT_KEY_DOT, .pen = touch(), .text = "touches the ground"};
-  items[count++] =
-      (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = way(), .text = "way of a node"};
+  if (f->model->node_count <= LED)
+    items[count++] =
+        (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = way(), .text = "way of a node"};
   if (f->model->scene->member_count && f->model->scene->member_count <= SWUNG)
     items[count++] = (strut_key_item){
         .sign = STRUT_KEY_LINE, .pen = other_end(), .text = "other end of the swing"};

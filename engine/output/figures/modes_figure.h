@@ -18,9 +18,8 @@ enum { STRUT_MODES_FIGURE_PANELS = 6, STRUT_MODES_FIGURE_MOST = 24 };
  * Draws the lowest `panels` modes (0: STRUT_MODES_FIGURE_PANELS) into the file `path`, `width` [pt]
  * wide; all to one scale. Rigid-body motions are left out where there are others, and counted below.
  * In each panel the shape at rest is grey, one end of the swing coloured by how much members stretch
- * there (the most in that mode full), the other end dashed where there are few members, and arrows
- * lead from the one to the other. Fails as strut_canvas_open and
- * strut_canvas_commit; STRUT_NO_MEMORY.
+ * there (the most in that mode full), the other end dashed and joined to it by arrows where members
+ * and nodes are few. Fails as strut_canvas_open and strut_canvas_commit; STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
                                           const strut_modes *modes, size_t panels,
