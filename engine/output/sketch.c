@@ -133,9 +133,32 @@ static uint32_t mark_of(const strut_node *node) {
   return node->fixed[0] ? STRUT_SKETCH_HELD_IN_X : STRUT_SKETCH_NODE;
 }
 
-/* Marks hide the lines where there are more nodes than a sixth of the cells: dots are all then. */
-static void draw_nodes(const view *v, strut_sketch_grid *grid, int32_t *there) {
-  bool crowded = v->model->node_count > v->columns * v->rows / CROWD;
+/* Nodes in every cell. */
+static void count_nodes(const view *v, const strut_sketch_grid *grid, int32_t *there) {
+  for (int32_t i = 0; i < v->model->node_count; i++) {
+    int column, row;
+    cell_of(v, i, &column, &row);
+    if (strut_sketch_inside(grid, column, row)) there[row * grid->columns + column]++;
+  }
+}
+
+/* Where there are more nodes than a sixth of the cells, marks and names would hide the lines: only
+ * nodes with no other around have them. */
+static bool crowded(const view *v) {
+  return v->model->node_count > v->columns * v->rows / CROWD;
+}
+
+static bool stands_out(const view *v, const strut_sketch_grid *grid, const int32_t *there,
+                       int column, int row) {
+  int32_t count = 0;
+  if (!crowded(v)) return true;
+  for (int i = row - 1; i <= row + 1; i++)
+    for (int j = column - 1; j <= column + 1; j++)
+      if (strut_sketch_inside(grid, j, i)) count += there[i * grid->columns + j];
+  return count == 1;
+}
+
+static void draw_nodes(const view *v, strut_sketch_grid *grid, const int32_t *there) {
   for (int32_t i = 0; i < v->model->node_count; i++) {
     double dot[2];
     int column, row;
@@ -144,28 +167,27 @@ static void draw_nodes(const view *v, strut_sketch_grid *grid, int32_t *there) {
     strut_sketch_dot(grid, (int)lround(dot[0]), (int)lround(dot[1]));
     cell_of(v, i, &column, &row);
     if (!strut_sketch_inside(grid, column, row)) continue;
-    size_t cell = (size_t)row * (size_t)grid->columns + (size_t)column;
-    there[cell]++;
-    if (crowded && mark == STRUT_SKETCH_NODE) continue;
-    bool support = grid->letter[cell] >= STRUT_SKETCH_HELD && grid->letter[cell] < STRUT_SKETCH_NODE;
+    if (mark == STRUT_SKETCH_NODE && !stands_out(v, grid, there, column, row)) continue;
+    uint32_t old = grid->letter[row * grid->columns + column];
+    bool support = old >= STRUT_SKETCH_HELD && old < STRUT_SKETCH_NODE;
     if (!support) strut_sketch_letter(grid, column, row, mark, 1);
   }
 }
 
-/* Lonely nodes first: those are what one looks for. */
+/* Nodes alone in their cell first: those are what one looks for. */
 static void draw_names(const view *v, strut_sketch_grid *grid, int32_t *there, bool unicode) {
-  int32_t most = v->model->node_count < MOST_NAMED ? v->model->node_count : MOST_NAMED;
   for (int pass = 0; pass < 2; pass++) {
-    for (int32_t i = 0; i < most; i++) {
+    for (int32_t i = 0; i < v->model->node_count; i++) {
       int column, row;
       cell_of(v, i, &column, &row);
       if (!strut_sketch_inside(grid, column, row)) continue;
-      int32_t *count = &there[(size_t)row * (size_t)grid->columns + (size_t)column];
-      if (*count == 0 || (pass == 0 && *count > 1)) continue;
+      int32_t *count = &there[row * grid->columns + column];
+      if (*count == 0 || (pass == 0) != (*count == 1)) continue;
+      if (!stands_out(v, grid, there, column, row)) continue;
       strut_sketch_name name =
           strut_sketch_name_of(v->model->scene->nodes[i].name, (size_t)i, unicode);
       if (*count > 1) strut_sketch_name_more(&name, (size_t)*count - 1);
-      *count = 0; /* said */
+      if (!crowded(v)) *count = 0; /* said */
       strut_sketch_name_place(grid, column, row, &name);
     }
   }
@@ -213,6 +235,7 @@ char *strut_sketch(const strut_model *model, const double *q, int columns, int r
   if (taken && there) {
     bool ground = draw_ground(&v, &grid);
     draw_members(&v, &grid);
+    count_nodes(&v, &grid, there);
     draw_nodes(&v, &grid, there);
     draw_names(&v, &grid, there, unicode);
     strut_sketch_grid_write(&grid, unicode, "  ", &buffer);

@@ -93,8 +93,8 @@ def test_motion():
     call(0, "ball.yaml", "--quiet", "--animate", "ball.gif")
     pictures = frames("ball.gif", 640, 360)
     check(len(pictures) == 26, f"{len(pictures)} pictures")
-    # 0.6 m are drawn as wide as the page of 512 pt less 34 pt on both sides; 1.25 pixels are 1 pt.
-    span = 1.25 * (512 - 2 * 34)
+    # 0.6 m are drawn as wide as the page of 512 pt less 18 pt on both sides; 1.25 pixels are 1 pt.
+    span = 1.25 * (512 - 2 * 18)
     for k, picture in enumerate(pictures):
         columns = [i % 640 for i, pixel in enumerate(picture[:290 * 640]) # above the words
                    if pixel < 128 and i >= 45 * 640]

@@ -107,6 +107,18 @@ def test_typo():
         fail("three nodes in one place are not counted:\n" + "\n".join(lines))
 
 
+def test_crowd():
+    """Among thousands of nodes only the one that stands alone has a mark and its name."""
+    side = 40
+    nodes = [(f"n{i}", i % side, i // side) for i in range(side * side)]
+    nodes[1234] = ("stray", 900, 20)
+    members = [(i, i + 1, "bar") for i in range(side * side - 1)]
+    lines, extent = check(scene(nodes, members))
+    text = "\n".join(lines)
+    if text.count("●") != 1 or "●stray" not in text or " +" in text or "900 m" not in extent:
+        fail("the stray node in a crowd:\n" + text)
+
+
 def test_supports_and_ground():
     nodes = [("p", 0, 0), ("q", 1, 0), ("r", 1, 0.5), ("s", 0, 0.5)]
     held = ["both", "y", "x", None]
@@ -185,6 +197,7 @@ def test_sizes():
                     fail(f"{name}: {extent}")
 
 
-for test in [test_scale, test_extent, test_typo, test_supports_and_ground, test_names, test_sizes]:
+for test in [test_scale, test_extent, test_typo, test_crowd, test_supports_and_ground,
+             test_names, test_sizes]:
     test()
 sys.exit(1 if failures else 0)

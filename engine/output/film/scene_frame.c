@@ -8,10 +8,11 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/quantity_text.h"
 
-enum { DIGITS = 3, TEXT = 64, MOST_MARKS = 200 };
+enum { DIGITS = 3, TEXT = 64, MOST_MARKS = 200, TITLE = 84 };
 
 static const double EDGE = 14, ABOVE = 34, BELOW = 46; /* of the page [pt] */
-static const double AROUND = 34, ARROW = 26;           /* of the structure [pt] */
+static const double AROUND = 34, CLOSE = 18;           /* the structure, with arrows and without */
+static const double ARROW = 26;                        /* of the largest force of the ground */
 static const double BETWEEN = 70;                      /* marks of the ground, about [pt] */
 static const double LEAST = 0.02; /* of the structure's size, or of 1 m: seen around a point */
 static const double NEAR = 0.5; /* a ground nearer than so many sizes is shown from the start */
@@ -45,7 +46,7 @@ static strut_bounds around(const strut_scenery *s) {
 void strut_scenery_fit(strut_scenery *s, strut_box page) {
   strut_bounds bounds = around(s);
   strut_box box = {page.x, page.y + ABOVE, page.width, page.height - ABOVE - BELOW};
-  s->window = strut_window_fit(box, bounds, AROUND);
+  s->window = strut_window_fit(box, bounds, s->model->contacts.count > 0 ? AROUND : CLOSE);
   s->step = round_step(BETWEEN / s->window.scale);
 }
 
@@ -130,11 +131,20 @@ static void time_text(const strut_scenery *s, double time, char text[TEXT]) {
   snprintf(text, TEXT, "%.*f %ss", decimals, time / factor, prefix);
 }
 
+/* As much of a name as two lines hold, in whole letters. */
+static void title_text(const char *name, char text[2 * TEXT]) {
+  size_t length = 0;
+  while (name[length] && length < TITLE) length++;
+  while (length > 0 && ((unsigned char)name[length] & 0xc0) == 0x80) length--;
+  snprintf(text, 2 * TEXT, "%.*s%s", (int)length, name, name[length] ? "\xe2\x80\xa6" : "");
+}
+
 static void draw_words(const strut_scenery *s, strut_canvas *canvas, const strut_moment *moment) {
   strut_box page = strut_canvas_box(canvas);
   const strut_colour grey = strut_grey(0.35);
   char text[2 * TEXT];
-  strut_draw_text(canvas, EDGE, EDGE - 4, s->model->scene->name,
+  title_text(s->model->scene->name, text);
+  strut_draw_text(canvas, EDGE, EDGE - 4, text,
                   (strut_font){.size = 11, .bold = true, .width = 0.65 * page.width});
   time_text(s, moment->time, text);
   strut_draw_text(canvas, page.width - EDGE, EDGE - 4, text,
