@@ -90,15 +90,26 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
   return status;
 }
 
-/* Moves the file of that name, or removes an older run's where there is none. 0 or an errno. */
-static int move(const strut_results *results, const char *name) {
-  char *from = join(results->stage, name), *to = join(results->directory, name);
-  int code = 0;
-  if (!from || !to) {
-    code = ENOMEM;
-  } else if (rename(from, to) != 0) {
-    code = errno;
-    if (code == ENOENT && (unlink(to) == 0 || errno == ENOENT)) code = 0;
+/* Moves the file, or removes an older run's where there is none. 0 or an errno. */
+static int move(const char *from, const char *to) {
+  if (rename(from, to) == 0) return 0;
+  if (errno != ENOENT) return errno;
+  return unlink(to) == 0 || errno == ENOENT ? 0 : errno;
+}
+
+/* The room for paths is taken before the first file moves: nothing but the moves can fail then. */
+static int move_all(const strut_results *results) {
+  size_t longest = 0;
+  for (int i = 0; results->names[i]; i++)
+    if (strlen(results->names[i]) > longest) longest = strlen(results->names[i]);
+  size_t from_room = strlen(results->stage) + longest + 2;
+  size_t to_room = strlen(results->directory) + longest + 2;
+  char *from = strut_allocate(from_room, 1), *to = strut_allocate(to_room, 1);
+  int code = from && to ? 0 : ENOMEM;
+  for (int i = 0; results->names[i] && !code; i++) {
+    snprintf(from, from_room, "%s/%s", results->stage, results->names[i]);
+    snprintf(to, to_room, "%s/%s", results->directory, results->names[i]);
+    code = move(from, to);
   }
   strut_release(from);
   strut_release(to);
@@ -106,8 +117,7 @@ static int move(const strut_results *results, const char *name) {
 }
 
 strut_status strut_results_commit(strut_results *results, strut_error *error) {
-  int code = 0;
-  for (int i = 0; results->names[i] && !code; i++) code = move(results, results->names[i]);
+  int code = move_all(results);
   strut_status status = STRUT_OK;
   if (code) status = trouble(error, results->directory, code);
   int descriptor = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sketch, the files for ParaView and films where memory or the disk is out. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/film/encoder.h"
+#include "engine/output/film/film.h"
+#include "engine/output/sketch.h"
+#include "engine/output/vtk.h"
+#include "parser/read_scene.h"
+#include "tests/unit/scratch.h"
+
+enum { FRAMES = 3, MOST = 1000 };
+
+static const char text[] =
+    "strut: 1\n"
+    "nodes:\n"
+    "  a: {position: [0, 0], mass: 1}\n"
+    "  b: {position: [1, 0], mass: 1}\n"
+    "  c: {position: [0.5, 0.5], mass: 1}\n"
+    "members:\n"
+    "  ab: {nodes: [a, b], kind: bar, stiffness: 10}\n"
+    "  bc: {nodes: [b, c], kind: cable, stiffness: 10}\n"
+    "ground: {stiffness: 1000}\n";
+
+typedef struct things {
+  strut_scene scene;
+  strut_model *model;
+  strut_trajectory motion;
+  double time[FRAMES], position[FRAMES][6], force[FRAMES][2], contact[FRAMES][6];
+  int32_t contact_node[3];
+} things;
+
+/* A motion of three frames over a tenth of a second. */
+static void make(things *t) {
+  strut_diagnostics diagnostics = {0};
+  memset(t, 0, sizeof *t);
+  assert_int_equal(strut_scene_read(&t->scene, "views", text, sizeof text - 1, NULL, 0,
+                                    STRUT_FOR_ANY, &diagnostics),
+                   STRUT_OK);
+  strut_diagnostics_free(&diagnostics);
+  assert_int_equal(strut_model_compile(&t->scene, &t->model, NULL), STRUT_OK);
+  for (int i = 0; i < FRAMES; i++) {
+    t->time[i] = 0.05 * i;
+    for (int k = 0; k < 6; k++) t->position[i][k] = t->model->start[k] + 0.1 * i;
+    t->force[i][0] = i - 1;
+    t->contact[i][0] = i;
+  }
+  for (int k = 0; k < 3; k++) t->contact_node[k] = k;
+  t->motion = (strut_trajectory){.frames = FRAMES, .recorded = FRAMES, .every = 1, .node_count = 3,
+                                 .member_count = 2, .contact_count = 3, .time = t->time,
+                                 .position = t->position[0], .force = t->force[0],
+                                 .contact = t->contact[0], .contact_node = t->contact_node};
+}
+
+static void drop(things *t) {
+  strut_model_free(t->model);
+  strut_scene_free(&t->scene);
+}
+
+static void test_sketch_without_memory(void **unused) {
+  (void)unused;
+  things t;
+  make(&t);
+  char *whole = strut_sketch(t.model, t.model->start, 60, 12, true), *drawn = NULL;
+  assert_non_null(whole);
+  int failed = 0;
+  for (; failed < MOST && !drawn; failed++) {
+    strut_fail_allocation_after(failed);
+    drawn = strut_sketch(t.model, t.model->start, 60, 12, true);
+    strut_fail_allocation_after(-1);
+  }
+  assert_true(failed > 3 && failed < MOST);
+  assert_string_equal(drawn, whole);
+  strut_release(drawn);
+  strut_release(whole);
+  drop(&t);
+}
+
+/* All files or none, and the reason. */
+static void test_vtk_without_memory(void **unused) {
+  (void)unused;
+  things t;
+  make(&t);
+  scratch_make();
+  strut_status status = STRUT_NO_MEMORY;
+  int failed = 0;
+  for (; failed < MOST && status != STRUT_OK; failed++) {
+    strut_error error = {0};
+    strut_vtk_written written;
+    strut_fail_allocation_after(failed);
+    status = strut_vtk_write(scratch_path("vtk"), t.model, &t.motion, &written, &error);
+    strut_fail_allocation_after(-1);
+    assert_int_equal(error.status, status);
+    assert_int_equal(scratch_count(scratch_path("vtk")), status == STRUT_OK ? FRAMES + 2 : -1);
+    if (status == STRUT_OK) assert_int_equal(written.frames, FRAMES);
+  }
+  assert_true(failed > 5 && failed < MOST);
+  scratch_remove();
+  drop(&t);
+}
+
+static void test_vtk_on_a_full_disk(void **unused) {
+  (void)unused;
+  things t;
+  strut_error error = {0};
+  strut_vtk_written written;
+  make(&t);
+  const char *directory = scratch_make();
+  if (!scratch_mount_small_disk(directory, 8)) {
+    scratch_remove();
+    drop(&t);
+    skip();
+  }
+  strut_status status = strut_vtk_write(scratch_path("vtk"), t.model, &t.motion, &written, &error);
+  assert_int_equal(status, STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "No space left"));
+  assert_int_equal(scratch_count(directory), 0);
+  scratch_unmount(directory);
+  scratch_remove();
+  drop(&t);
+}
+
+static void test_film_without_memory(void **unused) {
+  (void)unused;
+  things t;
+  if (strut_encoder_find(NULL) != STRUT_OK) skip();
+  make(&t);
+  const char *directory = scratch_make();
+  strut_status status = STRUT_NO_MEMORY;
+  int failed = 0;
+  for (; failed < MOST && status != STRUT_OK; failed++) {
+    strut_error error = {0};
+    strut_film_made made;
+    const strut_film film = {.path = scratch_path("a.gif"), .speed = 1};
+    strut_fail_allocation_after(failed);
+    status = strut_film_make(&film, t.model, &t.motion, &made, &error);
+    strut_fail_allocation_after(-1);
+    assert_int_equal(error.status, status);
+    assert_int_equal(scratch_count(directory), status == STRUT_OK ? 1 : 0);
+    if (status == STRUT_OK) assert_int_equal(made.frames, 3);
+  }
+  assert_true(failed > 5 && failed < MOST);
+  scratch_remove();
+  drop(&t);
+}
+
+/* Frames that are no numbers end the film; one that begins so has none. */
+static void test_film_of_what_is_a_number(void **unused) {
+  (void)unused;
+  things t;
+  strut_error error = {0};
+  strut_film_made made;
+  if (strut_encoder_find(NULL) != STRUT_OK) skip();
+  make(&t);
+  const char *directory = scratch_make();
+  const strut_film film = {.path = scratch_path("a.gif"), .speed = 0.5};
+  t.position[2][1] = (double)NAN;
+  t.motion.status = STRUT_DIVERGED;
+  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &made, &error), STRUT_OK);
+  assert_int_equal(made.frames, 3); /* 0.05 s at half the speed and 25 frames per second */
+  t.position[0][0] = (double)INFINITY;
+  assert_int_equal(strut_film_make(&film, t.model, &t.motion, &made, &error), STRUT_DIVERGED);
+  assert_int_equal(scratch_count(directory), 1);
+  scratch_remove();
+  drop(&t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_sketch_without_memory), cmocka_unit_test(test_vtk_without_memory),
+      cmocka_unit_test(test_vtk_on_a_full_disk),    cmocka_unit_test(test_film_without_memory),
+      cmocka_unit_test(test_film_of_what_is_a_number),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
