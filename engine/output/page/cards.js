@@ -28,6 +28,8 @@
 
   page.createCards = function (data, structure, onPick) {
     const host = document.getElementById("cards"), list = data.equilibria || [], cards = [];
+    const more = document.getElementById("more"), standing = list.filter((e) => e.stands).length;
+    const hidden = standing > 0 ? list.length - standing : 0;
     list.forEach((equilibrium, index) => {
       const card = document.createElement("button"), canvas = document.createElement("canvas");
       const name = document.createElement("b"), energy = document.createElement("span");
@@ -46,14 +48,24 @@
         line.append("\u2192 ", to, ": " + page.quantity(pass.height, "J", 4));
         card.append(line);
       }
+      card.hidden = hidden > 0 && !equilibrium.stands;
       card.addEventListener("click", () => onPick(index));
       host.append(card);
       cards.push({ card, canvas, equilibrium });
     });
 
+    more.hidden = hidden === 0;
+    more.textContent = "Show " + hidden + " that do not stand";
+    more.addEventListener("click", () => {
+      for (const { card } of cards) card.hidden = false;
+      more.hidden = true;
+      draw();
+    });
+
     function draw() {
       const theme = page.theme();
-      for (const { canvas, equilibrium } of cards) {
+      for (const { card, canvas, equilibrium } of cards) {
+        if (card.hidden) continue;
         const shape = page.shapeOf(data, equilibrium), limits = page.limitsOf(shape);
         const camera = page.fit(page.boundsOf(shape.position), canvas.clientWidth,
           canvas.clientHeight, 14, data.size);

@@ -162,7 +162,37 @@
     });
   }
 
-  function drawNodes(c, data, px, py, options) {
+  /* The directions in which members leave each node. */
+  function memberAngles(s, px, py) {
+    const angles = s.data.nodes.map(() => []);
+    for (let j = 0; j < s.count; j++) {
+      const dx = px[s.to[j]] - px[s.from[j]], dy = py[s.to[j]] - py[s.from[j]];
+      angles[s.from[j]].push(Math.atan2(dy, dx));
+      angles[s.to[j]].push(Math.atan2(-dy, -dx));
+    }
+    return angles;
+  }
+
+  /* The direction farthest from all of them, upwards where that leaves a choice. */
+  function freeAngle(angles) {
+    let best = -Math.PI / 2, most = -1;
+    for (let k = 0; k < 16; k++) {
+      const angle = -Math.PI / 2 + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * Math.PI / 8;
+      let least = Math.PI;
+      for (const other of angles) {
+        const apart = Math.abs(Math.atan2(Math.sin(angle - other), Math.cos(angle - other)));
+        least = Math.min(least, apart);
+      }
+      if (Math.min(least, 1.2) > most + 1e-6) {
+        most = Math.min(least, 1.2);
+        best = angle;
+      }
+    }
+    return best;
+  }
+
+  function drawNodes(c, s, px, py, options) {
+    const data = s.data;
     const theme = options.theme, count = data.nodes.length;
     if (count > 400) return;
     c.fillStyle = theme.paper;
@@ -176,16 +206,15 @@
       c.stroke();
     }
     if (!options.names || count > 60) return;
-    let mx = 0, my = 0;
-    for (let i = 0; i < count; i++) mx += px[i] / count, my += py[i] / count;
+    const angles = memberAngles(s, px, py);
     c.font = "italic 13px system-ui, 'DejaVu Sans', sans-serif";
     c.textBaseline = "middle";
     c.lineWidth = 3;
-    for (let i = 0; i < count; i++) { /* outwards, where the structure is not */
-      const dx = px[i] - mx, dy = py[i] - my, r = Math.hypot(dx, dy) || 1;
+    for (let i = 0; i < count; i++) {
+      const angle = freeAngle(angles[i]), dx = Math.cos(angle), dy = Math.sin(angle);
       const name = data.nodes[i].name;
-      c.textAlign = dx > 0.3 * r ? "left" : dx < -0.3 * r ? "right" : "center";
-      const x = px[i] + 9 * dx / r, y = py[i] + 14 * (dy / r || -1);
+      c.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
+      const x = px[i] + 9 * dx, y = py[i] + 14 * dy;
       c.strokeStyle = theme.paper;
       c.strokeText(name.length > 24 ? name.slice(0, 23) + "\u2026" : name, x, y);
       c.fillStyle = theme.ink;
@@ -297,7 +326,7 @@
     }
     drawMembers(c, s, shape, options, px, py,
       thinness(s, shape.position, camera) * (options.small ? 0.6 : 1));
-    drawNodes(c, data, px, py, options);
+    drawNodes(c, s, px, py, options);
     drawForces(c, data, shape, options, px, py);
   };
 
