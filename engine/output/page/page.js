@@ -5,7 +5,7 @@
   const element = (id) => document.getElementById(id);
   const data = JSON.parse(element("strut-data").textContent);
   const structure = page.structureOf(data);
-  const MARGIN = 46, TRAIL_POINTS = 400, TRAIL_NODES = 60, TRAIL_PART = 0.1;
+  const MARGIN = 46, TRAIL_FRAMES = 400, TRAIL_NODES = 60, TRAIL_PART = 0.1;
   let motion = null, player = null, charts = null, cards = null, theme = page.theme();
   let picked = -1, limits = { force: 0, contact: 0 }, whole = null, extent = null, track = null;
   let camera = { x: 0, y: 0, scale: 1 }, waiting = false;
@@ -45,13 +45,13 @@
   function trailsAt(frame) {
     const count = data.nodes.length;
     if (!element("trails").checked || count > TRAIL_NODES) return [];
-    const length = Math.max(2, Math.round(TRAIL_PART * motion.frames));
+    const length = Math.max(2, Math.min(Math.round(TRAIL_PART * motion.frames), TRAIL_FRAMES));
     const first = Math.max(0, frame - length), used = frame - first;
     if (used < 1) return [];
-    const step = Math.max(1, Math.ceil(used / TRAIL_POINTS)), trails = [];
+    const trails = [];
     for (let i = 0; i < count; i++) {
       const way = [];
-      for (let f = frame; f >= first; f -= step)
+      for (let f = frame; f >= first; f--)
         way.unshift(motion.position[2 * (f * count + i)], motion.position[2 * (f * count + i) + 1]);
       if (way.length >= 4) trails.push(way);
     }

@@ -1,0 +1,47 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The page in a real browser: Debian's Chromium without a window, driven by page_test.py.
+#
+#   sh tests/pictures/page_test.sh ROOT STRUT PYTHON
+set -eu
+root=$(cd "$1" && pwd) strut=$2 python=$3
+skip() { echo "skipped: $1"; exit 77; }
+command -v chromium >/dev/null || skip "there is no chromium"
+command -v chromedriver >/dev/null || skip "there is no chromedriver (Debian: chromium-driver)"
+"$python" -c 'import selenium' 2>/dev/null || skip "there is no python3-selenium"
+strut=$(cd "$(dirname "$strut")" && pwd)/$(basename "$strut")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+sed 's/^run: .*/run: {periods: 30, of: drive, measure: {last: 10}}/; s/^output: {last: 10, /output: {last: 5, /' \
+  "$root/models/crawler/crawler.yaml" >crawler.yaml
+"$strut" run crawler.yaml --quiet -o crawler
+"$strut" view crawler --quiet -o crawler.html
+"$strut" equilibria crawler.yaml --json >crawler.json
+"$strut" run "$root/models/gallery/two-mass-crawler.yaml" --quiet -o two-mass
+"$strut" view two-mass --quiet -o two-mass.html
+"$strut" view "$root/models/gallery/x-frame.yaml" --quiet -o model.html
+
+# Texts that would be markup, end a script or turn the direction of writing. The language keeps names
+# of nodes simple, a program that fills a scene need not: page_test.py puts such names in.
+cat >hostile.yaml <<'END'
+strut: 1
+name: "</script><script>alert(1)</script><b>bold</b> & \"quoted\" 'too' <!-- מבנה"
+description: "<img src=x onerror=alert(2)> هيكل"
+source: "]]> &amp; <svg onload=alert(7)>"
+parameters: {"t": "<i>7</i>"}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0.2], mass: 1}
+  c: {position: [0, 1], fixed: both} # <img src=x onerror=alert(4)>
+members:
+  one: {kind: cable, nodes: [a, b], stiffness: 100, pretension: 10}
+  two: {kind: spring, nodes: [b, c], stiffness: 100}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 1}
+output: {every: 10 ms, channels: [position, force]}
+END
+"$strut" run hostile.yaml --quiet -o hostile
+"$strut" view hostile --quiet -o hostile.html
+"$python" "$root/tests/pictures/page_test.py" "$work"
