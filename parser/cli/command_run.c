@@ -131,10 +131,10 @@ static strut_status run_model(const strut_arguments *arguments, const strut_mode
   if (began(status)) {
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
-    if (written != STRUT_OK) {
-      strut_complain(&late);
-      status = written;
-    }
+    if (written != STRUT_OK) strut_complain(&late);
+    /* That nothing came to be drawn is no news of a run that failed. */
+    if (written == STRUT_USAGE && status != STRUT_OK) written = status;
+    if (written != STRUT_OK) status = written;
     strut_status printed = print_summary(arguments, &summary, model->scene);
     if (status == STRUT_OK) status = printed;
     if (written == STRUT_OK) written = make_film(pictures, model);

@@ -229,6 +229,8 @@ def check_stopped(here, model):
     for ending in ("", " --draw snapshots", " --draw curves", " --draw period"):
         run(wild, "-q", "--force", "--set", "step=0.7 ms", "--plot", file, *ending.split(), code=3)
     os.remove(file)
+    run(model, "-q", "--force", "--set", "step=0.7 ms", "--plot", file, code=3,
+        err="nothing to draw")  # it did not come to the last periods
     endless = os.path.join(here, "endless.yaml")
     open(endless, "w").write(open(wild).read().replace("periods: 20", "periods: 1000000"))
     before = set(os.listdir(here))

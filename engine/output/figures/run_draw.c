@@ -132,10 +132,9 @@ void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, cons
   velocity = velocity && !failed && s && isfinite(s->velocity);
   double v = velocity ? velocity_of(run) : 0;
   if (failed)
-    snprintf(line, sizeof line, "%s at %s; drawn up to %s: %s",
+    snprintf(line, sizeof line, "%s at %s; %s",
              s->status == STRUT_DIVERGED ? "diverged" : "stopped",
-             strut_drawn_quantity(s->duration, 4, "s").text,
-             strut_drawn_quantity(run->motion->time[run->frames - 1], 4, "s").text, what);
+             strut_drawn_quantity(s->duration, 4, "s").text, what);
   else
     snprintf(line, sizeof line, "%s", what);
   if (velocity) say_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);

@@ -127,7 +127,7 @@ strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
   char what[100], texts[ITEMS][120];
   strut_key_item items[ITEMS];
   size_t keys = key_of(run, texts, items);
-  snprintf(what, sizeof what, "at %s",
+  snprintf(what, sizeof what, "shape at %s",
            strut_drawn_quantity(run->motion->time[run->frames - 1], 5, "s").text);
   strut_run_draw_title(run, canvas, what, true);
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width - SCALE, height};

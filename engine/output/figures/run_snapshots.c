@@ -193,15 +193,15 @@ static void draw_foot(strut_run_scene *run, strut_canvas *canvas, const grid *g,
   strut_key_item item;
   window.box.y = foot.y + foot.height - window.box.height;
   strut_draw_yardstick(canvas, &window);
-  double scale = fmin(150, 0.45 * foot.width);
+  double scale = fmin(130, 0.45 * foot.width), left = 0.32 * g->cell[0] + 8;
   strut_box key = {foot.x, foot.y, foot.width, KEY_LINE}; /* a line of its own, or between both */
   if (foot.height > FOOT) {
     foot.y += KEY_LINE;
     foot.height -= KEY_LINE;
   } else {
-    key.x += 0.36 * g->cell[0] + 14;
+    key.x += left;
     key.y += 0.5 * foot.height - 4;
-    key.width -= 0.36 * g->cell[0] + 14 + scale;
+    key.width -= left + scale;
   }
   if (strut_run_arrow_item(run, text, &item)) strut_draw_key(canvas, key, &item, 1);
   strut_run_draw_scale(run, canvas,
