@@ -4,6 +4,7 @@
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/output/quantity_text.h"
@@ -45,7 +46,9 @@ static void add_status(rows *r) {
   const char *status = text(r->from, "status"), *reason = text(r->from, "reason");
   char value[VALUE];
   if (!status) return;
-  snprintf(value, sizeof value, "%s%s%s", status, reason ? ": " : "", reason ? reason : "");
+  bool twice = reason && strncmp(reason, status, strlen(status)) == 0;
+  snprintf(value, sizeof value, "%s%s%s", twice ? "" : status, reason && !twice ? ": " : "",
+           reason ? reason : "");
   add_row(r, "run", value);
 }
 

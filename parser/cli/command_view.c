@@ -56,9 +56,10 @@ static strut_status check_output(const strut_arguments *arguments) {
 
 /* A search that finds nothing, or cannot, is no reason to have no page: the page says why. Only an
    interrupt and the lack of memory are failures. */
-static strut_status find_equilibria(const strut_model *model, int search, strut_equilibria *all,
+static strut_status find_equilibria(const strut_model *model, int search,
+                                    const volatile sig_atomic_t *interrupt, strut_equilibria *all,
                                     strut_error *remark) {
-  strut_equilibria_options wanted = {.interrupt = strut_interrupt_watch()};
+  strut_equilibria_options wanted = {.interrupt = interrupt};
   if (search == SEARCH_NONE) return STRUT_OK;
   strut_status status = strut_equilibria_find(model, &wanted, all, remark);
   return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
@@ -74,11 +75,13 @@ static void say(const strut_arguments *arguments, const strut_page_frames *frame
 }
 
 static strut_status write_page(const strut_arguments *arguments, const strut_page *page,
-                               strut_error *error) {
+                               const volatile sig_atomic_t *interrupt, strut_error *error) {
   strut_page_frames frames;
   char *html = strut_page_html(page, &frames, error);
   if (!html) return error->status;
-  strut_status status = strut_file_write_path(arguments->output, html, error);
+  strut_status status = *interrupt
+                            ? strut_fail(error, STRUT_INTERRUPTED, "interrupted; there is no page")
+                            : strut_file_write_path(arguments->output, html, error);
   if (status == STRUT_OK) say(arguments, &frames, strlen(html));
   strut_release(html);
   return status;
@@ -88,7 +91,8 @@ static strut_status show(const strut_arguments *arguments, const strut_opened *o
   strut_equilibria all = {0};
   strut_error error = {0}, remark = {0};
   char *yaml = NULL;
-  strut_status status = find_equilibria(opened->model, search, &all, &remark);
+  const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
+  strut_status status = find_equilibria(opened->model, search, interrupt, &all, &remark);
   if (status != STRUT_OK) error = remark;
   if (status == STRUT_OK) {
     yaml = strut_scene_write(&opened->scene);
@@ -101,7 +105,7 @@ static strut_status show(const strut_arguments *arguments, const strut_opened *o
                        .remark = search == SEARCH_NONE ? "not looked for" : remark.message,
                        .summary = opened->summary,
                        .yaml = yaml};
-    status = write_page(arguments, &page, &error);
+    status = write_page(arguments, &page, interrupt, &error);
   }
   if (status != STRUT_OK) strut_complain(&error);
   strut_release(yaml);

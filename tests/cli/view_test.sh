@@ -40,6 +40,12 @@ expect 0 view swing.yaml --equilibria none -o none.html
 expect 0 view swing.yaml --equilibria all -o again.html
 same model.html again.html
 
+# Ctrl-C while it searches: no page.
+timeout --preserve-status -s INT 0.1 "$strut" view "$here/../../models/crawler/crawler.yaml" \
+  -o stopped.html >out 2>err
+[ $? -eq 130 ] || fail "Ctrl-C"
+absent stopped.html
+
 # Wrong use: a sentence, and nothing is written.
 expect 1 view swing
 err_has "give -o FILE.html"

@@ -221,7 +221,7 @@ static void has(const char *html, const char *text) {
 /* What cannot be shown ends the motion, which counts as diverged then. */
 static void a_motion_ends_where_it_is_no_motion(void **state) {
   (void)state;
-  static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
+  static const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300, -1e300};
   strut_page_frames frames;
   strut_trajectory motion = swing();
   strut_release(page_of(&motion, 0, &frames));
@@ -240,7 +240,7 @@ static void a_motion_ends_where_it_is_no_motion(void **state) {
     }
   }
   motion = swing();
-  positions[3] = NAN;
+  positions[3] = (double)NAN;
   char *html = page_of(&motion, 0, &frames);
   assert_int_equal(frames.shown, 0);
   has(html, "\"motion\":null");
