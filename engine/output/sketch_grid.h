@@ -24,7 +24,7 @@ enum {
 typedef struct strut_sketch_grid {
   int columns, rows;
   uint8_t *dots;    /* (rows, columns) which of the eight are set, as in U+2800 + dots */
-  uint32_t *letter; /* (rows, columns) code point over the dots; 0: none; 1: the right half of one */
+  uint32_t *letter; /* (rows, columns) code point over the dots; 0: none; 1: right half of one */
 } strut_sketch_grid;
 
 /** Takes its memory; false when there is none. */

@@ -70,7 +70,8 @@ const strut_command strut_command_export = {
     .model = "RUN|MODEL",
     .summary = "writes a model's matrices, or a run's motion for ParaView",
     .details =
-        "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files: connectivity, equilibrium, mass, stiffness_elastic,\n"
+        "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files:\n"
+        "connectivity, equilibrium, mass, stiffness_elastic,\n"
         "stiffness_geometric, damping and, where nodes touch the ground, stiffness_contact;\n"
         "node_names.csv, rows.csv (free coordinates) and columns.csv (members) name their rows\n"
         "and columns. The tangent stiffness is the sum of the three.\n"

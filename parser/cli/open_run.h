@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What every command with a RUN|MODEL begins with: a model, and its recorded motion if there is one.
+ * What a command with a RUN|MODEL begins with: a model, and its recorded motion if there is one.
  */
 #ifndef STRUT_PARSER_CLI_OPEN_RUN_H
 #define STRUT_PARSER_CLI_OPEN_RUN_H
@@ -19,8 +19,8 @@ typedef struct strut_opened {
 } strut_opened;
 
 /**
- * Opens what the command's argument names. A directory is a run: its scene.yaml is read, and as many
- * frames of its trajectory.h5 as fit into `room` doubles; --set is refused then. Anything else is a
+ * Opens what the command's argument names. A directory is a run: its scene.yaml is read, and as
+ * many frames of its trajectory.h5 as fit into `room` doubles; --set is refused then. Anything else is a
  * model, opened for `purpose`. Messages go to stderr; on failure nothing is left to free.
  */
 strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * A bar with how far it is and the time left, on a terminal only; one line, as wide as there is room.
+ * A bar with how far it is and the time left, on a terminal only; one line, as wide as there is
+ * room.
  */
 #ifndef STRUT_PARSER_CLI_PROGRESS_H
 #define STRUT_PARSER_CLI_PROGRESS_H

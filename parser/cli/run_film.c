@@ -21,8 +21,8 @@ static strut_status read_number(const strut_command *command, const strut_argume
   strut_status status = strut_option_number(command, arguments, id, STRUT_DIM_NONE, value);
   if (status != STRUT_OK || !strut_option_text(arguments, id)) return status;
   if (*value >= low && *value <= high) return STRUT_OK;
-  fprintf(stderr, "strut %s: --%s is a number from %g to %g, such as %s\n", command->name, name, low,
-          high, id == STRUT_OPTION_SPEED ? "1/10" : "30");
+  fprintf(stderr, "strut %s: --%s is a number from %g to %g, such as %s\n", command->name, name,
+          low, high, id == STRUT_OPTION_SPEED ? "1/10" : "30");
   return STRUT_USAGE;
 }
 
@@ -58,8 +58,8 @@ static double better_speed(double motion) {
 
 static void say(const strut_film *film, const strut_film_made *made) {
   double motion = made->lasts * film->speed;
-  printf("\n  film %s: %d x %d, %zu frames, %s", film->path, made->width, made->height, made->frames,
-         strut_quantity_of((double)made->frames / made->fps, DIGITS, "s").text);
+  printf("\n  film %s: %d x %d, %zu frames, %s", film->path, made->width, made->height,
+         made->frames, strut_quantity_of((double)made->frames / made->fps, DIGITS, "s").text);
   printf(film->speed == 1 ? " at true speed\n" : " at %.4g times the true speed\n", film->speed);
   if (made->lasts < SHORT && motion > 0)
     printf("  what was recorded lasts %s: --speed 1/%.0f shows it in %s\n",

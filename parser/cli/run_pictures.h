@@ -28,7 +28,7 @@ typedef struct strut_run_pictures {
       {STRUT_OPTION_DRAW, "draw", "WHAT",                                                         \
        "overview (if not given), period, snapshots or curves"},                                   \
       {STRUT_OPTION_SCALE, "scale", "X,Y", "draw the motion of a period so many times"},          \
-      {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},     \
+      {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},   \
       STRUT_RUN_FILM_OPTIONS
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */

@@ -140,7 +140,8 @@ static strut_status encode(making *m, strut_error *error) {
   strut_status status = strut_canvas_open_pixels(made->width, made->height,
                                                  made->width / PAGE_WIDTH, &canvas, error);
   if (status != STRUT_OK) return status;
-  status = strut_encoder_begin(&encoder, m->film->path, made->width, made->height, made->fps, error);
+  status = strut_encoder_begin(&encoder, m->film->path, made->width, made->height, made->fps,
+                               error);
   if (status == STRUT_OK) {
     strut_c_locale locale = strut_c_locale_enter();
     status = draw_frames(m, canvas, &encoder, error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Films of a recorded motion: the structure true to scale, its forces in colour, the ground passing by.
+ * Films of a recorded motion: the structure true to scale, its forces in colour, the ground passing.
  */
 #ifndef STRUT_ENGINE_OUTPUT_FILM_FILM_H
 #define STRUT_ENGINE_OUTPUT_FILM_FILM_H

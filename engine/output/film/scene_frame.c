@@ -6,7 +6,6 @@
 
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
-#include "engine/output/quantity_text.h"
 
 enum { DIGITS = 3, TEXT = 64, MOST_MARKS = 200, TITLE = 84 };
 
@@ -90,12 +89,15 @@ static void draw_marks(const strut_scenery *s, strut_canvas *canvas, const strut
     end[1] = point[1] + 11 * tangent[0];
     strut_draw_segment(canvas, point[0], point[1], end[0], end[1], pen);
     if (moved != 0 || ground->belt_speed != 0) continue;
-    snprintf(text, sizeof text, "%.6g %sm", (first + k) * s->step / factor, prefix);
+    double number = (first + k) * s->step / factor;
+    const char *sign = number < 0 ? "\xe2\x88\x92" : "";
+    snprintf(text, sizeof text, "%s%.6g %sm", sign, fabs(number), prefix);
     const strut_font font = {.size = 7.5, .across = 0.5, .colour = strut_grey(0.3)};
     double half, high;
     strut_text_size(canvas, text, font, &half, &high);
     half *= 0.5;
-    if (end[0] - half < window->box.x || end[0] + half > window->box.x + window->box.width) continue;
+    double right = window->box.x + window->box.width;
+    if (end[0] - half < window->box.x || end[0] + half > right) continue;
     strut_draw_text(canvas, end[0], end[1] + 1, text, font);
   }
 }
@@ -154,11 +156,12 @@ static void draw_words(const strut_scenery *s, strut_canvas *canvas, const strut
   if (!s->travels) return;
   double moved = strut_moment_travel(moment, s->model) - s->travelled_from;
   if (fabs(moved) < 1e-9 * s->model->size) moved = 0;
-  snprintf(text, sizeof text, "moved %s", strut_quantity_of(moved, DIGITS, "m").text);
+  snprintf(text, sizeof text, "moved %s", strut_drawn_quantity(moved, DIGITS, "m").text);
   strut_draw_text(canvas, EDGE, page.height - 36, text, (strut_font){.size = 9});
   double velocity = s->mean_velocity;
   if (fabs(velocity) * (s->end_time - s->start_time) < 1e-9 * s->model->size) velocity = 0;
-  snprintf(text, sizeof text, "mean velocity %s", strut_quantity_of(velocity, DIGITS, "m/s").text);
+  snprintf(text, sizeof text, "mean velocity %s",
+           strut_drawn_quantity(velocity, DIGITS, "m/s").text);
   strut_draw_text(canvas, EDGE, page.height - 23, text, (strut_font){.size = 9, .colour = grey});
 }
 
