@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/output/figures/form_figure.h"
 #include "engine/output/file.h"
 #include "engine/output/form_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
+#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/write_scene.h"
 
@@ -22,6 +24,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print what it holds"},
     {STRUT_OPTION_JSON, "json", NULL, "print what the form holds as one JSON object instead"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "with -o, print nothing"},
+    STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -73,20 +76,43 @@ static strut_status show(const strut_arguments *arguments, const strut_scene *sc
   return status;
 }
 
+static strut_status draw(const strut_plot *plot, const strut_scene *scene,
+                         const double (*drawn)[2], strut_error *error) {
+  strut_model *model = NULL;
+  if (!plot->path) return STRUT_OK;
+  strut_status status = strut_model_compile(scene, &model, error);
+  if (status == STRUT_OK) status = strut_form_figure(plot->path, plot->width, model, drawn, error);
+  strut_model_free(model);
+  return status;
+}
+
+/* Finds, shows and draws; `drawn` (node_count) is for the positions as they were. */
+static strut_status find(const strut_arguments *arguments, const strut_form_options *wanted,
+                         const strut_plot *plot, strut_scene *scene, double (*drawn)[2]) {
+  strut_form form;
+  strut_error error = {0};
+  for (size_t i = 0; i < scene->node_count; i++)
+    memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
+  strut_status status = strut_form_find(scene, wanted, &form, &error);
+  if (status == STRUT_OK) status = show(arguments, scene, &form);
+  if (status == STRUT_OK) status = draw(plot, scene, (const double(*)[2])drawn, &error);
+  if (error.message[0]) strut_complain(&error);
+  return status;
+}
+
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
-  strut_form form;
   strut_form_options wanted = {0};
-  strut_error error = {0};
+  strut_plot plot;
+  strut_arena arena = {0};
   strut_status status = read_options(arguments, &wanted);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_form, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
-  status = strut_form_find(&scene, &wanted, &form, &error);
-  if (status == STRUT_OK)
-    status = show(arguments, &scene, &form);
-  else
-    strut_complain(&error);
+  double(*drawn)[2] = strut_arena_allocate(&arena, scene.node_count, sizeof *drawn);
+  status = drawn ? find(arguments, &wanted, &plot, &scene, drawn) : strut_complain_of_memory();
+  strut_arena_free(&arena);
   strut_scene_free(&scene);
   return status;
 }

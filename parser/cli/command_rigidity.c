@@ -2,10 +2,12 @@
 #include "parser/cli/command_rigidity.h"
 
 #include "engine/base/memory.h"
+#include "engine/output/figures/rigidity_figure.h"
 #include "engine/output/file.h"
 #include "engine/output/rigidity_report.h"
 #include "parser/cli/named_shape.h"
 #include "parser/cli/open_model.h"
+#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 
 static const strut_option options[] = {
@@ -13,6 +15,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -40,14 +43,17 @@ static strut_status report(const strut_arguments *arguments, const strut_model *
   return status;
 }
 
-static strut_status look(const strut_arguments *arguments, const strut_model *model,
-                         strut_error *error) {
+static strut_status look(const strut_arguments *arguments, const strut_plot *plot,
+                         const strut_model *model, strut_error *error) {
   strut_arena arena = {0};
   strut_named_shape shape;
   strut_rigidity rigidity = {0};
   strut_status status = strut_named_shape_find(arguments, model, &arena, &shape, error);
   if (status == STRUT_OK) status = strut_rigidity_find(model, shape.q, &rigidity, error);
   if (status == STRUT_OK) status = report(arguments, model, &shape, &rigidity, error);
+  if (status == STRUT_OK && plot->path)
+    status = strut_rigidity_figure(plot->path, plot->width, model, shape.q, shape.name, &rigidity,
+                                   error);
   strut_rigidity_free(&rigidity);
   strut_arena_free(&arena);
   return status;
@@ -57,12 +63,14 @@ static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
+  strut_plot plot;
   strut_status status = strut_try_output(arguments);
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_rigidity, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = look(arguments, model, &error);
+  if (status == STRUT_OK) status = look(arguments, &plot, model, &error);
   if (status != STRUT_OK && error.message[0]) strut_complain(&error);
   strut_model_free(model);
   strut_scene_free(&scene);

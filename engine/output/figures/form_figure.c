@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/figures/form_figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/draw/axes.h"
+#include "engine/output/draw/key.h"
+#include "engine/output/draw/palette.h"
+#include "engine/output/draw/structure.h"
+
+static const double EDGE = 5, TITLE = 28, MARGIN = 24, SCALE = 46;
+
+/* Member forces at the start: springs at rest lengths, cables that only pull. Returns the largest. */
+static double find_forces(const strut_model *model, double *force) {
+  double most = 0;
+  for (size_t j = 0; j < model->scene->member_count; j++) {
+    const strut_member *m = &model->scene->members[j];
+    const double *a = model->start + 2 * m->node[0], *b = model->start + 2 * m->node[1];
+    force[j] = fmax(model->members.stiffness[j] *
+                        (hypot(b[0] - a[0], b[1] - a[1]) - model->members.rest[j]),
+                    model->members.slack[j]);
+    most = fmax(most, fabs(force[j]));
+  }
+  return most;
+}
+
+static double farthest(const strut_model *model, const double (*drawn)[2]) {
+  double most = 0;
+  for (int32_t i = 0; i < model->node_count; i++)
+    most = fmax(most, hypot(model->start[2 * i] - drawn[i][0], model->start[2 * i + 1] - drawn[i][1]));
+  return most;
+}
+
+static void draw(strut_canvas *canvas, const strut_model *model, const double *before,
+                 const double (*drawn)[2], const double *force, double limit,
+                 strut_bounds bounds) {
+  strut_box page = strut_canvas_box(canvas);
+  double inner = page.width - 2 * EDGE, moved = farthest(model, drawn);
+  strut_box box = {EDGE, EDGE + TITLE, inner - SCALE, page.height - 2 * EDGE - TITLE};
+  strut_window window = strut_window_fit(box, bounds, MARGIN);
+  char text[200], fitted[STRUT_FITTED_TEXT];
+  strut_font bold = {.size = 9, .bold = true}, note = {.size = 8, .colour = strut_grey(0.3)};
+  strut_draw_text(canvas, EDGE, EDGE,
+                  strut_text_fit(canvas, model->scene->name, bold, inner, 0, fitted), bold);
+  bool same = moved <= 1e-9 * model->size;
+  if (same) {
+    snprintf(text, sizeof text, "the shape as drawn, and the forces that hold it");
+  } else {
+    snprintf(text, sizeof text, "grey: as drawn; nodes moved by up to %s",
+             strut_drawn_quantity(moved, 3, "m").text);
+  }
+  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
+                  note);
+  const strut_structure_style pale = {.colouring = STRUT_COLOUR_ONE,
+                                      .colour = strut_grey(0.75),
+                                      .thinness = 0.4,
+                                      .no_nodes = true,
+                                      .no_supports = true};
+  const strut_structure_style full = {.colouring = STRUT_COLOUR_FORCE,
+                                      .values = force,
+                                      .slack_forces = force,
+                                      .limit = limit,
+                                      .node_names = true};
+  strut_draw_ground(canvas, &window, model);
+  if (!same) strut_draw_structure(canvas, &window, model, before, &pale);
+  strut_draw_structure(canvas, &window, model, model->start, &full);
+  strut_draw_yardstick(canvas, &window);
+  const strut_colour_scale scale = {.name = "force", .unit = "N", .low = -limit, .high = limit};
+  if (limit > 0)
+    strut_draw_colour_scale(canvas,
+                            (strut_box){EDGE + inner - SCALE + 6, box.y + 4, SCALE - 6,
+                                        fmin(box.height - 8, 130)},
+                            &scale);
+}
+
+strut_status strut_form_figure(const char *path, double width, const strut_model *model,
+                               const double (*drawn)[2], strut_error *error) {
+  strut_arena arena = {0};
+  strut_canvas *canvas = NULL;
+  double *before = strut_arena_allocate(&arena, (size_t)model->length, sizeof *before);
+  double *force = strut_arena_allocate(&arena, model->scene->member_count + 1, sizeof *force);
+  if (!before || !force) {
+    strut_arena_free(&arena);
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  }
+  memcpy(before, drawn, (size_t)model->node_count * sizeof *drawn);
+  strut_bounds bounds = strut_bounds_none();
+  strut_bounds_add(&bounds, model, before);
+  strut_bounds_add(&bounds, model, model->start);
+  double limit = find_forces(model, force), room = width - 2 * EDGE - SCALE - 2 * MARGIN;
+  double aspect = (bounds.high[1] - bounds.low[1]) / (bounds.high[0] - bounds.low[0]);
+  double high = room * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * MARGIN;
+  high = fmax(0.25 * width, fmin(high, 0.9 * width));
+  strut_status status = strut_canvas_open(path, width, 2 * EDGE + TITLE + high,
+                                          model->scene->name, &canvas, error);
+  if (status == STRUT_OK) {
+    draw(canvas, model, before, drawn, force, limit, bounds);
+    status = strut_canvas_commit(canvas, error);
+  }
+  strut_canvas_free(canvas);
+  strut_arena_free(&arena);
+  return status;
+}

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/figures/rigidity_figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/draw/axes.h"
+#include "engine/output/draw/key.h"
+#include "engine/output/draw/palette.h"
+#include "engine/output/draw/structure.h"
+
+static const double EDGE = 5, TITLE = 28, LINE = 12, MARGIN = 18, NARROW = 150, SCALE = 34;
+static const double SWING = 0.12; /* the largest motion as drawn, of the larger extent */
+enum { ROWS = 4, COLUMNS = 3 };
+
+/* What the panels show, in this order. */
+typedef struct plan {
+  const strut_model *model;
+  const double *q;
+  const strut_rigidity *rigidity;
+  double width, size[2], cell[2];
+  strut_bounds bounds;
+  int32_t forces, states, motions; /* panels of each */
+  size_t columns, rows;
+  double *moved; /* (length) scratch */
+} plan;
+
+static int32_t panels_of(const plan *p) { return p->forces + p->states + p->motions; }
+
+/* As many as go in; states and mechanisms share the room. */
+static void choose(plan *p) {
+  const strut_rigidity *r = p->rigidity;
+  int32_t room = (int32_t)p->columns * ROWS;
+  p->forces = r->prestressed ? 1 : 0;
+  p->states = r->states.force ? r->states.count : 0;
+  p->motions = r->mechanisms.list ? r->mechanisms.count : 0;
+  if (panels_of(p) <= room) return;
+  int32_t half = (room - p->forces) / 2;
+  if (p->motions < half) {
+    p->states = room - p->forces - p->motions;
+  } else if (p->states < half) {
+    p->motions = room - p->forces - p->states;
+  } else {
+    p->states = half;
+    p->motions = room - p->forces - half;
+  }
+}
+
+static void lay_out(plan *p) {
+  double inner = p->width - 2 * EDGE;
+  p->columns = (size_t)fmax(1, fmin(COLUMNS, floor(inner / NARROW)));
+  choose(p);
+  size_t panels = panels_of(p) > 0 ? (size_t)panels_of(p) : 1;
+  if (p->columns > panels) p->columns = panels;
+  p->rows = (panels + p->columns - 1) / p->columns;
+  p->cell[0] = inner / (double)p->columns;
+  p->bounds = strut_bounds_none();
+  strut_bounds_add(&p->bounds, p->model, p->q);
+  for (int d = 0; d < 2; d++) p->size[d] = p->bounds.high[d] - p->bounds.low[d];
+  double swing = SWING * fmax(p->size[0], p->size[1]); /* there is room for motions */
+  for (int d = 0; d < 2 && p->motions > 0; d++) {
+    p->bounds.low[d] -= swing;
+    p->bounds.high[d] += swing;
+    p->size[d] += 2 * swing;
+  }
+  double aspect = p->size[0] > 0 ? p->size[1] / p->size[0] : 1;
+  double wanted = (p->cell[0] - 2 * MARGIN) * aspect + 2 * MARGIN;
+  p->cell[1] = LINE + fmax(50, fmin(wanted, 1.3 * p->cell[0]));
+}
+
+static double largest(const double *values, size_t count) {
+  double most = 0;
+  for (size_t i = 0; i < count; i++) most = fmax(most, fabs(values[i]));
+  return most;
+}
+
+static void draw_forces(const plan *p, strut_canvas *canvas, const strut_window *window,
+                        const double *force) {
+  double limit = largest(force, p->model->scene->member_count);
+  const strut_structure_style style = {.colouring = STRUT_COLOUR_FORCE,
+                                       .values = force,
+                                       .slack_forces = force,
+                                       .limit = limit,
+                                       .node_names = p->cell[0] > 120};
+  strut_draw_structure(canvas, window, p->model, p->q, &style);
+}
+
+/* The shape in grey, and where a small motion takes it, with an arrow at each node. */
+static void draw_motion(const plan *p, strut_canvas *canvas, const strut_window *window,
+                        const double *motion) {
+  const strut_equilibrium_matrix *a = &p->rigidity->matrix;
+  double most = 0, extent = fmax(p->size[0], p->size[1]) / (1 + 2 * SWING);
+  memcpy(p->moved, p->q, (size_t)p->model->length * sizeof *p->moved);
+  for (int32_t i = 0; i < p->model->node_count; i++) p->moved[2 * i] = p->q[2 * i];
+  for (int32_t r = 0; r < a->rows; r++) most = fmax(most, fabs(motion[r]));
+  double scale = most > 0 ? SWING * extent / most : 0;
+  for (int32_t r = 0; r < a->rows; r++) p->moved[a->coordinate[r]] += scale * motion[r];
+  const strut_structure_style pale = {
+      .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.72), .thinness = 0.5, .no_nodes = true};
+  const strut_structure_style there = {.colouring = STRUT_COLOUR_ONE,
+                                       .colour = strut_palette_thing(0),
+                                       .thinness = 0.8,
+                                       .no_nodes = true,
+                                       .no_supports = true};
+  strut_draw_structure(canvas, window, p->model, p->q, &pale);
+  strut_draw_structure(canvas, window, p->model, p->moved, &there);
+  for (int32_t i = 0; i < p->model->node_count && p->model->node_count <= 200; i++) {
+    double from[2], to[2];
+    strut_window_point(window, p->q + 2 * i, from);
+    strut_window_point(window, p->moved + 2 * i, to);
+    if (hypot(to[0] - from[0], to[1] - from[1]) > 2)
+      strut_draw_arrow(canvas, from[0], from[1], to[0], to[1], 5,
+                       (strut_pen){.colour = strut_palette_thing(1), .width = 0.9});
+  }
+}
+
+static void panel_text(const plan *p, int32_t k, char *text, size_t size) {
+  const strut_rigidity *r = p->rigidity;
+  if (k < p->forces) {
+    snprintf(text, size, "forces in the shape, up to %s",
+             strut_drawn_quantity(largest(r->force, p->model->scene->member_count), 3, "N").text);
+  } else if (k < p->forces + p->states) {
+    int32_t state = k - p->forces;
+    snprintf(text, size, "self-stress %d%s", (int)state + 1,
+             r->has_cables && !r->states.cables_pull[state] ? ", presses cables" : "");
+  } else {
+    int32_t motion = k - p->forces - p->states;
+    snprintf(text, size, "mechanism %d, %s", (int)motion + 1,
+             strut_motion_kind_name(r->mechanisms.list[motion].kind));
+  }
+}
+
+static void draw_panel(const plan *p, strut_canvas *canvas, int32_t k, strut_box cell) {
+  char text[200], fitted[STRUT_FITTED_TEXT];
+  strut_font font = {.size = 8};
+  strut_box box = {cell.x, cell.y + LINE, cell.width, cell.height - LINE};
+  strut_window window = strut_window_fit(box, p->bounds, MARGIN);
+  panel_text(p, k, text, sizeof text);
+  strut_draw_text(canvas, cell.x + 4, cell.y,
+                  strut_text_fit(canvas, text, font, cell.width - 8, 0, fitted), font);
+  strut_canvas_clip(canvas, cell);
+  if (k < p->forces) {
+    draw_forces(p, canvas, &window, p->rigidity->force);
+  } else if (k < p->forces + p->states) {
+    size_t state = (size_t)(k - p->forces);
+    draw_forces(p, canvas, &window,
+                p->rigidity->states.force + state * p->model->scene->member_count);
+  } else {
+    draw_motion(p, canvas, &window, p->rigidity->mechanisms.list[k - p->forces - p->states].motion);
+  }
+  strut_canvas_unclip(canvas);
+}
+
+static void draw_title(const plan *p, strut_canvas *canvas, const char *at) {
+  const strut_rigidity *r = p->rigidity;
+  char text[400], fitted[STRUT_FITTED_TEXT];
+  strut_font bold = {.size = 9, .bold = true}, note = {.size = 8, .colour = strut_grey(0.3)};
+  double inner = p->width - 2 * EDGE;
+  int32_t left_out = r->states.count - p->states + r->mechanisms.count - p->motions;
+  strut_draw_text(canvas, EDGE, EDGE,
+                  strut_text_fit(canvas, p->model->scene->name, bold, inner, 0, fitted), bold);
+  int used = snprintf(text, sizeof text, "%s: %d state%s of self-stress, %d mechanism%s", at,
+                      (int)r->states.count, r->states.count == 1 ? "" : "s",
+                      (int)r->mechanisms.count, r->mechanisms.count == 1 ? "" : "s");
+  if (left_out > 0)
+    snprintf(text + used, sizeof text - (size_t)used, "; %d of them are not drawn", (int)left_out);
+  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
+                  note);
+}
+
+static void draw(const plan *p, strut_canvas *canvas, const char *at) {
+  draw_title(p, canvas, at);
+  for (int32_t k = 0; k < panels_of(p); k++) {
+    size_t row = (size_t)k / p->columns, column = (size_t)k % p->columns;
+    draw_panel(p, canvas, k,
+               (strut_box){EDGE + (double)column * p->cell[0],
+                           EDGE + TITLE + (double)row * p->cell[1], p->cell[0], p->cell[1]});
+  }
+  double y = EDGE + TITLE + (double)p->rows * p->cell[1];
+  strut_box cell = {EDGE, EDGE + TITLE, p->cell[0], p->cell[1]};
+  if (panels_of(p) == 0) { /* nothing holds and nothing moves: the shape itself */
+    strut_window window = strut_window_fit(cell, p->bounds, MARGIN);
+    strut_draw_structure(canvas, &window, p->model, p->q,
+                         &(strut_structure_style){.node_names = true});
+  }
+  strut_window foot = strut_window_fit(
+      (strut_box){EDGE, y, p->cell[0], p->cell[1] - LINE}, p->bounds, MARGIN);
+  foot.box.y = y + SCALE - 8 - foot.box.height;
+  strut_draw_yardstick(canvas, &foot);
+  double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
+  const strut_colour_scale scale = {
+      .name = "force, of the largest", .unit = "", .low = -1, .high = 1};
+  if (p->forces + p->states > 0)
+    strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
+}
+
+strut_status strut_rigidity_figure(const char *path, double width, const strut_model *model,
+                                   const double *q, const char *at,
+                                   const strut_rigidity *rigidity, strut_error *error) {
+  plan p = {.model = model, .q = q, .rigidity = rigidity, .width = width};
+  strut_arena arena = {0};
+  strut_canvas *canvas = NULL;
+  p.moved = strut_arena_allocate(&arena, (size_t)model->length, sizeof *p.moved);
+  strut_status status =
+      p.moved ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (status == STRUT_OK) {
+    lay_out(&p);
+    double height = 2 * EDGE + TITLE + (double)p.rows * p.cell[1] + SCALE;
+    status = strut_canvas_open(path, width, height, model->scene->name, &canvas, error);
+  }
+  if (status == STRUT_OK) {
+    draw(&p, canvas, at);
+    status = strut_canvas_commit(canvas, error);
+  }
+  strut_canvas_free(canvas);
+  strut_arena_free(&arena);
+  return status;
+}
