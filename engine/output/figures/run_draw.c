@@ -9,6 +9,7 @@
 
 enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, WAY_PIECES = 40, LINE = 600 };
 
+static const double DOT = 0.3; /* [pt] */
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it does not move */
 
 void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
@@ -63,9 +64,20 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
   }
 }
 
+/* Whether a way is longer than a dot on the page. */
+static bool is_seen(const strut_window *window, const double (*way)[2], size_t count) {
+  double first[2], at[2];
+  for (size_t i = 0; i < count; i++) {
+    strut_window_point(window, way[i], i ? at : first);
+    if (i && hypot(at[0] - first[0], at[1] - first[1]) > DOT) return true;
+  }
+  return false;
+}
+
 void strut_run_draw_way(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                         const double (*way)[2], size_t count, double width) {
   double before[2], at[2];
+  if (!is_seen(window, way, count)) return;
   strut_canvas_clip(canvas, window->box);
   strut_draw_trail(canvas, window, way, count, width);
   strut_canvas_unclip(canvas);

@@ -5,7 +5,7 @@
 
 #include "engine/output/figures/run_parts.h"
 
-enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2 };
+enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_WAYS = 300 };
 
 static const double SCALE = 46, CHART = 118, MARGIN = 27, GAP = 6, WIDE = 380;
 static const double PERIODS = 5, PART = 0.1; /* of what was recorded, where nothing is periodic */
@@ -57,6 +57,7 @@ static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
 static bool moves(const strut_run_scene *run) {
   size_t last = run->frames - 1, nodes = run->motion->node_count;
   strut_bounds b = bounds_of(run);
+  if (nodes > MOST_WAYS) return false;
   double least = SEEN * strut_run_extent(&b);
   for (size_t f = first_of_ways(run); f < last; f++)
     for (size_t i = 0; i < 2 * nodes; i++)
@@ -95,7 +96,7 @@ static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box
   double(*way)[2] = strut_arena_allocate(&run->arena, run->frames - first, sizeof *way);
   double *q = strut_run_shape(run, last);
   if (!way || !q || !strut_run_draw_frame(run, canvas, &window, last)) return false;
-  for (size_t i = 0; i < nodes && last > first; i++) {
+  for (size_t i = 0; i < nodes && nodes <= MOST_WAYS; i++) {
     for (size_t f = first; f < run->frames; f++)
       for (size_t d = 0; d < 2; d++) way[f - first][d] = strut_run_positions(run, f)[2 * i + d];
     strut_run_draw_way(run, canvas, &window, (const double(*)[2])way, run->frames - first, 0.9);

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures of a run without memory, without frames, and of frames that are no shapes. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/output/figures/run_figure.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+#include "tests/unit/scratch.h"
+
+static strut_scene scene;
+static strut_model *model;
+static strut_summary summary;
+static strut_trajectory taken;
+
+static int set_up(void **unused) {
+  (void)unused;
+  scratch_make();
+  strut_scene_init(&scene);
+  structure_crawler(&scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&scene, 1e-4, 0.2);
+  scene.experiment.output_every = 5e-3;
+  scene.name = "crawler";
+  model = motion_compile(&scene);
+  strut_error error = {0};
+  strut_sink *sink = strut_trajectory_sink(&taken, &scene, 63, STRUT_TRAJECTORY_ROOM);
+  strut_run_options options = {.sinks = &sink, .sink_count = 1};
+  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_OK);
+  strut_trajectory_sink_free(sink);
+  assert_int_equal(taken.frames, 41);
+  return 0;
+}
+
+static int tear_down(void **unused) {
+  (void)unused;
+  strut_trajectory_free(&taken);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  scratch_remove();
+  return 0;
+}
+
+static strut_status draw(strut_run_view view, const strut_trajectory *frames, strut_error *error) {
+  const strut_run_figure figure = {.view = view, .width = 250, .scale = {3, 2}};
+  *error = (strut_error){0};
+  return strut_run_figure_draw(scratch_path("a.svg"), &figure, model, frames, &summary, error);
+}
+
+/* Every so many-th allocation fails: nothing but the message, and no file, is left. */
+static void test_no_memory(void **unused) {
+  (void)unused;
+  for (int view = STRUT_RUN_OVERVIEW; view <= STRUT_RUN_CURVES; view++) {
+    strut_status status = STRUT_NO_MEMORY;
+    strut_error error;
+    for (int64_t n = 0; status != STRUT_OK; n += 1 + n / 4) {
+      assert_int_equal(scratch_count(scratch_path("")), 0);
+      strut_fail_allocation_after(n);
+      status = draw((strut_run_view)view, &taken, &error);
+      strut_fail_allocation_after(-1);
+      if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+      if (status != STRUT_OK) assert_true(error.message[0]);
+      assert_true(n < 100000);
+    }
+    assert_int_equal(scratch_count(scratch_path("")), 1);
+    assert_int_equal(remove(scratch_path("a.svg")), 0);
+  }
+}
+
+static void test_nothing_to_draw(void **unused) {
+  (void)unused;
+  strut_error error;
+  strut_trajectory none = {0}, no_positions = taken, empty = taken;
+  no_positions.position = NULL;
+  empty.frames = 0;
+  assert_int_equal(draw(STRUT_RUN_OVERVIEW, &none, &error), STRUT_USAGE);
+  assert_int_equal(draw(STRUT_RUN_OVERVIEW, &no_positions, &error), STRUT_USAGE);
+  assert_int_equal(draw(STRUT_RUN_CURVES, &empty, &error), STRUT_USAGE);
+  assert_non_null(strstr(error.message, "nothing to draw"));
+  assert_int_equal(scratch_count(scratch_path("")), 0);
+}
+
+/* Few frames, and channels that are not there. */
+static void test_whatever_there_is_is_drawn(void **unused) {
+  (void)unused;
+  strut_error error;
+  for (size_t frames = 1; frames <= 3; frames++)
+    for (int view = STRUT_RUN_OVERVIEW; view <= STRUT_RUN_CURVES; view++) {
+      strut_trajectory few = taken;
+      few.frames = frames;
+      assert_int_equal(draw((strut_run_view)view, &few, &error), STRUT_OK);
+      few.force = few.contact = few.energy = few.length = few.velocity = NULL;
+      assert_int_equal(draw((strut_run_view)view, &few, &error), STRUT_OK);
+    }
+  assert_int_equal(remove(scratch_path("a.svg")), 0);
+}
+
+/* Frames after a divergence are left out: the picture is that of the frames before. */
+static void test_frames_that_are_no_shapes(void **unused) {
+  (void)unused;
+  size_t length, other_length;
+  strut_error error;
+  strut_trajectory few = taken, wild = taken;
+  few.frames = 20;
+  double *positions = strut_allocate(2 * taken.frames * taken.node_count, sizeof *positions);
+  assert_non_null(positions);
+  memcpy(positions, taken.position, 2 * taken.frames * taken.node_count * sizeof *positions);
+  wild.position = positions;
+  positions[2 * 20 * taken.node_count + 3] = 1e30;
+  positions[2 * 25 * taken.node_count] = NAN;
+  summary.status = STRUT_DIVERGED;
+  assert_int_equal(draw(STRUT_RUN_PERIOD, &few, &error), STRUT_OK);
+  char *one = scratch_read(scratch_path("a.svg"), &length);
+  assert_int_equal(draw(STRUT_RUN_PERIOD, &wild, &error), STRUT_OK);
+  char *two = scratch_read(scratch_path("a.svg"), &other_length);
+  summary.status = STRUT_OK;
+  assert_int_equal(length, other_length);
+  assert_memory_equal(one, two, length);
+  free(one);
+  free(two);
+  strut_release(positions);
+  assert_int_equal(remove(scratch_path("a.svg")), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_no_memory),
+      cmocka_unit_test(test_nothing_to_draw),
+      cmocka_unit_test(test_whatever_there_is_is_drawn),
+      cmocka_unit_test(test_frames_that_are_no_shapes),
+  };
+  return cmocka_run_group_tests_name("run_figure", tests, set_up, tear_down);
+}
