@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/output/draw/key.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure_parts.h"
 
@@ -50,11 +51,9 @@ static double freedom(const obstacles *o, strut_box box) {
   return out > 0 ? fmin(least, -out) : least;
 }
 
-static strut_font name_font(double width) {
-  return (strut_font){.size = SIZE,
-                      .italic = true,
-                      .halo = strut_faded(strut_grey(1), 0.85),
-                      .width = width > MOST_WIDTH ? MOST_WIDTH : 0};
+static strut_font name_font(void) {
+  return (strut_font){
+      .size = SIZE, .italic = true, .halo = strut_faded(strut_grey(1), 0.85)};
 }
 
 /* The box of a name of this size around `at`, in one of the directions. */
@@ -68,10 +67,10 @@ static strut_box beside(const double at[2], int direction, double gap, double wi
 static void place_name(strut_canvas *canvas, obstacles *o, const double at[2], double gap,
                        const char *name) {
   double width, height, best = -HUGE_VAL;
+  char fitted[STRUT_FITTED_TEXT];
   strut_box chosen = {0};
-  strut_text_size(canvas, name, name_font(0), &width, &height);
-  strut_font font = name_font(width);
-  strut_text_size(canvas, name, font, &width, &height);
+  name = strut_text_fit(canvas, name, name_font(), MOST_WIDTH, 0, fitted);
+  strut_text_size(canvas, name, name_font(), &width, &height);
   for (int k = 0; k < DIRECTIONS; k++) {
     /* Up and to the right first, and far enough is good enough. */
     int direction = (k + DIRECTIONS / 8) % DIRECTIONS;
@@ -83,7 +82,7 @@ static void place_name(strut_canvas *canvas, obstacles *o, const double at[2], d
     }
   }
   o->labels[o->label_count++] = chosen;
-  strut_draw_text(canvas, chosen.x, chosen.y, name, font);
+  strut_draw_text(canvas, chosen.x, chosen.y, name, name_font());
 }
 
 /* The sides of supports below nodes count as members too. */
