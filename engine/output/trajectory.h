@@ -38,8 +38,8 @@ STRUT_API strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const 
 /** Frees the sink, not the trajectory. */
 STRUT_API void strut_trajectory_sink_free(strut_sink *sink);
 /**
- * Reads directory/trajectory.h5 of a run of `scene`. STRUT_FILE_TROUBLE where it is not there, cannot
- * be read or is of another scene (other nodes or members), with what to do; STRUT_NO_MEMORY.
+ * Reads directory/trajectory.h5 of a run of `scene`. STRUT_FILE_TROUBLE where it is not there,
+ * cannot be read or is of another scene (other nodes or members), with what to do; STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_trajectory_read(const char *directory, const strut_scene *scene,
                                              size_t room, strut_trajectory *trajectory,

@@ -143,7 +143,8 @@ static strut_status read_time(reader *r, size_t room) {
   t->frames = (t->recorded + t->every - 1) / t->every;
   t->frames += t->recorded > 0 && (t->recorded - 1) % t->every != 0;
   t->time = strut_allocate(t->frames, sizeof *t->time);
-  bool good = t->time && (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
+  bool good = t->time &&
+              (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
   H5Dclose(dataset);
   return good ? STRUT_OK : t->time ? trouble(r, "it is damaged") : no_memory(r);
 }

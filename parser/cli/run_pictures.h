@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What `strut run` draws of a run: options before it, the recorded motion during it, files after it.
+ * What `strut run` draws of a run: options before it, the motion during it, files after it.
  */
 #ifndef STRUT_PARSER_CLI_RUN_PICTURES_H
 #define STRUT_PARSER_CLI_RUN_PICTURES_H

@@ -95,7 +95,8 @@ def check_snapshots(here, model, words, expected, common):
     for k, wanted in enumerate(expected):
         nearest = min(range(len(times)), key=lambda f: abs(times[f] - wanted))
         shape = drawn[5 * k:5 * k + 5]
-        windows.append(check_shape(f"{words} at {wanted} s", frames[nearest], shape, lines, members))
+        what = f"{words} at {wanted} s"
+        windows.append(check_shape(what, frames[nearest], shape, lines, members))
         for x, y in shape:
             if not (0 < x < width and 0 < y < height):
                 fail(f"{words}: a node is drawn beyond the page")
@@ -208,7 +209,8 @@ def check_refusals(here, model):
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "10")
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "0,1")
     refuse("--times expects", "--plot", file, "--draw", "snapshots", "--times", "1 N")
-    refuse("nothing is recorded at 3 s", "--plot", file, "--draw", "snapshots", "--times", "1.5 s,3 s")
+    refuse("nothing is recorded at 3 s", "--plot", file, "--draw", "snapshots", "--times",
+           "1.5 s,3 s")
     refuse("", "--plot", os.path.join(here, "nowhere", "x.svg"), code=4)
     coarse = os.path.join(here, "coarse.yaml")
     open(coarse, "w").write(open(model).read().replace("every: 1/(100*frequency)", "every: 20 ms"))
@@ -234,8 +236,9 @@ def check_stopped(here, model):
     endless = os.path.join(here, "endless.yaml")
     open(endless, "w").write(open(wild).read().replace("periods: 20", "periods: 1000000"))
     before = set(os.listdir(here))
-    child = subprocess.Popen([strut, "run", endless, "-q", "-o", os.path.join(here, "far"), "--plot",
-                              file], stderr=subprocess.PIPE, text=True)
+    far = os.path.join(here, "far")
+    child = subprocess.Popen([strut, "run", endless, "-q", "-o", far, "--plot", file],
+                             stderr=subprocess.PIPE, text=True)
     for _ in range(300):  # it watches for signals before it makes files
         if set(os.listdir(here)) != before:
             break

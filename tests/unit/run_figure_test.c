@@ -111,7 +111,7 @@ static void test_frames_that_are_no_shapes(void **unused) {
   memcpy(positions, taken.position, 2 * taken.frames * taken.node_count * sizeof *positions);
   wild.position = positions;
   positions[2 * 20 * taken.node_count + 3] = 1e30;
-  positions[2 * 25 * taken.node_count] = NAN;
+  positions[2 * 25 * taken.node_count] = (double)NAN;
   summary.status = STRUT_DIVERGED;
   assert_int_equal(draw(STRUT_RUN_PERIOD, &few, &error), STRUT_OK);
   char *one = scratch_read(scratch_path("a.svg"), &length);

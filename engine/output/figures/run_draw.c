@@ -126,7 +126,8 @@ static void say_velocity(const strut_run_scene *run, strut_canvas *canvas, doubl
   size_t used = strlen(line);
   double width, height;
   strut_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
-  snprintf(line + used, LINE - used, "; velocity of %s %s", strut_run_measured_name(run), text.text);
+  snprintf(line + used, LINE - used, "; velocity of %s %s", strut_run_measured_name(run),
+           text.text);
   strut_text_size(canvas, line, font, &width, &height);
   if (width > room) snprintf(line + used, LINE - used, "; velocity %s", text.text);
 }

@@ -33,8 +33,9 @@ strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_
                                     strut_error *error) {
   strut_span span = strut_scene_span(model->scene);
   double every = fmax(span.record_every, model->scene->experiment.step), slack = 0.5 * every;
+  double from = span.record_start - slack, to = span.duration + slack;
   for (size_t i = 0; i < figure->time_count; i++)
-    if (!(figure->times[i] >= span.record_start - slack && figure->times[i] <= span.duration + slack))
+    if (!(figure->times[i] >= from && figure->times[i] <= to))
       return strut_fail(error, STRUT_USAGE,
                         "nothing is recorded at %s: the record goes from %s to %s ('output: {last: "
                         "...}' says what is recorded)",
@@ -44,8 +45,8 @@ strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_
   if (figure->view == STRUT_RUN_PERIOD && span.period > 0 &&
       span.period < LEAST_SAMPLES * every * (1 - 1e-9))
     return strut_fail(error, STRUT_USAGE,
-                      "a period of %s cannot be drawn from a sample each %s: add 'output: {every: %s, "
-                      "last: 10}' to the model",
+                      "a period of %s cannot be drawn from a sample each %s: add 'output: {every: "
+                      "%s, last: 10}' to the model",
                       strut_quantity_of(span.period, 4, "s").text,
                       strut_quantity_of(every, 4, "s").text,
                       strut_quantity_of(span.period / 100, 4, "s").text);

@@ -28,8 +28,8 @@ typedef struct strut_run_figure {
 /** Channels that a view needs, strut_channel bits. */
 STRUT_API unsigned strut_run_figure_channels(strut_run_view view);
 /**
- * Whether a run of the model as its scene says will have what the figure draws: STRUT_USAGE with the
- * reason where a period has too few samples to be seen, or nothing is recorded at a time.
+ * Whether a run of the model as its scene says will have what the figure draws: STRUT_USAGE with
+ * the reason where a period has too few samples to be seen, or nothing is recorded at a time.
  */
 STRUT_API strut_status strut_run_figure_check(const strut_run_figure *figure,
                                               const strut_model *model, strut_error *error);

@@ -231,10 +231,10 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
                                .look = -1};
   const double *time = run->motion->time;
   strut_curves curves = {.x = {"time", "s", false, time[first], time[run->frames - 1]},
-                         .y = {p.name, p.unit, false, NAN, NAN},
+                         .y = {p.name, p.unit, false, (double)NAN, (double)NAN},
                          .series_count = p.count,
                          .series = series,
-                         .cursor = NAN};
+                         .cursor = (double)NAN};
   find_range(&p, frames, kind, &curves.y);
   return strut_draw_curves(canvas, box, &curves);
 }

@@ -7,7 +7,8 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-static const double KEY = 30, NOTE = 28, WIDE = 380, MARGIN = 20, CLOSED = 1e-3; /* of the model's size, above the ground */
+static const double KEY = 30, NOTE = 28, WIDE = 380, MARGIN = 20; /* [pt] */
+static const double CLOSED = 1e-3; /* of the model's size: less above the ground is on it */
 
 typedef struct ways {
   size_t first, count;
@@ -111,7 +112,8 @@ static void draw_note(const strut_run_scene *run, strut_canvas *canvas, const wa
   if (!exaggerated(run)) return;
   strut_c_locale locale = strut_c_locale_enter();
   snprintf(text, sizeof text,
-           "Motion drawn %g-fold along x and %g-fold along y, from each node's mean place (grey)%s.",
+           "Motion drawn %g-fold along x and %g-fold along y, from each node's mean place "
+           "(grey)%s.",
            factor(run, 0), factor(run, 1),
            w->grounded ? ", on the ground where it touches that" : "");
   strut_c_locale_leave(locale);
@@ -125,9 +127,10 @@ static void draw_note(const strut_run_scene *run, strut_canvas *canvas, const wa
 
 static void draw_time_scale(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
                             strut_box box) {
-  const strut_colour_scale scale = {.name = run->period > 0 ? "part of the period" : "time",
-                                    .unit = run->period > 0 ? "" : "s",
-                                    .high = run->period > 0 ? 1 : strut_run_time_from(run, w->first),
+  bool parts = run->period > 0;
+  const strut_colour_scale scale = {.name = parts ? "part of the period" : "time",
+                                    .unit = parts ? "" : "s",
+                                    .high = parts ? 1 : strut_run_time_from(run, w->first),
                                     .sequence = true};
   if (scale.high > 0) strut_draw_colour_scale(canvas, box, &scale);
 }

@@ -52,8 +52,8 @@ static size_t count_of(const strut_run_scene *run) {
   if (!figure->time_count) return run->frames < USUAL ? run->frames : USUAL;
   if (!run->summary || run->summary->status == STRUT_OK) return figure->time_count;
   size_t last = run->frames - 1, count = 0;
-  double end = run->motion->time[last] +
-               (last > 0 ? run->motion->time[last] - run->motion->time[last - 1] : STRUT_RUN_MOMENT);
+  const double *time = run->motion->time;
+  double end = time[last] + (last > 0 ? time[last] - time[last - 1] : STRUT_RUN_MOMENT);
   while (count < figure->time_count && figure->times[count] <= end) count++;
   return count > 0 ? count : 1;
 }
