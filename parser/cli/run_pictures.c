@@ -70,7 +70,11 @@ strut_status strut_run_pictures_read(const strut_command *command,
 
 strut_status strut_run_pictures_check(const strut_run_pictures *p, const strut_model *model,
                                       strut_error *error) {
-  return p->plot.path ? strut_run_figure_check(&p->figure, model, error) : STRUT_OK;
+  strut_span span = strut_scene_span(model->scene);
+  strut_status status =
+      strut_film_check_length(&p->film, span.duration - span.record_start, error);
+  if (status != STRUT_OK || !p->plot.path) return status;
+  return strut_run_figure_check(&p->figure, model, error);
 }
 
 strut_sink *strut_run_pictures_sink(strut_run_pictures *p, const strut_scene *scene,

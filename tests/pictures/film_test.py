@@ -103,6 +103,13 @@ def test_motion():
         check(abs(middle - wanted) < 1.0, f"picture {k}: ball at {middle}, not {wanted}")
 
 
+def test_many_frames():
+    """A long GIF, whose frames have a palette each: as many frames, as long."""
+    call(0, "ball.yaml", "--quiet", "--animate", "many.gif", "--speed", "1/24")
+    found = probe("many.gif")
+    check(found[3] == 601 and abs(found[4] - 601 / 25) < 0.02, f"many frames: {found}")
+
+
 def test_same_bytes():
     for name in ("mp4", "gif"):
         for which in ("b", "c"):
@@ -183,6 +190,7 @@ def test_usage():
             (1, ["--animate", "f.mp4", "--speed", "fast"], "--speed"),
             (1, ["--animate", "f.mp4", "--fps", "1000"], "--fps"),
             (1, ["--animate", "f.mp4", "--speed", "1e-6"], "--speed"),
+            (1, ["--animate", "f.mp4", "--set", "seconds=1e7"], "1e+07 s"), # not run first
             (4, ["--animate", "nowhere/f.mp4"], "nowhere/f.mp4")]:
         said = call(code, hopper, *words)
         check(message in said.stderr, f"{words}: {said.stderr}")
@@ -205,7 +213,7 @@ def test_interrupt():
 
 
 try:
-    for test in [test_formats, test_motion, test_same_bytes, test_names, test_said]:
+    for test in [test_formats, test_motion, test_many_frames, test_same_bytes, test_names, test_said]:
         test()
     before = set(os.listdir("."))
     for test in [test_without, test_usage, test_interrupt]:

@@ -30,7 +30,15 @@ static const char *const words_of[][24] = {
      "split[a][b];[a]palettegen=stats_mode=diff:reserve_transparent=0[p];"
      "[b][p]paletteuse=dither=none:diff_mode=rectangle",
      "-loop", "0", "-f", "gif", NULL},
+    {"-filter_complex",
+     "split[a][b];[a]palettegen=stats_mode=single:reserve_transparent=0[p];"
+     "[b][p]paletteuse=dither=none:new=1",
+     "-loop", "0", "-f", "gif", NULL},
 };
+
+/* One palette for all wants every frame in memory, a megabyte each; above so many each frame has its
+ * own, which makes larger files. */
+enum { ONE_PALETTE = 500, GIF_OF_MANY = STRUT_FILM_GIF + 1 };
 
 strut_status strut_encoder_format(const char *path, strut_film_format *format,
                                   strut_error *error) {
@@ -66,7 +74,7 @@ strut_status strut_encoder_find(strut_error *error) {
 }
 
 /* All words of the command line; texts of this film are kept in `texts`. */
-static void command_line(strut_film_format format, int width, int height, double fps,
+static void command_line(int row, int width, int height, double fps,
                          const char *target, char texts[2][TEXT], const char *words[MOST_WORDS]) {
   const char *const first[] = {"ffmpeg",   "-nostdin", "-hide_banner", "-v",       "error",
                                "-f",       "rawvideo", "-pixel_format", "bgr0",    "-video_size",
@@ -77,7 +85,7 @@ static void command_line(strut_film_format format, int width, int height, double
   snprintf(texts[0], TEXT, "%dx%d", width, height);
   snprintf(texts[1], TEXT, "%.6f", fps);
   for (size_t i = 0; i < sizeof first / sizeof *first; i++) words[count++] = first[i];
-  for (int i = 0; words_of[format][i]; i++) words[count++] = words_of[format][i];
+  for (int i = 0; words_of[row][i]; i++) words[count++] = words_of[row][i];
   for (size_t i = 0; i < sizeof last / sizeof *last; i++) words[count++] = last[i];
   words[count] = NULL;
 }
@@ -131,7 +139,7 @@ static strut_status start(strut_encoder *encoder, const char *const *words, stru
 }
 
 strut_status strut_encoder_begin(strut_encoder *encoder, const char *path, int width, int height,
-                                 double fps, strut_error *error) {
+                                 double fps, size_t frames, strut_error *error) {
   strut_film_format format = STRUT_FILM_MP4;
   strut_arena arena = {0};
   char texts[2][TEXT];
@@ -144,7 +152,8 @@ strut_status strut_encoder_begin(strut_encoder *encoder, const char *path, int w
   char *target = strut_arena_format(&arena, "file:%s", encoder->file.part);
   if (target) {
     strut_c_locale locale = strut_c_locale_enter();
-    command_line(format, width, height, fps, target, texts, words);
+    bool many = format == STRUT_FILM_GIF && frames > ONE_PALETTE;
+    command_line(many ? GIF_OF_MANY : (int)format, width, height, fps, target, texts, words);
     strut_c_locale_leave(locale);
     status = start(encoder, words, error);
   } else {

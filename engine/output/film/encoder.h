@@ -32,9 +32,9 @@ typedef struct strut_encoder {
   FILE *said;    /* what ffmpeg complains of */
 } strut_encoder;
 
-/** Starts ffmpeg for frames of that size, which is even, at `fps` frames per second. */
+/** Starts ffmpeg for so many frames of that size, which is even, at `fps` frames per second. */
 strut_status strut_encoder_begin(strut_encoder *encoder, const char *path, int width, int height,
-                                 double fps, strut_error *error);
+                                 double fps, size_t frames, strut_error *error);
 /** Hands one frame over: (height, stride) bytes of blue, green, red, unused. */
 strut_status strut_encoder_frame(strut_encoder *encoder, const unsigned char *pixels, int width,
                                  int height, size_t stride, strut_error *error);

@@ -35,6 +35,15 @@ strut_status strut_film_check(const char *path, strut_error *error) {
   return status;
 }
 
+strut_status strut_film_check_length(const strut_film *film, double motion, strut_error *error) {
+  double lasts = motion / film->speed;
+  if (!film->path || lasts <= STRUT_FILM_LONGEST) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE,
+                    "the film would last %.4g s, and more than %d s nobody watches: give a higher "
+                    "--speed, or record less of the run (output: last)",
+                    lasts, STRUT_FILM_LONGEST);
+}
+
 static strut_status no_memory(strut_error *error) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory while making a film");
 }
@@ -53,12 +62,8 @@ static strut_status count_frames(making *m, strut_film_format format, strut_erro
                             .height = gif ? GIF_HEIGHT : HEIGHT,
                             .fps = m->film->fps > 0 ? m->film->fps : usual,
                             .lasts = lasts / m->film->speed};
-  if (made->lasts > STRUT_FILM_LONGEST) {
-    return strut_fail(error, STRUT_USAGE,
-                      "the film would last %.0f s, and more than %d s nobody watches: give a "
-                      "higher --speed, or record less of the run (output: last)",
-                      made->lasts, STRUT_FILM_LONGEST);
-  }
+  strut_status status = strut_film_check_length(m->film, lasts, error);
+  if (status != STRUT_OK) return status;
   made->frames = 1 + (size_t)floor(made->lasts * made->fps + 1e-9);
   made->shown = m->film->speed / made->fps;
   made->every = m->shown > 1 ? lasts / (double)(m->shown - 1) : 0;
@@ -141,7 +146,7 @@ static strut_status encode(making *m, strut_error *error) {
                                                  made->width / PAGE_WIDTH, &canvas, error);
   if (status != STRUT_OK) return status;
   status = strut_encoder_begin(&encoder, m->film->path, made->width, made->height, made->fps,
-                               error);
+                               made->frames, error);
   if (status == STRUT_OK) {
     strut_c_locale locale = strut_c_locale_enter();
     status = draw_frames(m, canvas, &encoder, error);

@@ -41,6 +41,9 @@ typedef struct strut_film_made {
  * that is none, STRUT_FILE_TROUBLE for a place that cannot be written to, or without ffmpeg.
  */
 STRUT_API strut_status strut_film_check(const char *path, strut_error *error);
+/** Whether a film of a motion that lasts so long [s] has a sensible length; STRUT_USAGE. */
+STRUT_API strut_status strut_film_check_length(const strut_film *film, double motion,
+                                               strut_error *error);
 /**
  * Makes the film; positions between two recorded frames are on the straight line between them. The
  * file appears whole or not at all. STRUT_USAGE for a film longer than STRUT_FILM_LONGEST, or
