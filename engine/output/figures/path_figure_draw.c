@@ -92,8 +92,8 @@ static strut_axes place_axes(strut_path_picture *p, strut_box box, char labels[2
            ways[2 * (p->coordinate % 2) + (p->sign > 0)]);
   snprintf(labels[1], LABEL, "factor of %.100s",
            p->path->load ? cut(p, p->path->load, box.height - 100, fitted) : "the load");
-  strut_axis x = {.name = labels[0], .unit = "m", .low = NAN, .high = NAN};
-  strut_axis y = {.name = labels[1], .unit = "", .low = NAN, .high = NAN};
+  strut_axis x = {.name = labels[0], .unit = "m", .low = (double)NAN, .high = (double)NAN};
+  strut_axis y = {.name = labels[1], .unit = "", .low = (double)NAN, .high = (double)NAN};
   for (size_t k = 0; k < p->count; k++) {
     strut_axis_include(&x, p->vertices[k].motion);
     strut_axis_include(&y, p->vertices[k].factor);

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pictures of modes and of a path: without memory there is none, nor half of one. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/draw/key.h"
+#include "engine/output/figures/modes_figure.h"
+#include "engine/output/figures/path_figure.h"
+#include "tests/models/run_model.h"
+#include "tests/unit/scratch.h"
+
+enum { MOST = 400 };
+
+/* What draws it, with the n-th allocation failing; whether it was drawn all the same. */
+typedef strut_status (*drawing)(const strut_model *model, const void *what, strut_error *error);
+
+static void fails_cleanly(drawing draw, const strut_model *model, const void *what) {
+  const char *scratch = scratch_make();
+  int n = 0;
+  for (;; n++) {
+    strut_error error = {0};
+    assert_true(n < MOST);
+    unlink(scratch_path("a.svg"));
+    strut_fail_allocation_after(n);
+    strut_status status = draw(model, what, &error);
+    strut_fail_allocation_after(-1);
+    if (status == STRUT_OK) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_true(strlen(error.message) > 0);
+    assert_int_equal(scratch_count(scratch), 0);
+  }
+  assert_true(n > 2); /* it does allocate */
+  assert_true(scratch_exists(scratch_path("a.svg")));
+  scratch_remove();
+}
+
+static strut_status draw_modes(const strut_model *model, const void *what, strut_error *error) {
+  return strut_modes_figure(scratch_path("a.svg"), 300, model, what, 0, error);
+}
+
+static strut_status draw_path(const strut_model *model, const void *what, strut_error *error) {
+  return strut_path_figure(scratch_path("a.svg"), 300, model, what, error);
+}
+
+static void test_modes(void **state) {
+  (void)state;
+  model_run run = {0};
+  strut_modes modes = {0};
+  strut_error error = {0};
+  model_read(&run, "basics/x-frame", set_none);
+  assert_int_equal(strut_model_compile(&run.scene, &run.model, &error), STRUT_OK);
+  assert_int_equal(strut_modes_find(run.model, &(strut_modes_options){0}, &modes, &error),
+                   STRUT_OK);
+  fails_cleanly(draw_modes, run.model, &modes);
+  strut_modes_free(&modes);
+  model_run_free(&run);
+}
+
+static void test_path(void **state) {
+  (void)state;
+  model_run run = {0};
+  strut_path path = {0};
+  strut_error error = {0};
+  model_read(&run, "basics/von-mises-truss", set_to("load=12"));
+  assert_int_equal(strut_model_compile(&run.scene, &run.model, &error), STRUT_OK);
+  assert_int_equal(strut_path_follow(run.model, &(strut_path_options){0}, &path, &error),
+                   STRUT_OK);
+  fails_cleanly(draw_path, run.model, &path);
+  strut_path_free(&path);
+  model_run_free(&run);
+}
+
+/* No letter is cut in two, and what is not all of a text ends in an ellipsis. */
+static void test_texts(void **state) {
+  (void)state;
+  char fitted[STRUT_FITTED_TEXT];
+  strut_canvas *canvas = NULL;
+  double width, height;
+  const strut_font font = {.size = 8};
+  assert_int_equal(strut_canvas_open_pixels(1, 1, 1.0, &canvas, NULL), STRUT_OK);
+  assert_string_equal(strut_text_fit(canvas, "n1", font, 100, 0, fitted), "n1");
+  assert_string_equal(strut_text_fit(canvas, "", font, 0, 0, fitted), "");
+  for (double room = 200; room > 10; room -= 3) {
+    static const char text[] =
+        "\xD7\xA9\xD7\x9C\xD7\x95\xD7\x9D \xE2\x82\xAC \xF0\x9F\x98\x80 node";
+    strut_text_fit(canvas, text, font, room, 0, fitted);
+    strut_text_size(canvas, fitted, font, &width, &height);
+    assert_true(width <= room + 1e-6);
+    size_t length = strlen(fitted);
+    if (strcmp(fitted, text) == 0) continue;
+    assert_memory_equal(fitted + length - 3, "\xE2\x80\xA6", 3);
+    assert_memory_equal(fitted, text, length - 3);
+    assert_int_not_equal((unsigned char)text[length - 3] & 0xC0, 0x80);
+  }
+  strut_canvas_free(canvas);
+  assert_int_equal(strut_text_bytes("abc", 2), 2);
+  assert_int_equal(strut_text_bytes("a\xE2\x82\xAC", 3), 1);
+  assert_int_equal(strut_text_bytes("a\xE2\x82\xAC", 4), 4);
+  assert_int_equal(strut_text_bytes("\xD7\xA9\xD7", 3), 2); /* cut by who made it */
+  assert_int_equal(strut_text_bytes("\xF0\x9F\x98\x80", 3), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_modes),
+      cmocka_unit_test(test_path),
+      cmocka_unit_test(test_texts),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
