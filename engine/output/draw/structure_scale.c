@@ -45,7 +45,7 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
   strut_tick_set set;
   double width, line;
-  strut_axis_ticks(&axis, (int)fmax(2, upright ? box.height / 24 : box.width / 50), &set);
+  strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
   strut_text_size(canvas, "0", font, &width, &line);
   strut_box strip = upright
                         ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}

@@ -7,6 +7,7 @@
 
 enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_WAYS = 300 };
 
+static const double YARDSTICK = 14, KEY_LINE = 11; /* [pt] */
 static const double SCALE = 46, CHART = 118, MARGIN = 27, GAP = 6, WIDE = 380;
 static const double PERIODS = 5, PART = 0.1; /* of what was recorded, where nothing is periodic */
 static const double SEEN = 2e-3; /* of the drawing: less is no way */
@@ -72,7 +73,7 @@ static size_t key_of(strut_run_scene *run, char texts[ITEMS][120], strut_key_ite
   if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
   if (moves(run)) {
     double span = strut_run_time_from(run, first_of_ways(run));
-    snprintf(texts[count], 120, "ways of the nodes: the last %s, dark to bright",
+    snprintf(texts[count], 120, "ways in the last %s, dark to bright",
              strut_drawn_quantity(span, 3, "s").text);
     items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
     count++;
@@ -80,12 +81,23 @@ static size_t key_of(strut_run_scene *run, char texts[ITEMS][120], strut_key_ite
   return count;
 }
 
+/* Below the drawing the yardstick stands, and beside it the key. */
+static double key_indent(const strut_run_scene *run) {
+  return 0.3 * (run->figure->width - 2 * STRUT_RUN_EDGE - SCALE) + 14;
+}
+
+static double foot_height(const strut_run_scene *run, strut_canvas *canvas,
+                          const strut_key_item *items, size_t count) {
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE - key_indent(run);
+  return YARDSTICK - KEY_LINE + fmax(KEY_LINE, strut_key_height(canvas, width, items, count));
+}
+
 double strut_run_overview_height(strut_run_scene *run) {
   int panels[MOST_PANELS], count = panels_of(run, panels);
   char texts[ITEMS][120];
   strut_key_item items[ITEMS];
   size_t keys = key_of(run, texts, items);
-  double key = strut_key_height(run->ruler, run->figure->width - 2 * STRUT_RUN_EDGE, items, keys);
+  double key = foot_height(run, run->ruler, items, keys);
   return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + drawing_height(run) + key + GAP +
          CHART * (beside(run) ? (count + 1) / 2 : count);
 }
@@ -103,6 +115,7 @@ static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box
   }
   strut_run_draw_reactions(run, canvas, &window, last);
   strut_run_draw_names(run, canvas, &window, q);
+  window.box.y += YARDSTICK;
   strut_draw_yardstick(canvas, &window);
   return true;
 }
@@ -134,10 +147,13 @@ strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width - SCALE, height};
   if (!draw_structure(run, canvas, box)) return STRUT_NO_MEMORY;
   strut_run_draw_scale(run, canvas,
-                       (strut_box){STRUT_RUN_EDGE + width - SCALE + 6, box.y + 4, SCALE - 6,
-                                   fmin(height - 8, 130)});
+                       (strut_box){STRUT_RUN_EDGE + width - SCALE + 6, box.y, SCALE - 6,
+                                   fmin(height, 130)});
   strut_box below = {STRUT_RUN_EDGE, box.y + height, width, 0};
-  strut_draw_key(canvas, below, items, keys);
-  below.y += strut_key_height(canvas, width, items, keys) + GAP;
+  strut_draw_key(canvas,
+                 (strut_box){below.x + key_indent(run), below.y + (YARDSTICK - KEY_LINE),
+                             width - key_indent(run), 0},
+                 items, keys);
+  below.y += foot_height(run, canvas, items, keys) + GAP;
   return draw_charts(run, canvas, below);
 }

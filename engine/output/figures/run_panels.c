@@ -11,6 +11,7 @@ enum { MOST_CURVES = 6, MOST_DRIVEN = 3, CURVES_HEIGHT = 122 };
 static const double LEVEL = 1e-3;     /* of a force or an energy: less is drawn as level */
 static const double STANDING = 1e-6;  /* of the model's size: less is no motion */
 static const double CLOSED = 1e-3;    /* of that: less above the ground is on it */
+static const double ROUNDING = 1e-9;  /* of an energy */
 static const double ROOM = 0.06;      /* above and below the curves */
 
 /* What a panel draws, and its curves; values are (frames) each. */
@@ -89,9 +90,14 @@ static double liveliness(const strut_run_scene *run, int kind, size_t item, size
   return high > low ? high - low : 0;
 }
 
+/* A change of less than this is rounding. */
 static double least_range(const strut_run_scene *run, int kind) {
   bool length = kind == STRUT_RUN_WAY || kind == STRUT_RUN_HEIGHTS || kind == STRUT_RUN_DRIVE;
-  return length ? STANDING * run->model->size : 0;
+  double most = 0;
+  if (length) return STANDING * run->model->size;
+  for (size_t i = 0; i < items_of(run, kind) && kind == STRUT_RUN_ENERGIES; i++)
+    most = fmax(most, fabs(value_at(run, kind, i, 0)));
+  return ROUNDING * most;
 }
 
 bool strut_run_panel_wanted(const strut_run_scene *run, int kind) {
