@@ -25,8 +25,8 @@ void strut_axis_settle(strut_axis *axis, double room) {
     if (!(axis->low > 0)) axis->low = 1e-3 * axis->high;
     double wider = pow(axis->high / axis->low, room);
     if (axis->high / axis->low < 1.5) wider = fmax(wider, 2);
-    axis->low = fmax(axis->low / wider, 1e-300);
-    axis->high = fmin(axis->high * wider, 1e300);
+    axis->low = fmin(fmax(axis->low / wider, 1e-300), 1e299);
+    axis->high = fmax(fmin(axis->high * wider, 1e300), 2 * axis->low);
     return;
   }
   double span = axis->high - axis->low;

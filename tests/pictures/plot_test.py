@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""strut plot: curves lie where the table's numbers say, bands and panels too; what it refuses.
+
+usage: plot_test.py STRUT
+"""
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+from svg_paths import near, read
+
+strut = os.path.abspath(sys.argv[1])
+FIRST, SECOND = (0, 0x60 / 255, 0xA8 / 255), (0xD5 / 255, 0x5E / 255, 0)
+BAND, FRAME = (0.86, 0.86, 0.86), (0.25, 0.25, 0.25)
+failures = 0
+
+
+def check(good, text):
+    global failures
+    if not good:
+        failures += 1
+        print("FAILED:", text)
+
+
+def plot(*words, code=0, err=""):
+    done = subprocess.run([strut, "plot", *words], capture_output=True, text=True)
+    check(done.returncode == code and err in done.stderr and (code or not done.stderr),
+          f"strut plot {words}: exit code {done.returncode}, expected {code}; {done.stderr}")
+    return done
+
+
+def write(name, text):
+    with open(name, "w", encoding="utf-8", newline="") as file:
+        file.write(text)
+
+
+def curves(paths, colour):
+    """Lines of that colour with many points: the curves, not the legend's samples."""
+    return [line for path in paths if near(path.stroke, colour) and not path.curved
+            for line in path.lines if len(line) > 4]
+
+
+def affine(values, places):
+    """(slope, offset, largest deviation) of the line through the first and last."""
+    slope = (places[-1] - places[0]) / (values[-1] - values[0])
+    offset = places[0] - slope * values[0]
+    return slope, offset, max(abs(slope * v + offset - p) for v, p in zip(values, places))
+
+
+def check_curve(what, xs, ys, line):
+    check(len(line) == len(xs), f"{what}: {len(line)} points of {len(xs)}")
+    if len(line) != len(xs):
+        return None
+    low, high = ys.index(min(ys)), ys.index(max(ys))
+    slope_x, offset_x, worst_x = affine(xs, [p[0] for p in line])
+    slope_y = (line[high][1] - line[low][1]) / (ys[high] - ys[low])
+    offset_y = line[low][1] - slope_y * ys[low]
+    worst_y = max(abs(slope_y * y + offset_y - p[1]) for y, p in zip(ys, line))
+    check(slope_x > 0 > slope_y, f"{what}: x runs right and y runs up")
+    check(worst_x < 0.02 and worst_y < 0.02, f"{what}: off by {worst_x}, {worst_y} pt")
+    return slope_x, offset_x, slope_y, offset_y
+
+
+def boxes(paths, fill):
+    found = []
+    for path in paths:
+        if near(path.fill, fill) and not path.curved:
+            for line in path.lines:
+                xs, ys = [p[0] for p in line], [p[1] for p in line]
+                found.append((min(xs), min(ys), max(xs), max(ys)))
+    return found
+
+
+os.chdir(tempfile.mkdtemp())
+
+# Two curves in one frame, one of them broken.
+xs = [1 + 0.1 * i for i in range(40)]
+one = [math.sin(x) * 0.01 for x in xs]
+two = [0.02 * math.exp(-x) for x in xs]
+rows = "".join(f"{x!r},{a!r},{b!r}\r\n" for x, a, b in zip(xs, one, two))
+write("curves.csv", "frequency [Hz],one [m/s],\"two, \"\"quoted\"\" [m/s]\"\r\n" + rows)
+plot("curves.csv", "--y", "one", "--plot", "one.svg")
+_, _, paths = read("one.svg")
+found = curves(paths, FIRST)
+check(len(found) == 1, f"{len(found)} curves of 1")
+if found:
+    check_curve("one.svg", xs, one, found[0])
+cells = rows.replace(f"{one[20]!r}", "", 1)
+write("broken.csv", "frequency [Hz],one [m/s],two [m/s]\n" + cells.replace("\r", ""))
+plot("broken.csv", "--plot", "broken.svg")
+found = curves(read("broken.svg")[2], FIRST)
+check(sorted(len(line) for line in found) == [19, 20], "a cell without a number breaks the curve")
+
+# Panels, groups and bands: all frames share their scales, bands reach half way to the neighbours.
+table = "f [Hz],v [m/s],start,mu,outcome\n"
+for mu in (0.1, 0.2):
+    for start, sign in (("I", 1), ("II", -1)):
+        for i in range(30):
+            outcome = "III" if mu == 0.2 and start == "I" and 10 <= i < 14 else start
+            table += f"{1 + i},{sign * mu * (i - 7) ** 2 * 1e-3!r},{start},{mu},{outcome}\n"
+write("panels.csv", table)
+plot("panels.csv", "--by", "start", "--panels", "mu", "--band", "outcome=III", "--plot", "panels.svg")
+_, _, paths = read("panels.svg")
+maps = []
+for colour, sign in ((FIRST, 1), (SECOND, -1)):
+    found = curves(paths, colour)
+    check(len(found) == 2, f"panels.svg: {len(found)} curves of 2")
+    for mu, line in zip((0.1, 0.2), found):
+        maps.append(check_curve(f"panels.svg, {mu}", [1.0 + i for i in range(30)],
+                                [sign * mu * (i - 7) ** 2 * 1e-3 for i in range(30)], line))
+if all(maps) and len(maps) == 4:
+    check(all(abs(m[0] - maps[0][0]) < 1e-3 and abs(m[2] / maps[0][2] - 1) < 1e-3 for m in maps),
+          "panels.svg: scales differ between panels")
+    bands = [b for b in boxes(paths, BAND) if b[3] - b[1] > 40]
+    check(len(bands) == 1, f"panels.svg: {len(bands)} bands of 1")
+    if bands:
+        slope, offset = maps[1][:2]
+        for place, value in ((bands[0][0], 10.5), (bands[0][2], 14.5)):
+            check(abs(slope * value + offset - place) < 0.05, f"panels.svg: a band ends at {place}")
+
+# Logarithmic axes. Zigzag, since Cairo makes one line of pieces that go on straight.
+logs = [-3.0 * i + 0.3 * (i % 2) for i in range(12)]
+write("log.csv", "step [s],error\n" + "".join(f"{2.0 ** -i!r},{2.0 ** y!r}\n"
+                                              for i, y in enumerate(logs)))
+plot("log.csv", "--log", "xy", "--plot", "log.svg")
+line = curves(read("log.svg")[2], FIRST)[0]
+check_curve("log.svg", [-float(i) for i in range(12)][::-1], logs[::-1], line[::-1])
+
+# A map: every cell where its row says.
+write("map.csv", "a,b,c\n" + "".join(f"{i},{k},{'x' if (i + k) % 3 else 'y'}\n"
+                                     for i in range(5) for k in range(4)))
+plot("map.csv", "--kind", "map", "--plot", "map.svg")
+width, height, paths = read("map.svg")
+cells = [path for path in paths if path.fill and not near(path.fill, (1, 1, 1)) and not path.curved
+         and max(p[0] for p in path.lines[0]) - min(p[0] for p in path.lines[0]) > 50]
+colours = [tuple(round(c, 3) for c in path.fill) for path in cells]
+check(len(cells) == 20, f"map.svg: {len(cells)} cells of 20")
+if len(cells) == 20:
+    order = [((i + k) % 3 == 0) for k in range(4) for i in range(5)]
+    check(len({(c, o) for c, o in zip(colours, order)}) == 2, "map.svg: a cell has another's colour")
+plot("map.csv", "--kind", "map", "--label", "a", "--plot", "numbers.svg")
+plot("log.csv", "--kind", "work-precision", "--plot", "bargains.svg", "--width", "column")
+for name in ("map.svg", "panels.svg"):
+    first = open(name, "rb").read()
+    words = ["--kind", "map"] if name == "map.svg" else ["--by", "start", "--panels", "mu", "--band",
+                                                         "outcome=III"]
+    plot(name.replace("svg", "csv"), *words, "--plot", name)
+    check(open(name, "rb").read() == first, f"{name}: other bytes the second time")
+
+# Refusals: where, what was expected, and nothing left behind.
+plot("curves.csv", "--x", "freqency", "--plot", "a.svg", code=1, err="did you mean 'frequency'?")
+plot("panels.csv", "--y", "start", "--plot", "a.svg", code=1, err="does not hold numbers")
+plot("curves.csv", code=1, err="give --plot FILE")
+plot("curves.csv", "--plot", "a.bmp", code=1, err=".svg, .pdf or .png")
+plot("curves.csv", "--kind", "pie", "--plot", "a.svg", code=1, err="curves")
+plot("curves.csv", "--doubt", "one", "--plot", "a.svg", code=1, err="knows no --doubt")
+plot("curves.csv", "--plot", "nowhere/a.svg", code=4, err="nowhere")
+write("ragged.csv", "a,b\n1,2\n3\n4,5,6\n")
+done = plot("ragged.csv", "--plot", "a.svg", code=2, err="ragged.csv:3:1: error: 1 cells, expected 2")
+check("ragged.csv:4:1" in done.stderr, "only the first bad row is told")
+write("open.csv", 'a,b\n1,"2\n')
+plot("open.csv", "--plot", "a.svg", code=2, err="open.csv:2:3: error: a quoted cell that nothing closes")
+write("empty.csv", "")
+plot("empty.csv", "--plot", "a.svg", code=2, err="empty")
+write("header.csv", "a,b\n")
+plot("header.csv", "--plot", "a.svg", code=2, err="no rows")
+write("nan.csv", "a,b\n1,nan\n2,\n")
+plot("nan.csv", "--plot", "a.svg", code=1, err="'b' does not hold numbers")
+check(not os.path.exists("a.svg"), "a refusal left a picture")
+with open("bytes.csv", "wb") as file:
+    file.write(b"a\xff\xfe,b\n1,2\n3,4\n")
+plot("bytes.csv", "--plot", "bytes.svg")
+
+# A million rows take seconds.
+with open("long.csv", "w") as file:
+    file.write("t [s],x [m]\n")
+    file.writelines(f"{i},{i % 1000}\n" for i in range(1000000))
+begin = time.monotonic()
+plot("long.csv", "--plot", "long.svg")
+check(time.monotonic() - begin < 60, "a million rows take a minute")
+check(os.path.getsize("long.svg") < 1e6, "a million rows make a large picture")
+print(f"{failures} failures")
+sys.exit(failures > 0)

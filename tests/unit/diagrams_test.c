@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best bargains. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/output/draw/axes.h"
+#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/map.h"
+#include "engine/output/draw/work_precision.h"
+#include "tests/support/random.h"
+
+/* 1, 2 or 5 times a power of ten. */
+static bool is_round(double step) {
+  double power = pow(10.0, floor(log10(step) + 1e-9)), part = step / power;
+  return fabs(part - 1) < 1e-6 || fabs(part - 2) < 1e-6 || fabs(part - 5) < 1e-6;
+}
+
+static void test_ticks(void **state) {
+  (void)state;
+  uint64_t seed = 1;
+  for (int i = 0; i < 20000; i++) {
+    double low = (2 * random_between(&seed, 0, 1) - 1) * pow(10.0, 12 * random_between(&seed, 0, 1) - 6);
+    double span = pow(10.0, 12 * random_between(&seed, 0, 1) - 6), ticks[STRUT_MOST_TICKS];
+    int wanted = 2 + (int)(8 * random_between(&seed, 0, 1));
+    if (span < 1e-9 * fabs(low)) continue;
+    size_t count = strut_ticks(low, low + span, wanted, ticks);
+    if (count < (size_t)wanted / 2 || count > 2 * (size_t)wanted + 1)
+      fail_msg("%zu ticks in %.17g + %.17g, wanted about %d", count, low, span, wanted);
+    for (size_t k = 0; k < count; k++)
+      assert_true(ticks[k] >= low - 1e-6 * span && ticks[k] <= low + span + 1e-6 * span);
+    if (count > 1) {
+      double step = ticks[1] - ticks[0];
+      if (fabs(low) > 1e4 * span) continue; /* steps lose digits */
+      assert_true(is_round(step));
+      assert_true(fabs(ticks[0] / step - round(ticks[0] / step)) < 1e-3);
+    }
+  }
+  double ticks[STRUT_MOST_TICKS];
+  assert_int_equal(strut_ticks(0, 10, 5, ticks), 6);
+  assert_true(ticks[0] == 0 && ticks[5] == 10);
+  assert_int_equal(strut_ticks(1, 1, 5, ticks), 0);
+  assert_int_equal(strut_ticks(NAN, 1, 5, ticks), 0);
+  assert_int_equal(strut_ticks(-1e308, 1e308, 5, ticks), 0);
+}
+
+static void test_prefixes(void **state) {
+  (void)state;
+  static const struct {
+    double largest;
+    const char *unit, *prefix;
+    double factor;
+  } cases[] = {{0.0214, "m/s", "m", 1e-3}, {1, "m", "", 1},     {999, "N", "", 1},
+               {1000, "N", "k", 1e3},      {2e-7, "J", "n", 1e-9}, {0.02, "%", "", 1},
+               {0.02, "kg", "", 1},        {0.02, "", "", 1},   {0, "m", "", 1},
+               {1e40, "m", "", 1},         {NAN, "m", "", 1}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    double factor;
+    assert_string_equal(strut_prefix(cases[i].largest, cases[i].unit, &factor), cases[i].prefix);
+    assert_true(fabs(factor / cases[i].factor - 1) < 1e-12);
+  }
+  assert_string_equal(strut_drawn_quantity(-3.2e-6, 2, "J").text, "\xe2\x88\x92" "3.2 µJ");
+  assert_string_equal(strut_drawn_quantity(20e-3, 3, "m").text, "20 mm");
+}
+
+static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, double high) {
+  strut_tick_set set;
+  const strut_axis axis = {"error", unit, logarithmic, low, high};
+  strut_axis_ticks(&axis, 5, &set);
+  return set;
+}
+
+static void test_tick_texts(void **state) {
+  (void)state;
+  strut_tick_set set = ticks_of("m/s", false, -0.011, 0.012);
+  assert_string_equal(set.label, "error in mm/s");
+  assert_string_equal(set.text[0], "\xe2\x88\x92" "10");
+  set = ticks_of("m", true, 1e-9, 1e-3);
+  assert_string_equal(set.label, "error in m");
+  assert_string_equal(set.text[0], "10⁻⁸");
+  set = ticks_of("s", false, 1e6, 1e6 + 0.05); /* what all have in common is said once */
+  assert_non_null(strstr(set.label, "1000000"));
+  assert_string_equal(set.text[1], "10");
+  set = ticks_of("", true, 2, 8);
+  assert_string_equal(set.text[0], "2");
+  assert_string_equal(set.text[1], "5");
+}
+
+/* Whatever the data, there is an axis that can be drawn. */
+static void test_settle(void **state) {
+  (void)state;
+  static const double values[] = {0,     -0.0,  1,       -3,     1e300,     -1e300, 1e-300,
+                                  5e-324, 1e308, -1.7e308, NAN, -INFINITY, 42,     1e9};
+  enum { COUNT = sizeof values / sizeof *values };
+  for (size_t i = 0; i < COUNT; i++)
+    for (size_t k = 0; k < COUNT; k++)
+      for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
+        strut_axis axis = {"a", "m", logarithmic, NAN, NAN};
+        strut_tick_set set;
+        strut_axis_include(&axis, values[i]);
+        strut_axis_include(&axis, values[k]);
+        strut_axis_settle(&axis, 0.06);
+        if (!(axis.low < axis.high) || (logarithmic && !(axis.low > 0)))
+          fail_msg("%g, %g: from %g to %g", values[i], values[k], axis.low, axis.high);
+        strut_axis_ticks(&axis, 5, &set);
+      }
+}
+
+/* Least and largest of each stretch survive, and the ends. */
+static void test_thinning(void **state) {
+  (void)state;
+  enum { COUNT = 20000 };
+  double(*points)[2] = malloc(COUNT * sizeof *points), (*all)[2] = malloc(COUNT * sizeof *all);
+  uint64_t seed = 2;
+  for (size_t i = 0; i < COUNT; i++) {
+    all[i][0] = 200.0 * (double)i / COUNT;
+    all[i][1] = random_between(&seed, 0, 1) + (i == 777 ? 100 : i == 13131 ? -100 : 0);
+  }
+  memcpy(points, all, COUNT * sizeof *points);
+  size_t count = strut_thin(points, COUNT, 0.25);
+  assert_true(count <= 4 * 801 && count > 1600);
+  for (size_t cell = 0, i = 0, k = 0; cell < 800; cell++) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (; i < COUNT && all[i][0] < 0.25 * (double)(cell + 1); i++) {
+      low[0] = fmin(low[0], all[i][1]);
+      high[0] = fmax(high[0], all[i][1]);
+    }
+    for (; k < count && points[k][0] < 0.25 * (double)(cell + 1); k++) {
+      low[1] = fmin(low[1], points[k][1]);
+      high[1] = fmax(high[1], points[k][1]);
+    }
+    assert_true(low[0] == low[1] && high[0] == high[1]);
+  }
+  assert_memory_equal(points[0], all[0], sizeof *all);
+  assert_memory_equal(points[count - 1], all[COUNT - 1], sizeof *all);
+  for (size_t i = 0; i < 100; i++) points[i][0] = (double)((7 * i) % 100); /* not a function of x */
+  assert_int_equal(strut_thin(points, 100, 1000), 100);
+  free(points);
+  free(all);
+}
+
+static void test_front(void **state) {
+  (void)state;
+  enum { COUNT = 60 };
+  strut_bargain b[COUNT];
+  bool front[COUNT];
+  uint64_t seed = 3;
+  for (int round = 0; round < 200; round++) {
+    for (size_t i = 0; i < COUNT; i++)
+      b[i] = (strut_bargain){.cost = 1 + floor(10 * random_between(&seed, 0, 1)),
+                             .error = random_between(&seed, 0, 1) < 0.1 ? (double)NAN : 1 + floor(10 * random_between(&seed, 0, 1)),
+                             .low = NAN,
+                             .high = NAN};
+    strut_pareto_front(b, COUNT, front);
+    for (size_t i = 0; i < COUNT; i++) {
+      bool beaten = !isfinite(b[i].error);
+      for (size_t k = 0; k < COUNT; k++)
+        if (isfinite(b[k].error) &&
+            ((b[k].cost < b[i].cost && b[k].error <= b[i].error) ||
+             (b[k].cost <= b[i].cost && b[k].error < b[i].error)))
+          beaten = true;
+      assert_int_equal(front[i], !beaten);
+    }
+  }
+}
+
+static const unsigned char *pixel(strut_canvas *canvas, double x, double y) {
+  size_t stride;
+  const unsigned char *bytes = strut_canvas_pixels(canvas, &stride);
+  return bytes + (size_t)y * stride + 4 * (size_t)x;
+}
+
+/* Two by two cells: each quarter of the frame has its category's colour; without seams between. */
+static void test_map(void **state) {
+  (void)state;
+  static const double xs[] = {1, 2}, ys[] = {10, 20};
+  static const int category[] = {0, 1, 1, 0};
+  static const char *const names[] = {"I", "II"};
+  const strut_map map = {.x = {"a", "", false, NAN, NAN}, .y = {"b", "", false, NAN, NAN},
+                         .columns = 2, .rows = 2, .xs = xs, .ys = ys, .category = category,
+                         .category_count = 2, .names = names};
+  strut_canvas *canvas;
+  strut_error error;
+  assert_int_equal(strut_canvas_open_pixels(400, 300, 1, &canvas, &error), STRUT_OK);
+  assert_int_equal(strut_draw_map(canvas, (strut_box){0, 0, 400, 300}, &map), STRUT_OK);
+  const unsigned char *low_left = pixel(canvas, 120, 220), *low_right = pixel(canvas, 320, 220);
+  const unsigned char *high_left = pixel(canvas, 120, 80), *high_right = pixel(canvas, 320, 80);
+  assert_memory_equal(low_left, high_right, 3);
+  assert_memory_equal(low_right, high_left, 3);
+  assert_memory_not_equal(low_left, low_right, 3);
+  for (int x = 60; x < 380; x++) { /* along a row there are two colours, and no third between */
+    const unsigned char *at = pixel(canvas, x, 220);
+    int apart = abs(at[0] - low_left[0]) + abs(at[1] - low_left[1]) + abs(at[2] - low_left[2]);
+    int other = abs(at[0] - low_right[0]) + abs(at[1] - low_right[1]) + abs(at[2] - low_right[2]);
+    int both = abs(low_left[0] - low_right[0]) + abs(low_left[1] - low_right[1]) +
+               abs(low_left[2] - low_right[2]);
+    assert_true(apart + other <= both + 6);
+  }
+  strut_canvas_free(canvas);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_ticks),    cmocka_unit_test(test_prefixes),
+      cmocka_unit_test(test_tick_texts), cmocka_unit_test(test_settle),
+      cmocka_unit_test(test_thinning), cmocka_unit_test(test_front),
+      cmocka_unit_test(test_map),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
