@@ -38,7 +38,7 @@ static const char *const words_of[][24] = {
 
 /* One palette for all wants every frame in memory, a megabyte each; above so many each frame has its
  * own, which makes larger files. */
-enum { ONE_PALETTE = 500, GIF_OF_MANY = STRUT_FILM_GIF + 1 };
+enum { ONE_PALETTE = 300, GIF_OF_MANY = STRUT_FILM_GIF + 1 };
 
 strut_status strut_encoder_format(const char *path, strut_film_format *format,
                                   strut_error *error) {
