@@ -175,6 +175,10 @@ const strut_command strut_command_run = {
         "summary.json, scene.yaml (the scene as it was run: running it gives the same bits),\n"
         "trajectory.h5 and, as CSV, nodes, members, contacts and energy as far as the scene\n"
         "records them: all of them or, where something fails, none.\n"
+        "--plot draws the last shape with curves of the last periods (overview), the ways of\n"
+        "the nodes over the last period, exaggerated by --scale (period), shapes at several\n"
+        "instants (snapshots), or curves of all that was recorded (curves); a run that failed,\n"
+        "as far as it came.\n"
         "--animate makes a film of what the scene records, with the program ffmpeg.\n"
         "Ctrl-C stops the run and keeps what it has so far; a second one kills.\n",
     .options = options,
