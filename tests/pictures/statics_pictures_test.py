@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures of strut equilibria, rigidity and form against what the same commands print as JSON.
 
-usage: statics_figures_test.py STRUT
+usage: statics_pictures_test.py STRUT
 """
 import json
 import math
