@@ -145,6 +145,11 @@ check(len(centres) == len(names), f"form: {len(centres)} nodes of {len(names)}")
 check_shape("form", list(said["nodes"].values()), centres)
 check_members("form", members, centres, paths, said["forces"])
 
+# More states and mechanisms than there is room for: the rest is counted.
+run("rigidity", os.path.join(root, "models/gallery/michell-wheel.yaml"), "--plot", "m.svg", "--width",
+    "column")
+run("rigidity", os.path.join(root, "models/gallery/michell-wheel.yaml"), "--plot", "m.svg")
+
 # Other files, and what is refused.
 run("rigidity", model, "--plot", "r.png", "--width", "column")
 with open("r.png", "rb") as file:

@@ -10,7 +10,7 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/equilibria_parts.h"
 
-static const double EDGE = 5, TITLE = 16, LINES = 23, MARGIN = 17, NARROW = 150, SCALE = 34,
+static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110, SCALE = 34,
                     LADDER = 150;
 enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
@@ -156,7 +156,7 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
                                        .values = e->member_force,
                                        .slack_forces = e->member_force,
                                        .limit = p->force_limit,
-                                       .node_names = cell.width > 120};
+                                       .node_names = cell.width > 105};
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
@@ -217,10 +217,13 @@ static strut_status draw(plan *p, strut_canvas *canvas) {
   strut_font title = {.size = 9, .bold = true};
   strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
-  snprintf(text, sizeof text, "%s: %zu equilibri%s at rest%s", p->model->scene->name,
-           p->standing_count, p->standing_count == 1 ? "um" : "a",
+  strut_draw_text(canvas, EDGE, EDGE,
+                  strut_text_fit(canvas, p->model->scene->name, title, inner, 0, fitted), title);
+  snprintf(text, sizeof text, "%zu equilibri%s at rest%s", p->standing_count,
+           p->standing_count == 1 ? "um" : "a",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
-  strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, text, title, inner, 0, fitted), title);
+  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
+                  note);
   y = draw_cards(p, canvas, y, &good);
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {

@@ -10,7 +10,7 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 
-static const double EDGE = 5, TITLE = 28, LINE = 12, MARGIN = 18, NARROW = 150, SCALE = 34;
+static const double EDGE = 5, TITLE = 28, LINE = 12, MARGIN = 18, NARROW = 110, SCALE = 34;
 static const double SWING = 0.12; /* the largest motion as drawn, of the larger extent */
 enum { ROWS = 4, COLUMNS = 3 };
 
@@ -28,23 +28,29 @@ typedef struct plan {
 
 static int32_t panels_of(const plan *p) { return p->forces + p->states + p->motions; }
 
+/* Whether members pull or push more than the rounding of their lengths does. */
+static bool forces_told(const plan *p) {
+  double most = 0, scale = 0;
+  for (size_t j = 0; j < p->model->scene->member_count; j++) {
+    const strut_member_table *m = &p->model->members;
+    most = fmax(most, fabs(p->rigidity->force[j]));
+    scale = fmax(scale, m->stiffness[j] * m->rest[j]);
+  }
+  return p->rigidity->prestressed && most > 1e-12 * scale;
+}
+
 /* As many as go in; states and mechanisms share the room. */
 static void choose(plan *p) {
   const strut_rigidity *r = p->rigidity;
   int32_t room = (int32_t)p->columns * ROWS;
-  p->forces = r->prestressed ? 1 : 0;
+  p->forces = forces_told(p) ? 1 : 0;
   p->states = r->states.force ? r->states.count : 0;
   p->motions = r->mechanisms.list ? r->mechanisms.count : 0;
   if (panels_of(p) <= room) return;
-  int32_t half = (room - p->forces) / 2;
-  if (p->motions < half) {
-    p->states = room - p->forces - p->motions;
-  } else if (p->states < half) {
-    p->motions = room - p->forces - p->states;
-  } else {
-    p->states = half;
-    p->motions = room - p->forces - half;
-  }
+  room -= p->forces;
+  int32_t motions = p->motions < room / 2 ? p->motions : room / 2; /* at least, if states abound */
+  if (p->states > room - motions) p->states = room - motions;
+  if (p->motions > room - p->states) p->motions = room - p->states;
 }
 
 static void lay_out(plan *p) {
@@ -82,7 +88,7 @@ static void draw_forces(const plan *p, strut_canvas *canvas, const strut_window 
                                        .values = force,
                                        .slack_forces = force,
                                        .limit = limit,
-                                       .node_names = p->cell[0] > 120};
+                                       .node_names = p->cell[0] > 105};
   strut_draw_structure(canvas, window, p->model, p->q, &style);
 }
 
@@ -118,7 +124,7 @@ static void draw_motion(const plan *p, strut_canvas *canvas, const strut_window 
 static void panel_text(const plan *p, int32_t k, char *text, size_t size) {
   const strut_rigidity *r = p->rigidity;
   if (k < p->forces) {
-    snprintf(text, size, "forces in the shape, up to %s",
+    snprintf(text, size, "forces, up to %s",
              strut_drawn_quantity(largest(r->force, p->model->scene->member_count), 3, "N").text);
   } else if (k < p->forces + p->states) {
     int32_t state = k - p->forces;
