@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Draws the pictures at the head of README.md into DIRECTORY: the crawler after 1,100 periods, and the
-# paper's figure 8 from the table that docs/figure-8.sh made.
+# Draws the pictures of README.md into DIRECTORY: the crawler after 1,100 periods, the
+# paper's figure 8 from the table that docs/figure-8.sh made, and the page of a run.
 #
 #   sh docs/pictures.sh build/release/strut docs
 set -eu
@@ -21,3 +21,13 @@ grep -q '^initial: {configuration: start, settle: true}' "$work/settled.yaml"
 for picture in crawler figure-8; do
   awk -f "$here/smaller.awk" "$work/$picture.svg" >"$output/$picture.svg"
 done
+# The page as a browser shows it; without Chromium the old picture stays.
+if command -v chromium >/dev/null; then
+  "$strut" run "$work/settled.yaml" --quiet -o "$work/run"
+  "$strut" view "$work/run" --quiet -o "$work/page.html"
+  chromium --headless=new --no-sandbox --disable-gpu --no-first-run --hide-scrollbars \
+    --disable-background-networking --disable-component-update --disable-sync --disable-quic \
+    --user-data-dir="$work/profile" --window-size=1180,1010 --virtual-time-budget=4000 \
+    --screenshot="$work/page.png" "file://$work/page.html" >"$work/log" 2>&1
+  mv "$work/page.png" "$output/page.png"
+fi
