@@ -142,6 +142,18 @@ if len(cells) == 20:
     order = [((i + k) % 3 == 0) for k in range(4) for i in range(5)]
     check(len({(c, o) for c, o in zip(colours, order)}) == 2, "map.svg: a cell has another's colour")
 plot("map.csv", "--kind", "map", "--label", "a", "--plot", "numbers.svg")
+write("hole.csv", open("map.csv").read().replace("2,1,y", "2,1,"))
+plot("hole.csv", "--kind", "map", "--plot", "hole.svg")
+fills = [tuple(round(c, 3) for c in path.fill) for path in read("hole.svg")[2]
+         if path.fill and not near(path.fill, (1, 1, 1)) and not path.curved
+         and max(p[0] for p in path.lines[0]) - min(p[0] for p in path.lines[0]) > 50]
+check(len(fills) == 19 and len(set(fills)) == 2, "a cell of which nothing is said has no category")
+
+# A point between two gaps is seen.
+write("lone.csv", "t,x\n" + "".join(f"{i},{'' if i in (3, 5) else i * i}\n" for i in range(40)))
+plot("lone.csv", "--plot", "lone.svg")
+dots = [path for path in read("lone.svg")[2] if path.curved and near(path.fill, FIRST)]
+check(len(dots) == 1, f"lone.svg: {len(dots)} dots of 1")
 plot("log.csv", "--kind", "work-precision", "--plot", "bargains.svg", "--width", "column")
 for name in ("map.svg", "panels.svg"):
     first = open(name, "rb").read()

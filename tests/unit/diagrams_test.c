@@ -88,6 +88,13 @@ static void test_tick_texts(void **state) {
   set = ticks_of("s", false, 1e6, 1e6 + 0.05); /* what all have in common is said once */
   assert_non_null(strstr(set.label, "1000000"));
   assert_string_equal(set.text[1], "10");
+  set = ticks_of("m", false, 1e9 - 1.07e-3, 1e9 + 1.07e-3); /* of few digits, not the lower end */
+  assert_string_equal(set.label, "error \xe2\x88\x92 1000000000 m in mm");
+  assert_string_equal(set.text[0], "\xe2\x88\x92" "1.0");
+  set = ticks_of("m", false, 0, 9e-300);
+  assert_string_equal(set.text[1], "2×10⁻³⁰⁰");
+  set = ticks_of("", false, -9e299, 0);
+  assert_string_equal(set.text[0], "\xe2\x88\x92" "8×10²⁹⁹");
   set = ticks_of("", true, 2, 8);
   assert_string_equal(set.text[0], "2");
   assert_string_equal(set.text[1], "5");

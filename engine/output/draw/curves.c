@@ -8,7 +8,7 @@
 #include "engine/output/draw/curves_parts.h"
 #include "engine/output/draw/palette.h"
 
-static const double GRAIN = 0.25, MARKER = 2.0, INSET = 4;
+static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, INSET = 4;
 enum { FEW_POINTS = 30, MARKERS = 8 };
 
 /* A figure being drawn. */
@@ -124,7 +124,12 @@ static void draw_series(const plotter *p, size_t i) {
   for (size_t start = 0; start < p->counts[i] && !s->no_line;) {
     size_t end = start;
     while (end < p->counts[i] && !isnan(points[end][0])) end++;
-    strut_draw_line(p->canvas, (const double(*)[2])points + start, end - start, pen);
+    if (end - start == 1) { /* a line of one point would not be seen */
+      strut_draw_marker(p->canvas, look_of(p->curves, i), points[start][0], points[start][1],
+                        LONE_MARKER);
+    } else {
+      strut_draw_line(p->canvas, (const double(*)[2])points + start, end - start, pen);
+    }
     start = end + 1;
   }
   if (has_markers(p->curves, i)) draw_markers(p, i);

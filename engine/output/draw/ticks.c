@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
@@ -16,8 +17,16 @@ static double round_step(double rough) {
   return power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
 }
 
-/* The largest multiple of `step` not above `value`, but for rounding. */
-static double multiple_below(double value, double step) { return floor(value / step + 1e-9) * step; }
+/* The number with the fewest digits that is no farther from the middle than five ranges. */
+static double common_part(double low, double high) {
+  double middle = low + 0.5 * (high - low), near = middle;
+  for (int k = (int)floor(log10(fabs(middle))); k >= (int)floor(log10(high - low)); k--) {
+    double power = pow(10.0, k);
+    near = round(middle / power) * power;
+    if (fabs(near - middle) <= 5 * (high - low)) break;
+  }
+  return near;
+}
 
 size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]) {
   size_t count = 0;
@@ -45,12 +54,29 @@ const char *strut_prefix(double largest, const char *unit, double *factor) {
   return names[(int)group + 5];
 }
 
-/* With a real minus sign. */
+static void write_power(char *text, size_t size, int exponent) {
+  static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  char digits[16];
+  int used = snprintf(text, size, "10%s", exponent < 0 ? "⁻" : "");
+  snprintf(digits, sizeof digits, "%d", exponent < 0 ? -exponent : exponent);
+  for (const char *d = digits; *d; d++)
+    used += snprintf(text + used, size - (size_t)used, "%s", raised[*d - '0']);
+}
+
+/* With a real minus sign, and powers of ten as print writes them. */
 static void write_number(char *text, size_t size, const char *format, int decimals, double value) {
   char plain[64];
   if (value == 0) value = 0; /* no minus zero */
   snprintf(plain, sizeof plain, format, decimals, value);
+  char *power = strchr(plain, 'e');
+  int exponent = power ? atoi(power + 1) : 0;
+  if (power) *power = '\0';
   snprintf(text, size, "%s%s", plain[0] == '-' ? "\xe2\x88\x92" : "", plain + (plain[0] == '-'));
+  if (!power) return;
+  size_t used = strlen(text);
+  snprintf(text + used, size - used, "×");
+  used = strlen(text);
+  write_power(text + used, size - used, exponent);
 }
 
 strut_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
@@ -61,15 +87,6 @@ strut_quantity strut_drawn_quantity(double value, int digits, const char *unit) 
            space ? (int)(space - plain.text) - (plain.text[0] == '-') : STRUT_QUANTITY_TEXT,
            plain.text + (plain.text[0] == '-'), micro ? " µ" : "", space ? space + 2 * micro : "");
   return drawn;
-}
-
-static void write_power(char *text, size_t size, int exponent) {
-  static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  char digits[16];
-  int used = snprintf(text, size, "10%s", exponent < 0 ? "⁻" : "");
-  snprintf(digits, sizeof digits, "%d", exponent < 0 ? -exponent : exponent);
-  for (const char *d = digits; *d; d++)
-    used += snprintf(text + used, size - (size_t)used, "%s", raised[*d - '0']);
 }
 
 static void write_label(const strut_axis *axis, const char *prefix, const char *offset,
@@ -86,7 +103,7 @@ static void linear_ticks(const strut_axis *axis, int wanted, strut_tick_set *set
   double step = set->count > 1 ? set->at[1] - set->at[0] : axis->high - axis->low;
   bool far = largest / step > 2 * pow(10.0, MOST_DIGITS);
   if (far) { /* what all ticks have in common is said once */
-    offset = multiple_below(axis->low, round_step(10 * (axis->high - axis->low)));
+    offset = common_part(axis->low, axis->high);
     largest = fmax(fabs(axis->low - offset), fabs(axis->high - offset));
   }
   const char *prefix = strut_prefix(largest, axis->unit ? axis->unit : "", &factor);

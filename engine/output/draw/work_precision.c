@@ -17,6 +17,8 @@ typedef struct diagram {
   bool *front;     /* (count) */
   size_t *order;   /* (count) of the front by cost */
   strut_legend_entry *entries;
+  strut_box *labels; /* (count) where labels are */
+  size_t label_count;
 } diagram;
 
 static bool diverged(const strut_bargain *b) { return !isfinite(b->error); }
@@ -92,14 +94,54 @@ static void draw_front(const diagram *d) {
   }
 }
 
-/* Above the point on its right or, at the frame's end, on its left. */
-static void draw_label(const diagram *d, const double at[2], const char *label) {
-  strut_font font = {.size = 7, .halo = strut_grey(1), .down = 1};
-  double width, height, end = d->axes.frame.x + d->axes.frame.width;
+static bool overlap(strut_box a, strut_box b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/* Whether a label may stand there: inside, and neither on another one nor on a marker. */
+static bool is_free(const diagram *d, strut_box box) {
+  const strut_box *f = &d->axes.frame;
+  if (box.x < f->x + 1 || box.x + box.width > f->x + f->width - 1 || box.y < f->y + 1 ||
+      box.y + box.height > f->y + f->height - 1)
+    return false;
+  for (size_t i = 0; i < d->label_count; i++)
+    if (overlap(box, d->labels[i])) return false;
+  for (size_t i = 0; i < d->wanted->count; i++) {
+    double at[2];
+    if (!(d->wanted->bargains[i].cost > 0)) continue;
+    place(d, &d->wanted->bargains[i], at);
+    if (overlap(box, (strut_box){at[0] - MARKER, at[1] - MARKER, 2 * MARKER, 2 * MARKER}))
+      return false;
+  }
+  return true;
+}
+
+/* Below the point on its left, where no other can be, or at another free corner; else nowhere. */
+static void draw_label(diagram *d, const double at[2], const char *label) {
+  static const double corners[4][2] = {{1, 0}, {0, 1}, {1, 1}, {0, 0}};
+  strut_font font = {.size = 7, .halo = strut_grey(1)};
+  double width, height;
   strut_text_size(d->canvas, label, font, &width, &height);
-  bool right = at[0] + 3 + width < end;
-  font.across = right ? 0 : 1;
-  strut_draw_text(d->canvas, at[0] + (right ? 3 : -3), at[1] - 2, label, font);
+  for (int k = 0; k < 4; k++) {
+    double x = at[0] + (corners[k][0] > 0 ? -MARKER - 0.6 - width : MARKER + 0.6);
+    double y = at[1] + (corners[k][1] > 0 ? -MARKER - 0.1 - 0.85 * height : MARKER + 0.1);
+    strut_box box = {x, y, width, 0.85 * height};
+    if (!is_free(d, box)) continue;
+    strut_draw_text(d->canvas, x, y, label, font);
+    d->labels[d->label_count++] = box;
+    return;
+  }
+}
+
+/* The cheapest first. */
+static void draw_labels(diagram *d) {
+  for (size_t k = 0; k < d->wanted->count && d->order[k] < d->wanted->count; k++) {
+    const strut_bargain *b = &d->wanted->bargains[d->order[k]];
+    double at[2];
+    if (!b->label) continue;
+    place(d, b, at);
+    draw_label(d, at, b->label);
+  }
 }
 
 static void draw_points(const diagram *d) {
@@ -118,7 +160,6 @@ static void draw_points(const diagram *d) {
       strut_draw_segment(d->canvas, high[0] - 2, high[1], high[0] + 2, high[1], bar);
     }
     strut_draw_marker(d->canvas, (size_t)b->group, at[0], at[1], MARKER);
-    if (d->front[i] && b->label) draw_label(d, at, b->label);
   }
 }
 
@@ -166,6 +207,7 @@ static void draw(diagram *d, strut_box box) {
   draw_front(d);
   draw_lines(d);
   draw_points(d);
+  draw_labels(d);
   strut_draw_legend(d->canvas, d->entries, w->group_count, box.width - 40, d->axes.frame.x, box.y,
                     false);
 }
@@ -176,7 +218,8 @@ strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
   d.front = strut_allocate(wanted->count + 1, sizeof *d.front);
   d.order = strut_allocate(wanted->count + 1, sizeof *d.order);
   d.entries = strut_allocate(wanted->group_count + 1, sizeof *d.entries);
-  bool good = d.front && d.order && d.entries;
+  d.labels = strut_allocate(wanted->count + 1, sizeof *d.labels);
+  bool good = d.front && d.order && d.entries && d.labels;
   if (good) {
     strut_pareto_front(wanted->bargains, wanted->count, d.front);
     sort_front(&d);
@@ -190,5 +233,6 @@ strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
   strut_release(d.front);
   strut_release(d.order);
   strut_release(d.entries);
+  strut_release(d.labels);
   return good ? STRUT_OK : STRUT_NO_MEMORY;
 }

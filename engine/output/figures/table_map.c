@@ -152,6 +152,10 @@ static strut_status prepare(mapper *m, strut_error *error) {
                                      &m->names, error);
   if (status != STRUT_OK) return status;
   qsort(m->names.name, m->names.count, sizeof *m->names.name, by_text);
+  if (m->names.count && !*m->names.name[0]) { /* nothing written is no answer */
+    m->names.count--;
+    memmove(m->names.name, m->names.name + 1, m->names.count * sizeof *m->names.name);
+  }
   find_range(m);
   m->xs = different(m, f->x, &m->columns);
   m->ys = different(m, f->y, &m->rows);
