@@ -10,6 +10,7 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/equilibria_parts.h"
 
+static const double ARROW = 20; /* the longest force of the ground [pt] */
 static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110, SCALE = 34,
                     LADDER = 150;
 enum { MOST_CARDS = 12, MOST_SMALL = 6 };
@@ -143,6 +144,26 @@ static strut_window window_for(const plan *p, size_t i, strut_box box, double ma
   return strut_window_fit(box, shared, margin);
 }
 
+/* Names beside the nodes, off the members and off the arrows of the ground's forces. */
+static bool draw_names(plan *p, strut_canvas *canvas, const strut_window *window, const double *q,
+                       const double (*force)[2]) {
+  const strut_contact_table *contacts = &p->model->contacts;
+  size_t arrows = 0;
+  double(*ends)[2] =
+      strut_arena_allocate(&p->arena, 2 * (size_t)contacts->count + 2, sizeof *ends);
+  if (!ends) return false;
+  for (int32_t c = 0; c < contacts->count && p->contact_limit > 0; c++) {
+    double length = force[c][0] / p->contact_limit * ARROW, *tip = ends[2 * arrows];
+    if (!(fabs(length) > 0.3)) continue;
+    strut_window_point(window, q + contacts->at[c], tip);
+    ends[2 * arrows + 1][0] = tip[0] - length * contacts->normal[0];
+    ends[2 * arrows + 1][1] = tip[1] + length * contacts->normal[1];
+    arrows++;
+  }
+  strut_draw_names(canvas, window, p->model, q, true, false, (const double(*)[2])ends, arrows);
+  return true;
+}
+
 static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   const strut_equilibrium *e = &p->all->list[i];
   char text[300], fitted[STRUT_FITTED_TEXT];
@@ -155,8 +176,7 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   const strut_structure_style style = {.colouring = STRUT_COLOUR_FORCE,
                                        .values = e->member_force,
                                        .slack_forces = e->member_force,
-                                       .limit = p->force_limit,
-                                       .node_names = cell.width > 105};
+                                       .limit = p->force_limit};
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
@@ -167,9 +187,11 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
   strut_draw_contact_forces(canvas, &window, p->model, strut_drawn_shape(p->all, i),
-                            (const double(*)[2])force, p->contact_limit, 20);
+                            (const double(*)[2])force, p->contact_limit, ARROW);
+  bool good = cell.width <= 105 || draw_names(p, canvas, &window, strut_drawn_shape(p->all, i),
+                                              (const double(*)[2])force);
   strut_canvas_unclip(canvas);
-  return true;
+  return good;
 }
 
 static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
