@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree as tree
 
 from svg_paths import has_segment, near, read, segments
 
@@ -149,6 +150,29 @@ check_members("form", members, centres, paths, said["forces"])
 run("rigidity", os.path.join(root, "models/gallery/michell-wheel.yaml"), "--plot", "m.svg", "--width",
     "column")
 run("rigidity", os.path.join(root, "models/gallery/michell-wheel.yaml"), "--plot", "m.svg")
+
+# Names of other scripts and a title that looks like markup: nothing of it becomes part of the file.
+SCRIPTS = ["ש" * 31, "م" * 31, "n" * 60, "結構"]
+TITLE = '</text><script>x</script> & "quoted" <b>bold</b>'
+with open("names.yaml", "w", encoding="utf-8") as file:
+    nodes = "".join(f"  {name}: {{position: [{x}, {y}], mass: 1}}\n" for name, x, y in
+                    zip(SCRIPTS, (-1, 1, 0, 0), (0, 0, 1, -1)))
+    sides = "".join(f"  c{k}: {{kind: cable, nodes: [{SCRIPTS[k % 2]}, {SCRIPTS[2 + k // 2]}], "
+                    "stiffness: 100, rest_length: 1.3}\n" for k in range(4))
+    bars = "".join(f"  b{k}: {{kind: bar, nodes: [{SCRIPTS[2 * k]}, {SCRIPTS[2 * k + 1]}], "
+                   "stiffness: 1000}\n" for k in range(2))
+    file.write(f"strut: 1\nname: '{TITLE}'\nnodes:\n{nodes}members:\n{bars}{sides}")
+for command in ("equilibria", "rigidity", "form"):
+    for width in ("page", "column", "40 mm"):
+        run(command, "names.yaml", "--plot", "names.svg", "--width", width)
+        _, _, paths = read("names.svg")
+        check(len(circles(paths)) >= 4, f"{command} of {width}: nodes are missing")
+        elements = {e.tag.split("}")[-1] for e in tree.parse("names.svg").iter()}
+        check(not elements & {"script", "b", "text", "a", "image"}, f"{command}: has {elements}")
+run("rigidity", "names.yaml", "--plot", "names.pdf")
+if shutil.which("pdftotext"):
+    text = subprocess.run(["pdftotext", "names.pdf", "-"], capture_output=True, text=True).stdout
+    check(TITLE[:20] in text and "nnnnn" in text, f"the PDF of other scripts says {text}")
 
 # Other files, and what is refused.
 run("rigidity", model, "--plot", "r.png", "--width", "column")

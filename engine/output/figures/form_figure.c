@@ -11,6 +11,8 @@
 #include "engine/output/draw/structure.h"
 
 static const double EDGE = 5, TITLE = 28, MARGIN = 24, SCALE = 46;
+/* Below this width the scale stands under the drawing, and names have no room. */
+static const double NARROW = 170, FOOT = 50, LEAST_MARGIN = 8;
 
 /* Member forces at the start: springs at rest lengths, cables that only pull. Returns the largest. */
 static double find_forces(const strut_model *model, double *force) {
@@ -38,8 +40,10 @@ static void draw(strut_canvas *canvas, const strut_model *model, const double *b
                  strut_bounds bounds) {
   strut_box page = strut_canvas_box(canvas);
   double inner = page.width - 2 * EDGE, moved = farthest(model, drawn);
-  strut_box box = {EDGE, EDGE + TITLE, inner - SCALE, page.height - 2 * EDGE - TITLE};
-  strut_window window = strut_window_fit(box, bounds, MARGIN);
+  bool narrow = page.width < NARROW;
+  strut_box box = {EDGE, EDGE + TITLE, inner - (narrow ? 0 : SCALE),
+                   page.height - 2 * EDGE - TITLE - (narrow ? FOOT : 0)};
+  strut_window window = strut_window_fit(box, bounds, narrow ? LEAST_MARGIN : MARGIN);
   char text[200], fitted[STRUT_FITTED_TEXT];
   strut_font bold = {.size = 9, .bold = true}, note = {.size = 8, .colour = strut_grey(0.3)};
   strut_draw_text(canvas, EDGE, EDGE,
@@ -62,17 +66,17 @@ static void draw(strut_canvas *canvas, const strut_model *model, const double *b
                                       .values = force,
                                       .slack_forces = force,
                                       .limit = limit,
-                                      .node_names = true};
+                                      .node_names = !narrow};
   strut_draw_ground(canvas, &window, model);
   if (!same) strut_draw_structure(canvas, &window, model, before, &pale);
   strut_draw_structure(canvas, &window, model, model->start, &full);
+  if (narrow) window.box.height += 14;
   strut_draw_yardstick(canvas, &window);
   const strut_colour_scale scale = {.name = "force", .unit = "N", .low = -limit, .high = limit};
-  if (limit > 0)
-    strut_draw_colour_scale(canvas,
-                            (strut_box){EDGE + inner - SCALE + 6, box.y + 4, SCALE - 6,
-                                        fmin(box.height - 8, 130)},
-                            &scale);
+  const strut_box beside = {EDGE + inner - SCALE + 6, box.y + 4, SCALE - 6,
+                            fmin(box.height - 8, 130)};
+  const strut_box below = {EDGE, box.y + box.height + FOOT - 34, inner, 34};
+  if (limit > 0) strut_draw_colour_scale(canvas, narrow ? below : beside, &scale);
 }
 
 strut_status strut_form_figure(const char *path, double width, const strut_model *model,
@@ -89,10 +93,12 @@ strut_status strut_form_figure(const char *path, double width, const strut_model
   strut_bounds bounds = strut_bounds_none();
   strut_bounds_add(&bounds, model, before);
   strut_bounds_add(&bounds, model, model->start);
-  double limit = find_forces(model, force), room = width - 2 * EDGE - SCALE - 2 * MARGIN;
+  bool narrow = width < NARROW;
+  double margin = narrow ? LEAST_MARGIN : MARGIN, limit = find_forces(model, force);
+  double room = width - 2 * EDGE - (narrow ? 0 : SCALE) - 2 * margin;
   double aspect = (bounds.high[1] - bounds.low[1]) / (bounds.high[0] - bounds.low[0]);
-  double high = room * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * MARGIN;
-  high = fmax(0.25 * width, fmin(high, 0.9 * width));
+  double high = room * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * margin;
+  high = fmax(0.25 * width, fmin(high, 0.9 * width)) + (narrow ? FOOT : 0);
   strut_status status = strut_canvas_open(path, width, 2 * EDGE + TITLE + high,
                                           model->scene->name, &canvas, error);
   if (status == STRUT_OK) {
