@@ -214,7 +214,7 @@
       if (box.checked) add(kind);
     });
 
-    return { charts, zoomTo,
+    return { charts, zoomTo, empty: kinds.length === 0,
       show(at) {
         frame = at;
         for (const chart of charts) placeCursor(chart);

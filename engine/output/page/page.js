@@ -9,7 +9,9 @@
   let motion = null, player = null, charts = null, cards = null, theme = page.theme();
   let picked = -1, limits = { force: 0, contact: 0 }, whole = null, extent = null, track = null;
   let camera = { x: 0, y: 0, scale: 1 }, waiting = false;
+  let elsewhere = false; /* what is shown stands somewhere else: even a free camera looks there */
   const drawTimes = [];
+  let decimals = 0;
 
   /* Figures that the drawing of all frames shares; of very many frames a sample will do. */
   function measure() {
@@ -69,7 +71,8 @@
   function aim(shape) {
     const canvas = element("canvas"), width = canvas.clientWidth, height = canvas.clientHeight;
     const mode = element("camera").value;
-    if (mode === "free") return;
+    if (mode === "free" && !elsewhere) return;
+    elsewhere = false;
     if (picked >= 0 || !motion)
       camera = page.fit(page.boundsOf(shape.position), width, height, MARGIN, data.size);
     else if (mode === "whole") camera = page.fit(whole, width, height, MARGIN, data.size);
@@ -104,10 +107,19 @@
     requestAnimationFrame(draw);
   }
 
+  const decimal = (time) => String(Number(time.toPrecision(12)));
+  function decimalsOf(times) {
+    let most = 0;
+    for (let f = 0; f < Math.min(times.length, 20); f++)
+      most = Math.max(most, (decimal(times[f]).split(".")[1] || "").length);
+    return Math.min(most, 9);
+  }
+
   function showTime(frame) {
     const clock = element("clock"), time = document.createElement("b");
-    const count = document.createElement("span");
-    time.textContent = String(Number(motion.time[frame].toPrecision(12))) + " s";
+    const count = document.createElement("span"), text = decimal(motion.time[frame]);
+    const fixed = motion.time[frame].toFixed(decimals); /* so that digits do not jump */
+    time.textContent = (Number(fixed) === Number(text) ? fixed : text) + " s";
     count.textContent = "frame " + (frame + 1) + " of " + motion.frames;
     clock.replaceChildren(time, count);
   }
@@ -121,6 +133,7 @@
 
   function pick(index) {
     picked = index === picked ? -1 : index;
+    elsewhere = true;
     if (picked >= 0 && player) player.pause();
     element("shown").hidden = picked < 0;
     element("clock").hidden = picked >= 0 || !motion;
@@ -175,12 +188,26 @@
     freeCamera();
   }
 
+  /* Choices that would change nothing are not there. */
+  function offerChoices() {
+    const still = !motion || motion.frames < 2, coloured = (motion && motion.force) ||
+      (data.equilibria || []).some((e) => e.force);
+    element("trails").parentElement.hidden = still || data.nodes.length > TRAIL_NODES;
+    element("arrows").parentElement.hidden = data.contacts.length === 0;
+    element("colour").parentElement.hidden = !coloured;
+    if (!still) return;
+    element("camera").querySelector("[value=whole]").remove();
+    element("camera").options[0].textContent = "fits";
+    element("back").textContent = "Back to the start";
+  }
+
   async function start() {
     page.fillPanels(data);
     motion = await page.decodeMotion(data.motion);
     element("transport").hidden = !motion || motion.frames < 2;
     if (motion) {
       track = page.trackedX(data, motion);
+      decimals = decimalsOf(motion.time);
       measure();
       for (let k = 0; k <= 20; k++) {
         const frame = Math.round(k / 20 * (motion.frames - 1));
@@ -194,7 +221,9 @@
           player.pause();
           player.seekTime(time);
         });
+      if (charts && charts.empty) element("charts-section").hidden = true;
     }
+    offerChoices();
     if ((data.equilibria || []).length) {
       cards = page.createCards(data, structure, pick);
       cards.draw();

@@ -81,7 +81,7 @@
       const tag = event.target.tagName;
       if (event.ctrlKey || event.metaKey || event.altKey || tag === "SELECT" || tag === "PRE") return;
       const far = event.shiftKey ? 10 : 1;
-      if (event.key === " " && tag !== "BUTTON" && tag !== "SUMMARY" && tag !== "INPUT") player.toggle();
+      if (event.key === " " && tag !== "BUTTON" && tag !== "SUMMARY" && (tag !== "INPUT" || event.target === scrub)) player.toggle();
       else if (event.key === "ArrowRight") player.seek(player.frame + far);
       else if (event.key === "ArrowLeft") player.seek(player.frame - far);
       else if (event.key === "Home") player.seek(0);

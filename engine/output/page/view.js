@@ -206,19 +206,25 @@
       c.stroke();
     }
     if (!options.names || count > 60) return;
-    const angles = memberAngles(s, px, py);
+    const angles = memberAngles(s, px, py), taken = [];
+    if (data.ground) /* below a contact are its force and the ground's marks */
+      for (const node of data.contacts) angles[node].push(Math.PI / 2);
     c.font = "italic 13px system-ui, 'DejaVu Sans', sans-serif";
     c.textBaseline = "middle";
     c.lineWidth = 3;
     for (let i = 0; i < count; i++) {
       const angle = freeAngle(angles[i]), dx = Math.cos(angle), dy = Math.sin(angle);
-      const name = data.nodes[i].name;
+      const full = data.nodes[i].name, name = full.length > 24 ? full.slice(0, 23) + "\u2026" : full;
       c.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
       const x = px[i] + 9 * dx, y = py[i] + 14 * dy;
+      const wide = c.measureText(name).width;
+      const left = x - (dx > 0.3 ? 0 : dx < -0.3 ? wide : wide / 2);
+      if (taken.some((t) => left < t[1] && t[0] < left + wide && Math.abs(y - t[2]) < 12)) continue;
+      taken.push([left, left + wide, y]);
       c.strokeStyle = theme.paper;
-      c.strokeText(name.length > 24 ? name.slice(0, 23) + "\u2026" : name, x, y);
+      c.strokeText(name, x, y);
       c.fillStyle = theme.ink;
-      c.fillText(name.length > 24 ? name.slice(0, 23) + "\u2026" : name, x, y);
+      c.fillText(name, x, y);
     }
   }
 
