@@ -156,13 +156,13 @@ static bool read_number(const char *text, double *value) {
   static const char *const nothing[] = {"", "nan", "NaN", "null", "none", "-"};
   for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
     if (strcmp(text, nothing[i]) == 0) {
-      *value = NAN;
+      *value = (double)NAN;
       return true;
     }
   bool minus = *text == '-';
   const char *digits = text + (minus || *text == '+');
   if (strcmp(digits, "inf") == 0) {
-    *value = minus ? -INFINITY : INFINITY;
+    *value = minus ? -HUGE_VAL : HUGE_VAL;
     return true;
   }
   if (!strut_number_read_scaled(digits, strlen(digits), 0, value)) return false;

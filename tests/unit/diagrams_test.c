@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best bargains. */
+/* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +27,8 @@ static void test_ticks(void **state) {
   (void)state;
   uint64_t seed = 1;
   for (int i = 0; i < 20000; i++) {
-    double low = (2 * random_between(&seed, 0, 1) - 1) * pow(10.0, 12 * random_between(&seed, 0, 1) - 6);
+    double low = 2 * random_between(&seed, 0, 1) - 1;
+    low *= pow(10.0, 12 * random_between(&seed, 0, 1) - 6);
     double span = pow(10.0, 12 * random_between(&seed, 0, 1) - 6), ticks[STRUT_MOST_TICKS];
     int wanted = 2 + (int)(8 * random_between(&seed, 0, 1));
     if (span < 1e-9 * fabs(low)) continue;
@@ -47,7 +48,7 @@ static void test_ticks(void **state) {
   assert_int_equal(strut_ticks(0, 10, 5, ticks), 6);
   assert_true(ticks[0] == 0 && ticks[5] == 10);
   assert_int_equal(strut_ticks(1, 1, 5, ticks), 0);
-  assert_int_equal(strut_ticks(NAN, 1, 5, ticks), 0);
+  assert_int_equal(strut_ticks((double)NAN, 1, 5, ticks), 0);
   assert_int_equal(strut_ticks(-1e308, 1e308, 5, ticks), 0);
 }
 
@@ -60,7 +61,7 @@ static void test_prefixes(void **state) {
   } cases[] = {{0.0214, "m/s", "m", 1e-3}, {1, "m", "", 1},     {999, "N", "", 1},
                {1000, "N", "k", 1e3},      {2e-7, "J", "n", 1e-9}, {0.02, "%", "", 1},
                {0.02, "kg", "", 1},        {0.02, "", "", 1},   {0, "m", "", 1},
-               {1e40, "m", "", 1},         {NAN, "m", "", 1}};
+               {1e40, "m", "", 1},         {(double)NAN, "m", "", 1}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     double factor;
     assert_string_equal(strut_prefix(cases[i].largest, cases[i].unit, &factor), cases[i].prefix);
@@ -104,12 +105,12 @@ static void test_tick_texts(void **state) {
 static void test_settle(void **state) {
   (void)state;
   static const double values[] = {0,     -0.0,  1,       -3,     1e300,     -1e300, 1e-300,
-                                  5e-324, 1e308, -1.7e308, NAN, -INFINITY, 42,     1e9};
+                                  5e-324, 1e308, -1.7e308, (double)NAN, -HUGE_VAL, 42,     1e9};
   enum { COUNT = sizeof values / sizeof *values };
   for (size_t i = 0; i < COUNT; i++)
     for (size_t k = 0; k < COUNT; k++)
       for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
-        strut_axis axis = {"a", "m", logarithmic, NAN, NAN};
+        strut_axis axis = {"a", "m", logarithmic, (double)NAN, (double)NAN};
         strut_tick_set set;
         strut_axis_include(&axis, values[i]);
         strut_axis_include(&axis, values[k]);
@@ -162,9 +163,11 @@ static void test_front(void **state) {
   for (int round = 0; round < 200; round++) {
     for (size_t i = 0; i < COUNT; i++)
       b[i] = (strut_bargain){.cost = 1 + floor(10 * random_between(&seed, 0, 1)),
-                             .error = random_between(&seed, 0, 1) < 0.1 ? (double)NAN : 1 + floor(10 * random_between(&seed, 0, 1)),
-                             .low = NAN,
-                             .high = NAN};
+                             .error = random_between(&seed, 0, 1) < 0.1
+                                          ? (double)NAN
+                                          : 1 + floor(10 * random_between(&seed, 0, 1)),
+                             .low = (double)NAN,
+                             .high = (double)NAN};
     strut_pareto_front(b, COUNT, front);
     for (size_t i = 0; i < COUNT; i++) {
       bool beaten = !isfinite(b[i].error);
@@ -190,7 +193,8 @@ static void test_map(void **state) {
   static const double xs[] = {1, 2}, ys[] = {10, 20};
   static const int category[] = {0, 1, 1, 0};
   static const char *const names[] = {"I", "II"};
-  const strut_map map = {.x = {"a", "", false, NAN, NAN}, .y = {"b", "", false, NAN, NAN},
+  const strut_map map = {.x = {"a", "", false, (double)NAN, (double)NAN},
+                         .y = {"b", "", false, (double)NAN, (double)NAN},
                          .columns = 2, .rows = 2, .xs = xs, .ys = ys, .category = category,
                          .category_count = 2, .names = names};
   strut_canvas *canvas;

@@ -56,7 +56,7 @@ static bool place_series(plotter *p, size_t i) {
   p->points[i] = points;
   if (!points) return false;
   for (size_t k = 0; k <= s->count; k++) {
-    double at[2] = {NAN, NAN};
+    double at[2] = {(double)NAN, (double)NAN};
     if (k < s->count && isfinite(s->x[k]) && isfinite(s->y[k]))
       strut_axes_point(&p->axes, s->x[k], s->y[k], at);
     if (isfinite(at[0]) && isfinite(at[1])) {
@@ -69,7 +69,7 @@ static bool place_series(plotter *p, size_t i) {
       points[used++][1] = at[1];
     } else if (used > start) {
       used = start + strut_thin(points + start, used - start, GRAIN);
-      points[used][0] = points[used][1] = NAN;
+      points[used][0] = points[used][1] = (double)NAN;
       start = ++used;
     }
   }
@@ -108,7 +108,8 @@ static void draw_markers(const plotter *p, size_t i) {
   size_t look = look_of(p->curves, i);
   bool all = s->count <= FEW_POINTS || s->points || s->no_line;
   /* Few, and not where the other curves have theirs. */
-  size_t every = all ? 1 : s->count / MARKERS, first = all ? 0 : (look * every / 3 + every / 2) % every;
+  size_t every = all ? 1 : s->count / MARKERS;
+  size_t first = all ? 0 : (look * every / 3 + every / 2) % every;
   for (size_t k = first; k < s->count; k += every) {
     double at[2];
     if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
@@ -167,7 +168,8 @@ static size_t covered(const plotter *p, strut_box box) {
       int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
       for (int m = 0; m <= pieces; m++) {
         double t = pieces ? (double)m / pieces : 0;
-        double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0], y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
+        double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0];
+        double y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
         count += x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height;
       }
     }
@@ -182,7 +184,8 @@ static bool find_corner(const plotter *p, const double size[2], double corner[2]
     double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
     corner[0] = f->x + INSET + across * (f->width - size[0] - 2 * INSET);
     corner[1] = f->y + INSET + down * (f->height - size[1] - 2 * INSET);
-    if (!covered(p, (strut_box){corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4})) return true;
+    const strut_box around = {corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4};
+    if (!covered(p, around)) return true;
   }
   return false;
 }

@@ -110,8 +110,8 @@ static void linear_ticks(const strut_axis *axis, int wanted, strut_tick_set *set
   if (far) {
     char number[48];
     write_number(number, sizeof number, "%.*g", 12, fabs(offset));
-    snprintf(offset_text, sizeof offset_text, " %s %s%s%s", offset > 0 ? "\xe2\x88\x92" : "+", number,
-             axis->unit && *axis->unit ? " " : "", axis->unit ? axis->unit : "");
+    snprintf(offset_text, sizeof offset_text, " %s %s%s%s", offset > 0 ? "\xe2\x88\x92" : "+",
+             number, axis->unit && *axis->unit ? " " : "", axis->unit ? axis->unit : "");
   }
   write_label(axis, prefix, offset_text, set);
   step /= factor;

@@ -38,7 +38,7 @@ static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_a
   *cost = w->cost;
   *error = w->error;
   cost->logarithmic = error->logarithmic = true;
-  cost->low = cost->high = error->low = error->high = NAN;
+  cost->low = cost->high = error->low = error->high = (double)NAN;
   for (size_t i = 0; i < w->count; i++) {
     const strut_bargain *b = &w->bargains[i];
     strut_axis_include(cost, b->cost);
@@ -152,7 +152,8 @@ static void draw_points(const diagram *d) {
     if (!(b->cost > 0)) continue;
     place(d, b, at);
     if (isfinite(b->low) && isfinite(b->high) && b->low > 0) {
-      const strut_pen bar = {.colour = strut_palette_thing((size_t)b->group), .width = 0.7, .butt = true};
+      const strut_pen bar = {
+          .colour = strut_palette_thing((size_t)b->group), .width = 0.7, .butt = true};
       strut_axes_point(&d->axes, b->cost, b->low, low);
       strut_axes_point(&d->axes, b->cost, b->high, high);
       strut_draw_segment(d->canvas, low[0], low[1], high[0], high[1], bar);
@@ -197,8 +198,8 @@ static void draw(diagram *d, strut_box box) {
   strut_legend_size(d->canvas, d->entries, w->group_count, box.width - 40, legend);
   for (size_t i = 0; i < w->count; i++) some_diverged = some_diverged || diverged(&w->bargains[i]);
   double top = legend[1] + (some_diverged ? STRIP : 0);
-  d->axes = strut_axes_place(d->canvas, (strut_box){box.x, box.y + top, box.width, box.height - top},
-                             cost, error, NULL);
+  const strut_box below = {box.x, box.y + top, box.width, box.height - top};
+  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL);
   d->strip = d->axes.frame;
   d->strip.height = some_diverged ? STRIP : 0;
   d->strip.y -= d->strip.height;

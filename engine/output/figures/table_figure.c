@@ -41,7 +41,8 @@ static size_t find_bands(const maker *m, const size_t *rows, size_t count, strut
   for (size_t i = 0; i < count; i++) {
     if (strcmp(band->text[rows[i]], m->figure->band_value) != 0) continue;
     size_t last = i;
-    while (last + 1 < count && strcmp(band->text[rows[last + 1]], m->figure->band_value) == 0) last++;
+    while (last + 1 < count && strcmp(band->text[rows[last + 1]], m->figure->band_value) == 0)
+      last++;
     double low = x[rows[i]], high = x[rows[last]];
     if (i > 0) low = 0.5 * (low + x[rows[i - 1]]);
     if (last + 1 < count) high = 0.5 * (high + x[rows[last + 1]]);
@@ -93,7 +94,7 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
                                .series = series,
                                .band_count = bands,
                                .bands = band,
-                               .cursor = NAN};
+                               .cursor = (double)NAN};
   return strut_draw_curves(canvas, box, &curves);
 }
 
@@ -101,8 +102,8 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
 static void settle_axes(maker *m) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *x = &m->table->columns[f->x], *y = &m->table->columns[f->y[0]];
-  m->x = (strut_axis){x->name, x->unit, f->log_x, NAN, NAN};
-  m->y = (strut_axis){f->y_count == 1 ? y->name : "", y->unit, f->log_y, NAN, NAN};
+  m->x = (strut_axis){x->name, x->unit, f->log_x, (double)NAN, (double)NAN};
+  m->y = (strut_axis){f->y_count == 1 ? y->name : "", y->unit, f->log_y, (double)NAN, (double)NAN};
   for (size_t i = 0; i < m->table->row_count; i++)
     for (int k = 0; k < f->y_count; k++) {
       double value = m->table->columns[f->y[k]].value[i];

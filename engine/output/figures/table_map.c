@@ -75,7 +75,7 @@ static void fill(const mapper *m, size_t panel, cells *c) {
   const strut_table_map_figure *f = m->figure;
   const strut_table_column *columns = m->table->columns;
   for (size_t k = 0; k < m->rows * m->columns; k++) {
-    c->value[k] = NAN;
+    c->value[k] = (double)NAN;
     c->category[k] = -1;
   }
   for (size_t i = 0; i < m->table->row_count; i++) {
@@ -105,8 +105,8 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
   strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
   const strut_map map = {
       .title = title[0] ? title : NULL,
-      .x = {x->name, x->unit, false, NAN, NAN},
-      .y = {y->name, y->unit, false, NAN, NAN},
+      .x = {x->name, x->unit, false, (double)NAN, (double)NAN},
+      .y = {y->name, y->unit, false, (double)NAN, (double)NAN},
       .columns = m->columns,
       .rows = m->rows,
       .xs = m->xs,
@@ -195,8 +195,8 @@ static strut_status draw_bargains(void *context, strut_canvas *canvas, strut_box
   const strut_table_column *x = &t->table->columns[t->figure->x];
   const strut_table_column *y = &t->table->columns[t->figure->y];
   (void)panel; /* there is one */
-  const strut_work_precision diagram = {.cost = {x->name, x->unit, true, NAN, NAN},
-                                        .error = {y->name, y->unit, true, NAN, NAN},
+  const strut_work_precision diagram = {.cost = {x->name, x->unit, true, (double)NAN, (double)NAN},
+                                        .error = {y->name, y->unit, true, (double)NAN, (double)NAN},
                                         .group_count = t->methods.count,
                                         .groups = t->methods.name,
                                         .count = t->count,
@@ -217,8 +217,8 @@ static void find_bargains(trader *t) {
         .label = f->label == STRUT_NO_COLUMN ? NULL : columns[f->label].text[i],
         .cost = columns[f->x].value[i],
         .error = columns[f->y].value[i],
-        .low = NAN,
-        .high = NAN};
+        .low = (double)NAN,
+        .high = (double)NAN};
   }
 }
 
