@@ -39,6 +39,9 @@ def browser(width, height):
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
     driver.set_script_timeout(60)
+    if width < 500:  # narrower than Chromium's windows can be
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": height, "deviceScaleFactor": 2, "mobile": True})
     return driver
 
 
@@ -240,6 +243,33 @@ def check_hostile(driver):
     check_silence(driver, name)
 
 
+def check_camera(driver, name):
+    """All nodes of all frames stand on the stage, the camera following."""
+    outside = driver.execute_script("""
+      const s = window.strut, canvas = document.getElementById("canvas"), bad = [];
+      for (let f = 0; f < s.frames; f += 7) {
+        s.seek(f);
+        const at = s.onStage();
+        for (let i = 0; i < at.length; i += 2)
+          if (!(at[i] >= 0 && at[i] <= canvas.clientWidth && at[i + 1] >= 0 &&
+                at[i + 1] <= canvas.clientHeight)) bad.push([f, i / 2, at[i], at[i + 1]]);
+      }
+      return bad;""")
+    check(not outside, f"{name}: nodes outside the picture: {outside[:3]}")
+
+
+def check_damaged(driver):
+    """A page cut by a disk or a mail program says so."""
+    text = (folder / "two-mass.html").read_text(encoding="utf-8")
+    begin = text.index('"bytes":"', text.index('"position"')) + len('"bytes":"')
+    (folder / "damaged.html").write_text(text[:begin] + text[begin + 400:], encoding="utf-8")
+    driver.get((folder / "damaged.html").as_uri())
+    driver.execute_async_script("window.strut.ready.then(arguments[0], () => arguments[0]())")
+    said = driver.find_element(By.ID, "trouble").text
+    check("damaged" in said, f"damaged.html: a damaged page says {said!r}")
+    driver.get_log("browser")
+
+
 def check_run(driver, width):
     open_page(driver, "crawler.html")
     check_layout(driver, "crawler.html", width)
@@ -248,13 +278,14 @@ def check_run(driver, width):
     check_numbers(driver, "crawler.html", recorded("crawler"), 5)
     check_player(driver, "crawler.html")
     check_charts(driver, "crawler.html")
+    check_camera(driver, "crawler.html")
     listed = json.loads((folder / "crawler.json").read_text(encoding="utf-8"))["equilibria"]
     check_cards(driver, "crawler.html", listed)
     check_silence(driver, "crawler.html")
 
 
 def main():
-    for width, height in ((1280, 800), (520, 900)):
+    for width, height in ((1280, 800), (360, 780)):
         driver = browser(width, height)
         try:
             check_run(driver, width)
@@ -269,6 +300,7 @@ def main():
                       "model.html: a model at rest is not drawn")
                 check_silence(driver, "model.html")
                 check_hostile(driver)
+                check_damaged(driver)
         finally:
             driver.quit()
     print(f"{len(failures)} failures")

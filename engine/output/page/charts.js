@@ -61,7 +61,10 @@
     if (motion.energy)
       kinds.push({ name: "energy", unit: "J", curves: data.motion.energy_names.map((name, i) => ({
         name, at: column(motion.energy, data.motion.energy_names.length, i) })) });
-    for (const kind of kinds) kind.curves = liveliest(kind.curves, motion.frames);
+    for (const kind of kinds) {
+      kind.all = kind.curves.length;
+      kind.curves = liveliest(kind.curves, motion.frames);
+    }
     return kinds.filter((kind) => kind.curves.length);
   }
 
@@ -165,7 +168,8 @@
       const chart = { kind, box, plot, cursor };
       chart.scaled = kind.curves.map((c) => ({ at: (f) => c.at(f) / prefix.factor }));
       title.className = "chart-title";
-      title.append(kind.name + " in " + prefix.text + kind.unit);
+      title.append(kind.name + " in " + prefix.text + kind.unit + (kind.all > kind.curves.length
+        ? " (the " + kind.curves.length + " of " + kind.all + " that vary most)" : ""));
       kind.curves.forEach((curve, i) => {
         const span = document.createElement("span"), swatch = document.createElement("i");
         const name = document.createElement("bdi");
@@ -187,7 +191,7 @@
         strokePattern: null, strokeWidth: 1.3, highlightCircleSize: 0, legend: "never",
         axes: { y: { axisLabelWidth: 52 }, x: { drawGrid: true } },
         axisLineColor: page.theme().line, gridLineColor: page.theme().line, gridLineWidth: 0.6,
-        dateWindow: window_, interactionModel: {}, animatedZooms: false,
+        yRangePad: 5, dateWindow: window_, interactionModel: {}, animatedZooms: false,
         drawCallback: () => chart.graph && placeCursor(chart),
         zoomCallback: (from, to) => zoomTo([from, to]),
         underlayCallback: null });
@@ -215,6 +219,11 @@
     });
 
     return { charts, zoomTo, empty: kinds.length === 0,
+      restyle() {
+        const line = page.theme().line;
+        for (const chart of charts)
+          chart.graph.updateOptions({ axisLineColor: line, gridLineColor: line });
+      },
       show(at) {
         frame = at;
         for (const chart of charts) placeCursor(chart);

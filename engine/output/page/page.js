@@ -6,6 +6,7 @@
   const data = JSON.parse(element("strut-data").textContent);
   const structure = page.structureOf(data);
   const MARGIN = 46, TRAIL_FRAMES = 400, TRAIL_NODES = 60, TRAIL_PART = 0.1;
+  const MEASURED = 3e5;
   let motion = null, player = null, charts = null, cards = null, theme = page.theme();
   let picked = -1, limits = { force: 0, contact: 0 }, whole = null, extent = null, track = null;
   let camera = { x: 0, y: 0, scale: 1 }, waiting = false;
@@ -13,14 +14,16 @@
   const drawTimes = [];
   let decimals = 0;
 
-  /* Figures that the drawing of all frames shares; of very many frames a sample will do. */
+  /* Figures that the drawing of all frames shares. Of very many values a sample will do, at uneven
+     steps: even ones would see a periodic motion always in the same phase. */
   function measure() {
-    const count = data.nodes.length, step = Math.max(1, Math.floor(motion.frames / 500));
-    const normals = [];
+    const count = data.nodes.length, normals = [];
+    const step = Math.max(1, motion.frames * (count + data.members.length) / MEASURED);
     let wide = 0, high = [Infinity, -Infinity];
     whole = [Infinity, Infinity, -Infinity, -Infinity];
-    for (let f = 0; f < motion.frames; f += step) {
-      const shape = shapeAt(f), b = page.boundsOf(shape.position);
+    for (let k = 0; k * step < motion.frames; k++) {
+      const uneven = step > 1 ? k * 0.618034 % 1 : 0;
+      const shape = shapeAt(Math.min(motion.frames - 1, Math.floor((k + uneven) * step))), b = page.boundsOf(shape.position);
       wide = Math.max(wide, b[2] - b[0]);
       high = [Math.min(high[0], b[1]), Math.max(high[1], b[3])];
       whole = [Math.min(whole[0], b[0]), Math.min(whole[1], b[1]), Math.max(whole[2], b[2]),
@@ -52,10 +55,12 @@
     if (used < 1) return [];
     const trails = [];
     for (let i = 0; i < count; i++) {
-      const way = [];
-      for (let f = frame; f >= first; f--)
-        way.unshift(motion.position[2 * (f * count + i)], motion.position[2 * (f * count + i) + 1]);
-      if (way.length >= 4) trails.push(way);
+      const way = new Float64Array(2 * (used + 1));
+      for (let k = 0; k <= used; k++) {
+        way[2 * k] = motion.position[2 * ((first + k) * count + i)];
+        way[2 * k + 1] = motion.position[2 * ((first + k) * count + i) + 1];
+      }
+      trails.push(way);
     }
     return trails;
   }
@@ -68,9 +73,11 @@
     return shape;
   }
 
-  function aim(shape) {
-    const canvas = element("canvas"), width = canvas.clientWidth, height = canvas.clientHeight;
-    const mode = element("camera").value;
+  function aim(shape, coloured) {
+    const canvas = element("canvas"), height = canvas.clientHeight, mode = element("camera").value;
+    const scale = coloured ? (canvas.clientWidth > 600 ? 72 : 48) : 0; /* the colours' own room */
+    const width = canvas.clientWidth - scale;
+    canvas.classList.toggle("free", mode === "free");
     if (mode === "free" && !elsewhere) return;
     elsewhere = false;
     if (picked >= 0 || !motion)
@@ -79,20 +86,21 @@
     else {
       const b = page.boundsOf(shape.position);
       camera = page.fit(extent, width, height, MARGIN, data.size);
-      camera.x = motion && data.nodes.length > 1 ? track(player.frame) + offset : 0.5 * (b[0] + b[2]);
+      camera.x = data.nodes.length > 1 ? track(player.frame) + offset : 0.5 * (b[0] + b[2]);
     }
+    camera.x += 0.5 * scale / camera.scale;
   }
   let offset = 0; /* of the structure's middle from the tracked point, as it is on average */
 
   function draw() {
     waiting = false;
     const begin = performance.now(), shape = currentShape();
-    aim(shape);
     const own = picked >= 0 ? page.limitsOf(shape) : limits;
+    const coloured = element("colour").checked && Boolean(shape.force) && own.force > 0;
+    aim(shape, coloured);
     page.drawStructure(element("canvas"), structure, shape, camera, {
       theme, colour: element("colour").checked, arrows: element("arrows").checked,
       names: element("names").checked, limit: own.force, contactLimit: own.contact });
-    const coloured = element("colour").checked && shape.force && own.force > 0;
     element("colours").hidden = !coloured;
     if (coloured && own.force !== draw.scale) {
       page.drawColourScale(element("colours"), own.force, theme);
@@ -181,6 +189,7 @@
       theme = page.theme();
       draw.scale = null;
       if (cards) cards.draw();
+      if (charts) charts.restyle();
       redraw();
     };
     window.addEventListener("resize", again);
@@ -233,9 +242,17 @@
     redraw();
   }
 
+  const ready = start();
+  ready.catch((error) => {
+    element("trouble").hidden = false;
+    element("trouble").textContent = typeof DecompressionStream === "function"
+      ? "This page is damaged: " + error.message
+      : "This browser is too old for this page: it cannot unpack data (DecompressionStream).";
+  });
+
   /* For tests: what is shown, and the buttons' work, without a pixel in between. */
   window.strut = {
-    ready: start(),
+    ready,
     data,
     get frame() { return player ? player.frame : 0; },
     get frames() { return motion ? motion.frames : 0; },
@@ -243,6 +260,14 @@
     get playing() { return Boolean(player && player.playing); },
     get picked() { return picked; },
     positions: () => Array.from(currentShape().position),
+    onStage() { /* the nodes' places on the canvas, pixels */
+      const canvas = element("canvas"), shape = currentShape(), at = [];
+      aim(shape, !element("colours").hidden);
+      for (let i = 0; i < shape.position.length; i += 2)
+        at.push(canvas.clientWidth / 2 + (shape.position[i] - camera.x) * camera.scale,
+          canvas.clientHeight / 2 - (shape.position[i + 1] - camera.y) * camera.scale);
+      return at;
+    },
     seek: (frame) => player.seek(frame),
     play: () => player.play(),
     pause: () => player.pause(),

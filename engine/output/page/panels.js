@@ -17,13 +17,18 @@
     document.getElementById("summary-section").hidden = !(data.summary || []).length;
   }
 
+  function ordinal(n) {
+    if (n % 100 > 10 && n % 100 < 14) return "th";
+    return ["th", "st", "nd", "rd"][n % 10] || "th";
+  }
+
   function samplingText(data) {
     const motion = data.motion;
     const made = "Written by strut " + data.strut + "; nothing on it comes from a network.";
     if (!motion) return "A model at rest: no motion is on this page. " + made;
     const kept = motion.frames === motion.recorded ? "All " + motion.frames + " recorded frames"
       : motion.frames + " of " + motion.recorded + " recorded frames (every " + motion.every +
-        (motion.every === 2 ? "nd" : "th") + ")";
+        ordinal(motion.every) + ")";
     const rounded = [["positions", "position", "m"], ["forces", "force", "N"],
       ["contact forces", "contact", "N"]]
       .filter(([, key]) => motion[key])

@@ -81,7 +81,8 @@
       const tag = event.target.tagName;
       if (event.ctrlKey || event.metaKey || event.altKey || tag === "SELECT" || tag === "PRE") return;
       const far = event.shiftKey ? 10 : 1;
-      if (event.key === " " && tag !== "BUTTON" && tag !== "SUMMARY" && (tag !== "INPUT" || event.target === scrub)) player.toggle();
+      const own = tag === "BUTTON" || tag === "SUMMARY" || (tag === "INPUT" && event.target !== scrub);
+      if (event.key === " " && !own) player.toggle();
       else if (event.key === "ArrowRight") player.seek(player.frame + far);
       else if (event.key === "ArrowLeft") player.seek(player.frame - far);
       else if (event.key === "Home") player.seek(0);

@@ -259,17 +259,19 @@
     c.stroke();
     if (options.small) return;
     const step = roundLength(110 / camera.scale);
+    const into = [Math.sin(ground.slope), Math.cos(ground.slope)];
     c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
     c.fillStyle = theme.soft;
     c.textAlign = "center";
-    c.textBaseline = "top";
+    c.textBaseline = "middle";
     for (let k = Math.ceil(left / step); k * step <= right; k++) {
       const x = sx(k * step), y = sy(yAt(k * step));
       c.beginPath();
       c.moveTo(x, y);
-      c.lineTo(x, y + 6);
+      c.lineTo(x + 6 * into[0], y + 6 * into[1]);
       c.stroke();
-      c.fillText(page.quantity(k * step, "m", 4), x, y + 8);
+      if (x < 26 || x > width - 26) continue; /* no half words at the edges */
+      c.fillText(page.quantity(k * step, "m", 4), x + 26 * into[0], y + 14 * into[1]);
     }
   }
 
