@@ -76,7 +76,8 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
   strut_text_size(canvas, "0", (strut_font){.size = LABEL_SIZE}, &width, &label);
   if (title && *title) {
-    strut_text_size(canvas, title, (strut_font){.size = TITLE_SIZE, .bold = true, .width = box.width},
+    strut_text_size(canvas, title,
+                    (strut_font){.size = TITLE_SIZE, .bold = true, .width = box.width},
                     &width, &above);
     above += GAP;
   }

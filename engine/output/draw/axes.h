@@ -29,8 +29,8 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
 /**
- * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL: none); panels side by
- * side line up when their boxes do.
+ * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL:
+ * none); panels side by side line up when their boxes do.
  */
 STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
                                       strut_axis y, const char *title);

@@ -36,7 +36,8 @@ STRUT_API int strut_text_bytes(const char *text, int most);
 enum { STRUT_FITTED_TEXT = 320 };
 /**
  * Copies of `text` what goes into `width` by `height` [pt] (0: any height), ending in an ellipsis
- * where that is not all of it, a letter cut in two left out; lines break at `font.width` only. Returns `fitted`.
+ * where that is not all of it, a letter cut in two left out; lines break at `font.width` only.
+ * Returns `fitted`.
  */
 STRUT_API const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font,
                                      double width, double height, char fitted[STRUT_FITTED_TEXT]);

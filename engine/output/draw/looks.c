@@ -8,7 +8,8 @@
 static const double TEXT = 7.5, SAMPLE = 20, GAP = 4, ROW_GAP = 1.5, PADDING = 3;
 
 strut_pen strut_look_pen(size_t look) {
-  static const double dashes[][4] = {{0}, {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2}, {3, 1.5}, {8, 2}, {2, 3}};
+  static const double dashes[][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
+                                     {3, 1.5}, {8, 2}, {2, 3}};
   strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
   for (int i = 0; i < 4; i++) pen.dash[i] = dashes[look % 7][i];
   pen.butt = pen.dash[0] > 0;

@@ -18,7 +18,8 @@ static strut_fill category_fill(size_t i) {
                                         STRUT_HATCH_LEVEL};
   size_t count = sizeof order / sizeof *order;
   unsigned rgb = order[i % count];
-  return (strut_fill){.colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
+  return (strut_fill){.colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0,
+                                 (rgb & 255) / 255.0, 1},
                       .hatch = hatches[i / count % 4],
                       .hatch_colour = strut_grey(0.3)};
 }
@@ -126,7 +127,9 @@ static void name_entries(mapper *m) {
     m->entries[m->entry_count++] = (strut_legend_entry){
         .label = map->doubt ? map->doubt : "doubtful",
         .area = true,
-        .fill = {.colour = strut_grey(1), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)}};
+        .fill = {.colour = strut_grey(1),
+                 .hatch = STRUT_HATCH_RISING,
+                 .hatch_colour = strut_grey(0.05)}};
   if (some_missing)
     m->entries[m->entry_count++] = (strut_legend_entry){
         .label = "no answer", .area = true, .fill = {.colour = strut_grey(1)}};

@@ -190,7 +190,8 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                   .style = style,
                   .thin = thinning(window, model, q),
                   .opacity = style->opacity > 0 ? style->opacity : 1.0};
-  if (!style->no_supports) strut_draw_supports(canvas, window, model, q, fmax(l.thin, 0.3), l.opacity);
+  if (!style->no_supports)
+    strut_draw_supports(canvas, window, model, q, fmax(l.thin, 0.3), l.opacity);
   draw_members(canvas, &l);
   if (!style->no_nodes) draw_nodes(canvas, &l);
   if (style->node_names || style->member_names)

@@ -180,7 +180,8 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
-           strut_drawn_quantity(told_energy(p, strut_drawn_energy(p->all, i)), 6, "J").text, e->verdict);
+           strut_drawn_quantity(told_energy(p, strut_drawn_energy(p->all, i)), 6, "J").text,
+           e->verdict);
   strut_draw_text(canvas, cell.x + 4, cell.y + 11,
                   strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
   strut_canvas_clip(canvas, cell);
@@ -207,7 +208,8 @@ static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) 
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
-  snprintf(text, sizeof text, "%s: %s", strut_drawn_quantity(told_energy(p, e->energy), 5, "J").text, e->verdict);
+  snprintf(text, sizeof text, "%s: %s",
+           strut_drawn_quantity(told_energy(p, e->energy), 5, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
                   strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
   strut_canvas_unclip(canvas);

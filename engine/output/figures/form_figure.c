@@ -14,7 +14,7 @@ static const double EDGE = 5, TITLE = 28, MARGIN = 24, SCALE = 46;
 /* Below this width the scale stands under the drawing, and names have no room. */
 static const double NARROW = 170, FOOT = 50, LEAST_MARGIN = 8;
 
-/* Member forces at the start: springs at rest lengths, cables that only pull. Returns the largest. */
+/* Member forces at the start, of cables that only pull, by rest lengths. Returns the largest. */
 static double find_forces(const strut_model *model, double *force) {
   double most = 0;
   for (size_t j = 0; j < model->scene->member_count; j++) {
@@ -31,7 +31,8 @@ static double find_forces(const strut_model *model, double *force) {
 static double farthest(const strut_model *model, const double (*drawn)[2]) {
   double most = 0;
   for (int32_t i = 0; i < model->node_count; i++)
-    most = fmax(most, hypot(model->start[2 * i] - drawn[i][0], model->start[2 * i + 1] - drawn[i][1]));
+    most = fmax(most, hypot(model->start[2 * i] - drawn[i][0],
+                            model->start[2 * i + 1] - drawn[i][1]));
   return most;
 }
 

@@ -23,7 +23,8 @@
     whole = [Infinity, Infinity, -Infinity, -Infinity];
     for (let k = 0; k * step < motion.frames; k++) {
       const uneven = step > 1 ? k * 0.618034 % 1 : 0;
-      const shape = shapeAt(Math.min(motion.frames - 1, Math.floor((k + uneven) * step))), b = page.boundsOf(shape.position);
+      const shape = shapeAt(Math.min(motion.frames - 1, Math.floor((k + uneven) * step)));
+      const b = page.boundsOf(shape.position);
       wide = Math.max(wide, b[2] - b[0]);
       high = [Math.min(high[0], b[1]), Math.max(high[1], b[3])];
       whole = [Math.min(whole[0], b[0]), Math.min(whole[1], b[1]), Math.max(whole[2], b[2]),
@@ -172,7 +173,8 @@
       if (element("camera").value !== "free") return; /* the page scrolls on */
       event.preventDefault();
       const box = canvas.getBoundingClientRect(), factor = Math.exp(-event.deltaY * 0.0015);
-      const dx = event.clientX - box.left - box.width / 2, dy = event.clientY - box.top - box.height / 2;
+      const dx = event.clientX - box.left - box.width / 2;
+      const dy = event.clientY - box.top - box.height / 2;
       camera.x += dx / camera.scale * (1 - 1 / factor);
       camera.y -= dy / camera.scale * (1 - 1 / factor);
       camera.scale *= factor;
