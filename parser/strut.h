@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * The front door of the libraries: everything a program needs to read a scene, compile it, know it
- * at rest, run it and write what came out. Installed as include/strut/strut.h, beside the tree it includes.
+ * at rest, run it, write what came out and draw it (what draws is in the library strut_pictures,
+ * which only programs that draw have to link). Installed as include/strut/strut.h, beside the tree it includes.
  *
  * The libraries are written in C17; C++ programs may include this header as it stands.
  */
@@ -27,9 +28,23 @@ extern "C" {
 #include "engine/model/model.h"
 #include "engine/model/state.h"
 #include "engine/output/csv.h"
+#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/curves.h"
+#include "engine/output/draw/map.h"
+#include "engine/output/draw/structure.h"
+#include "engine/output/draw/work_precision.h"
+#include "engine/output/figures/equilibria_figure.h"
+#include "engine/output/figures/form_figure.h"
+#include "engine/output/figures/modes_figure.h"
+#include "engine/output/figures/path_figure.h"
+#include "engine/output/figures/rigidity_figure.h"
+#include "engine/output/figures/run_figure.h"
+#include "engine/output/figures/table_map.h"
 #include "engine/output/file.h"
 #include "engine/output/hdf5.h"
 #include "engine/output/json.h"
+#include "engine/output/page/page.h"
+#include "engine/output/trajectory.h"
 #include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
 #include "engine/run/summary.h"

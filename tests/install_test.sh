@@ -28,6 +28,9 @@ project(user C)
 find_package(strut 0.1 REQUIRED)
 add_executable(user user.c)
 target_link_libraries(user PRIVATE strut::parser strut::output strut::engine)
+add_executable(drawer user.c)
+target_compile_definitions(drawer PRIVATE DRAW)
+target_link_libraries(drawer PRIVATE strut::parser strut::pictures strut::output strut::engine)
 END
 cmake -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$compiler" \
   -DCMAKE_C_FLAGS="$sanitizers" -DCMAKE_BUILD_TYPE=Release >configure.log 2>&1 ||
@@ -37,6 +40,11 @@ cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 grep '"status":[[:space:]]*"completed"' by-cmake || { cat by-cmake; exit 1; }
 test -s nodes.csv
 test -s trajectory.h5
+# Who only computes has nothing of what draws.
+! ldd build/user | grep -E 'cairo|pango' || { echo "the program that draws nothing links Cairo"; exit 1; }
+./build/drawer >by-cmake.drawer
+cmp by-cmake by-cmake.drawer
+mv shape.svg shape-by-cmake.svg
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name strut.pc)")
 export PKG_CONFIG_PATH
@@ -46,6 +54,12 @@ export LD_LIBRARY_PATH
 "$compiler" -std=c17 $sanitizers user.c -o user $(pkg-config --cflags --libs strut)
 ./user >by-pkg-config
 cmp by-cmake by-pkg-config
+# shellcheck disable=SC2046
+"$compiler" -std=c17 -DDRAW $sanitizers user.c -o drawer \
+  $(pkg-config --cflags --libs strut strut-pictures)
+./drawer >by-pkg-config
+cmp by-cmake by-pkg-config
+cmp shape-by-cmake.svg shape.svg
 
 "$prefix/bin/strut" --version
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null

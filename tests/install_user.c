@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A program of somebody else's: reads a scene, runs it, prints the summary. See install_test.sh. */
+/* A program of somebody else's: reads a scene, runs it, prints the summary; with DRAW, which needs one
+   library more, draws where it ended. See install_test.sh. */
 #include <strut.h>
 
 static const char scene_text[] =
@@ -8,6 +9,22 @@ static const char scene_text[] =
     "members: {spring: {kind: spring, nodes: [wall, bob], stiffness: 10, rest_length: 1}}\n"
     "solver: {step: 1 ms}\n"
     "run: {duration: 0.1 s}\n";
+
+#ifdef DRAW
+static strut_status draw(const strut_model *model, strut_error *error) {
+  strut_canvas *canvas = NULL;
+  const strut_structure_style style = {.node_names = true};
+  strut_bounds bounds = strut_bounds_none();
+  strut_status status = strut_canvas_open("shape.svg", 200, 100, "shape", &canvas, error);
+  if (status != STRUT_OK) return status;
+  strut_bounds_add(&bounds, model, model->start);
+  strut_window window = strut_window_fit(strut_canvas_box(canvas), bounds, 20);
+  strut_draw_structure(canvas, &window, model, model->start, &style);
+  status = strut_canvas_commit(canvas, error);
+  strut_canvas_free(canvas);
+  return status;
+}
+#endif
 
 int main(void) {
   strut_scene scene = {0};
@@ -22,6 +39,9 @@ int main(void) {
                                          0, STRUT_FOR_RUN, &diagnostics);
   if (status == STRUT_OK) status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, &error);
+#ifdef DRAW
+  if (status == STRUT_OK) status = draw(model, &error);
+#endif
   if (status == STRUT_OK) {
     char *text = strut_summary_json(&summary, &scene, false);
     puts(text ? text : "no memory");
