@@ -82,7 +82,9 @@ static void draw_passes(strut_canvas *canvas, const strut_axes *axes, const stru
 
 static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
                         const size_t *chosen, size_t count, double zero) {
-  double room = axes->frame.width / (double)count;
+  /* Many names stand in two lines in turn, each with the room of two. */
+  int lines = count <= FEW ? 1 : 2;
+  double room = lines * axes->frame.width / (double)count - 2;
   for (size_t k = 0; k < count; k++) {
     double left[2], right[2], energy = strut_drawn_energy(all, chosen[k]) - zero;
     char fitted[STRUT_FITTED_TEXT];
@@ -94,7 +96,7 @@ static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const stru
     strut_axes_point(axes, (double)k + LEVEL, energy, right);
     strut_draw_segment(canvas, left[0], left[1], right[0], right[1],
                        (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true});
-    strut_draw_text(canvas, 0.5 * (left[0] + right[0]), left[1] + 3,
+    strut_draw_text(canvas, 0.5 * (left[0] + right[0]), left[1] + 3 + (double)((int)k % lines) * 8,
                     strut_text_fit(canvas, all->list[chosen[k]].name, font, room, 0, fitted), font);
   }
 }
@@ -102,6 +104,10 @@ static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const stru
 strut_status strut_draw_ladder(strut_canvas *canvas, strut_box box, const strut_equilibria *all,
                                const size_t *chosen, size_t count) {
   strut_axis x = {.name = "", .unit = "", .low = -0.5, .high = (double)count - 0.5};
+  if (count > FEW) { /* names reach beyond their levels */
+    x.low -= 0.3;
+    x.high += 0.3;
+  }
   strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = NAN, .high = NAN};
   double zero = HUGE_VAL;
   int ends[2];
