@@ -12,10 +12,16 @@ typedef struct strut_integrator {
   const char *name;        /* as the language calls it */
   const char *description; /* one line for documents */
   int order;               /* of convergence on smooth scenes */
-  int evaluations;         /* of the forces per step */
+  int evaluations;         /* of the forces per step, where no event interrupts it */
+  bool events;             /* locates events: modes of contacts are frozen within a step */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
   void *(*create)(const strut_model *model, strut_state *state);
-  /** Advances the state by `count` steps of dt [s]; allocates nothing. */
+  /** Must be called whenever someone else has changed q or v; NULL where nothing depends on it. */
+  void (*restart)(const strut_model *model, strut_state *state, void *workspace, double dt);
+  /**
+   * Advances the state by `count` steps of dt [s]; allocates nothing. Within a step a method may
+   * stop wherever it likes, but it ends on the grid n dt. Trouble is left in state->trouble.
+   */
   void (*advance)(const strut_model *model, strut_state *state, void *workspace, double dt,
                   int64_t count);
 } strut_integrator;

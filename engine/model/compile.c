@@ -170,11 +170,17 @@ static void compile_contacts(strut_model *model, bool *failed) {
     at[i] = 2 * (uint32_t)contact->node;
     entry[i] = (strut_contact_entry){.node = contact->node,
                                      .stiffness = contact->stiffness,
-                                     .damping = contact->damping};
+                                     .damping = contact->damping,
+                                     .law = contact->friction.law};
+    if (scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
+      entry[i].damping = 0.0;
+      entry[i].dissipation = contact->dissipation;
+    }
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].mu_static = contact->friction.mu_static;
     entry[i].mu_kinetic = contact->friction.mu_kinetic;
     entry[i].stick_velocity = contact->friction.stick_velocity;
+    entry[i].width = contact->friction.width;
     model->plan |= STRUT_TERM_FRICTION;
   }
   *t = (strut_contact_table){(int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height,

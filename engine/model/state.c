@@ -34,7 +34,8 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   size_t both = (size_t)model->length * sizeof(double);
   size_t slots = (size_t)model->members.slots * sizeof(double);
   state->step = 0;
-  state->evaluations = 0;
+  state->evaluations = state->events = 0;
+  state->trouble = STRUT_TROUBLE_NONE;
   state->drive_time = (double)NAN;
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);

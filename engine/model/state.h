@@ -22,6 +22,13 @@ typedef enum strut_power {
   STRUT_POWER_COUNT
 } strut_power;
 
+typedef enum strut_trouble {
+  STRUT_TROUBLE_NONE,
+  STRUT_TROUBLE_STEP,   /* the step has become too small to matter */
+  STRUT_TROUBLE_NEWTON, /* an implicit step has no solution nearby */
+  STRUT_TROUBLE_RIGID   /* rigid bars cannot keep their lengths */
+} strut_trouble;
+
 typedef struct strut_state {
   /* the state proper: filled by strut_state_reset, advanced by an integrator */
   int64_t step;  /* n; time is n * dt, never a sum */
@@ -30,6 +37,8 @@ typedef struct strut_state {
   double work[STRUT_POWER_COUNT]; /* powers integrated since t = 0 [J] */
   double load_mark;               /* strut_energy_mark: where the works count from [J] */
   int64_t evaluations;            /* of the forces since the reset */
+  int64_t events;                 /* switches located in time, since the reset */
+  strut_trouble trouble;          /* why a method could not go on; it stays on the latest grid point */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */

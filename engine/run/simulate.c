@@ -75,6 +75,8 @@ static strut_status prepare(run *r) {
   if (!r->method)
     return strut_fail(r->error, STRUT_USAGE, "there is no integrator '%s'",
                       scene->experiment.integrator);
+  for (size_t i = 0; i + 1 < sizeof r->summary->method && r->method->name[i]; i++)
+    r->summary->method[i] = r->method->name[i];
   if (scene->start_equilibrium >= 0)
     return strut_fail(r->error, STRUT_USAGE,
                       "the run wants to start at the equilibrium of configuration '%s'; resolve it "
@@ -206,7 +208,8 @@ static void fill_summary(run *r, strut_status status) {
   s->status = status;
   s->steps = r->state->step;
   s->duration = (double)s->steps * r->dt;
-  s->force_evaluations = s->steps * r->method->evaluations;
+  s->force_evaluations = r->state->evaluations;
+  s->events = r->state->events;
   strut_measure_finish(r->model, &r->measure, s);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
   fill_energy(r);

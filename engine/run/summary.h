@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_RUN_SUMMARY_H
 #define STRUT_ENGINE_RUN_SUMMARY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -29,6 +30,38 @@ typedef struct strut_contact_summary {
   double max_height; /* largest height above the ground in the window [m] */
 } strut_contact_summary;
 
+/** What a run that stops when it is steady found; `kind` is STRUT_MOTION_NOT_WATCHED without it. */
+typedef enum strut_motion {
+  STRUT_MOTION_NOT_WATCHED,
+  STRUT_MOTION_PERIODIC,  /* repeats itself after `repeats` drive periods */
+  STRUT_MOTION_IRREGULAR, /* never agreed, but its mean is known within `interval` */
+  STRUT_MOTION_TRANSIENT  /* the time ran out before either could be said */
+} strut_motion;
+
+enum { STRUT_MOST_MULTIPLIERS = 8 };
+typedef struct strut_steady_summary {
+  strut_motion kind;
+  int32_t repeats;      /* n of a period-n motion; 1: every drive period alike */
+  int64_t periods;      /* drive periods simulated until that was known */
+  double interval;      /* the velocity lies within +- this [m/s] */
+  double residual;      /* change of the shape over one repetition, relative to the shape's motion */
+  bool shot;            /* finished by Newton's method; else run on, and `reason` says why */
+  int iterations;       /* of Newton's method; 0 where it was not asked for */
+  char reason[200];
+  size_t multiplier_count; /* Floquet multipliers, the largest first */
+  double multiplier[STRUT_MOST_MULTIPLIERS][2]; /* real and imaginary part */
+} strut_steady_summary;
+
+/** How a run with a wanted accuracy chose its method; `wanted` is 0 without. */
+typedef struct strut_accuracy_summary {
+  double wanted;     /* relative [1] */
+  double expected;   /* error of the velocity, relative to it or to `scale` if that is larger [1] */
+  double scale;      /* [m/s] below which errors are not relative any more */
+  bool kept;         /* expected <= wanted */
+  char why[400];     /* which method and step, and why, in one or two sentences */
+  int64_t check_evaluations; /* of the forces, spent on choosing and checking; not in the run's */
+} strut_accuracy_summary;
+
 /** Owned by whoever made it with strut_simulate; strut_summary_free releases the arrays. */
 typedef struct strut_summary {
   strut_status status;     /* STRUT_OK, STRUT_DIVERGED, STRUT_INTERRUPTED, ... */
@@ -39,6 +72,8 @@ typedef struct strut_summary {
   double duration;         /* simulated [s] */
   double settle_time;      /* simulated before t = 0 to come to rest [s]; not in duration */
   int64_t steps, force_evaluations; /* from t = 0 on */
+  int64_t events;                   /* switches located in time; 0 with a method that locates none */
+  char method[32];                  /* that ran */
   double step, step_limit; /* [s]; step_limit is INFINITY where nothing limits it */
   double wall_time;        /* seconds spent stepping; never written into a file */
   size_t node_count, contact_count;
@@ -46,6 +81,8 @@ typedef struct strut_summary {
   double *positions;       /* (node_count, 2) at the end [m] */
   strut_contact_summary *contacts; /* (contact_count) */
   strut_energy energy;
+  strut_steady_summary steady;
+  strut_accuracy_summary accuracy;
 } strut_summary;
 
 STRUT_API void strut_summary_free(strut_summary *summary);

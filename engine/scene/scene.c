@@ -12,6 +12,8 @@ void strut_scene_init(strut_scene *scene) {
   scene->start_equilibrium = -1;
   scene->search.seed = 1;
   scene->experiment.integrator = "rk4";
+  scene->experiment.tolerance = 1e-6;
+  scene->experiment.steady = (strut_steady){.tolerance = 0.005, .successive = 5};
   scene->experiment.period_signal = -1;
   scene->experiment.measure_node = -1;
   scene->experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE;

@@ -55,15 +55,27 @@ typedef struct strut_member {
   double rest_value; /* in the unit of rest_kind */
 } strut_member;
 
-typedef enum strut_friction_law { STRUT_FRICTION_NONE, STRUT_FRICTION_KARNOPP } strut_friction_law;
+typedef enum strut_friction_law {
+  STRUT_FRICTION_NONE,
+  STRUT_FRICTION_KARNOPP, /* with a stick band, equation (9) of the paper as printed */
+  STRUT_FRICTION_COULOMB, /* exact: a stuck node does not move. Needs a method with events */
+  STRUT_FRICTION_SMOOTH   /* -mu N tanh(u / width): creeps, but has no jump */
+} strut_friction_law;
 
-/** Coulomb friction with Karnopp's stick band, equation (9) of the paper. */
+/** Friction between a node and the ground, u being the speed along it. */
 typedef struct strut_friction {
   strut_friction_law law;
-  double mu_static;      /* mu_0 [1], >= 0 */
+  double mu_static;      /* mu_0 [1], >= 0; not used by the smooth law */
   double mu_kinetic;     /* mu [1], >= 0 */
   double stick_velocity; /* delta [m/s], > 0 with the Karnopp law */
+  double width;          /* of the smooth law [m/s], > 0 with it */
 } strut_friction;
+
+/** How the ground damps; d is the depth, d' its rate. */
+typedef enum strut_ground_damping {
+  STRUT_DAMPING_PRINTED,      /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
+  STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */
+} strut_ground_damping;
 
 /** The ground line y = height + x tan(slope); its surface moves along itself at belt_speed. */
 typedef struct strut_ground {
@@ -71,6 +83,7 @@ typedef struct strut_ground {
   double height;     /* [m] */
   double slope;      /* [rad], within +-pi/2 */
   double belt_speed; /* [m/s], along the slope, positive towards +x */
+  strut_ground_damping damping_law; /* of all contacts */
 } strut_ground;
 
 /** One node that may touch the ground. */
@@ -78,6 +91,7 @@ typedef struct strut_contact {
   int32_t node;
   double stiffness; /* c_g [N/m], > 0 */
   double damping;   /* k_g [N s/m], >= 0; acts while the node moves into the ground, (8) */
+  double dissipation; /* chi [s/m], >= 0; instead of k_g with the Hunt-Crossley law */
   strut_friction friction;
 } strut_contact;
 
@@ -103,6 +117,11 @@ typedef struct strut_parameter {
 } strut_parameter;
 
 typedef enum strut_mass_model { STRUT_MASS_CONSISTENT, STRUT_MASS_LUMPED } strut_mass_model;
+
+typedef enum strut_bar_model {
+  STRUT_BARS_ELASTIC,
+  STRUT_BARS_RIGID /* bars keep the length they have at the start, as loaded there */
+} strut_bar_model;
 
 /** Coming to rest before t = 0: actuators, loads with a signal and the belt are off. */
 typedef struct strut_settle {
@@ -149,10 +168,26 @@ typedef struct strut_search {
   uint64_t seed;            /* up to STRUT_MOST_SEED */
 } strut_search;
 
+/** Stopping when the motion repeats itself, in a run by periods. */
+typedef struct strut_steady {
+  bool wanted;
+  double tolerance; /* of the measured velocity, relative to it [1]; default 0.005 */
+  double floor;     /* differences below this count as none [m/s]; 0: taken from the scene */
+  int32_t successive; /* so many repetitions in a row must agree; default 5 */
+  bool shooting;    /* finish the orbit by Newton's method, and give its Floquet multipliers */
+} strut_steady;
+
 /** What to integrate, for how long, and what to measure. */
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
-  double step;            /* dt [s], > 0 */
+  double step;            /* dt [s], > 0; of an adaptive method the largest; 0: it is chosen */
+  double tolerance;       /* of an adaptive method, relative [1]; default 1e-6 */
+  double refine;          /* after a touchdown steps so much shorter [1], by methods that do; 0:
+                             taken from the scene; 1: none */
+  double refine_time;     /* for so long [s]; 0: taken from the scene */
+  double accuracy;        /* wanted of the measured quantity, relative [1]: method and step are
+                             chosen by it; 0: they are as given */
+  strut_steady steady;
   double duration;        /* [s]; 0 when given in periods */
   double periods;         /* number of periods of signal `period_signal`; 0 when in seconds */
   int32_t period_signal;  /* or -1 */
@@ -168,6 +203,7 @@ typedef struct strut_experiment {
 typedef struct strut_scene {
   const char *name, *description, *source; /* never NULL */
   strut_mass_model mass_model;
+  strut_bar_model bar_model;
   double gravity[2]; /* [m/s^2]; default 0, 0 */
   size_t node_count, member_count, contact_count, actuator_count, load_count, signal_count,
       parameter_count, configuration_count;
