@@ -71,7 +71,7 @@ strut_status bench_crawler_scene(strut_scene *scene, double f, double a, double 
   scene->contact_count = 5, scene->signal_count = scene->actuator_count = 1;
   for (int i = 0; i < 5; i++) {
     scene->contacts[i] = (strut_contact){.node = i, .stiffness = 1e5, .damping = 100};
-    scene->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, mu, mu, 1e-4};
+    scene->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, mu, mu, 1e-4, 0};
   }
   scene->signals[0] = strut_signal_default(STRUT_SINE);
   scene->signals[0].amplitude = a, scene->signals[0].frequency = f;

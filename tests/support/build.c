@@ -113,7 +113,7 @@ int32_t build_rough_contact(strut_scene *scene, int32_t node, double stiffness, 
                             double mu_static, double mu_kinetic, double stick_velocity) {
   int32_t i = build_contact(scene, node, stiffness, damping);
   scene->contacts[i].friction =
-      (strut_friction){STRUT_FRICTION_KARNOPP, mu_static, mu_kinetic, stick_velocity};
+      (strut_friction){STRUT_FRICTION_KARNOPP, mu_static, mu_kinetic, stick_velocity, 0};
   return i;
 }
 

@@ -43,7 +43,7 @@ static void fill_structure(sample *s) {
     s->contacts[i] = strut_contact_default();
     s->contacts[i].node = i + 1;
     s->contacts[i].stiffness = 100;
-    s->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, 0.2, 0.1, 1e-4};
+    s->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, 0.2, 0.1, 1e-4, 0};
   }
 }
 
