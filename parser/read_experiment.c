@@ -204,12 +204,23 @@ static void read_run(strut_reader *reader) {
   if (reader->run.broken) e->duration = e->periods = 0.0;
 }
 
+static void read_integrator(strut_reader *reader) {
+  const strut_slot *slot = strut_slot_of(&reader->solver, STRUT_KEY_SOLVER_INTEGRATOR);
+  char name[32];
+  if (slot->state != STRUT_GIVEN) return;
+  if (strut_word_at(strut_key_at(STRUT_KEY_SOLVER_INTEGRATOR)->words, slot->word, name,
+                    sizeof name))
+    reader->scene->experiment.integrator = strut_keep_text(reader, name);
+}
+
 void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   read_run(reader);
   if (strut_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
-                    &reader->solver))
+                    &reader->solver)) {
     e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
+    read_integrator(reader);
+  }
   if (!strut_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
                      &reader->output))
     return;

@@ -35,8 +35,10 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
   }
 }
 
-STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
-                             const double *restrict q, const double *restrict v, bool ledger) {
+/* All forces but the ground's. */
+STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
+                                      const double *restrict q, const double *restrict v,
+                                      bool ledger) {
   unsigned plan = model->plan;
   double *restrict force = state->force;
   state->evaluations++;
@@ -45,7 +47,12 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
-  if (plan & STRUT_TERM_CONTACT) ground_kernel(model, state, q, v, force, ledger);
+}
+
+STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
+                             const double *restrict q, const double *restrict v, bool ledger) {
+  forces_of_structure(model, state, t, q, v, ledger);
+  if (model->plan & STRUT_TERM_CONTACT) ground_kernel(model, state, q, v, state->force, ledger);
 }
 
 /* See strut_forces_acceleration. */

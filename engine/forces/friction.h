@@ -21,4 +21,12 @@ static inline double strut_friction_force(double normal, double slip, double app
   return -applied;
 }
 
+/**
+ * A regularised law without jumps: -mu N u / sqrt(u^2 + w^2), within 1 % of mu N from |u| = 7 w on.
+ * A node under load creeps. Algebraic, so that every machine gives the same bits. Returns [N].
+ */
+static inline double strut_friction_smooth(double normal, double slip, double mu, double width) {
+  return -mu * normal * slip / __builtin_sqrt(slip * slip + width * width);
+}
+
 #endif

@@ -50,10 +50,10 @@ STRUT_INLINE strut_lanes members_tension(const strut_member_table *t, const stru
   if (terms & STRUT_TERM_DAMPING)
     tension = elastic + strut_lanes_load(t->damping + j) * own_rate;
   if (terms & STRUT_TERM_SLACK) {
-    strut_lanes least = strut_lanes_load(t->slack + j);
-    strut_lane_mask taut = stretch > least;
-    tension = strut_lanes_choose(taut & (tension > least), tension, least);
-    if (ledger) elastic = strut_lanes_choose(taut, elastic, least);
+    strut_lane_mask taut = stretch > strut_lanes_load(state->taut_stretch + j);
+    strut_lane_mask pulling = taut & (tension > strut_lanes_load(state->taut_tension + j));
+    tension = strut_lanes_choose(pulling, tension, (strut_lanes){0});
+    if (ledger) elastic = strut_lanes_choose(taut, elastic, (strut_lanes){0});
   }
   if (ledger && driven) {
     strut_lanes power = -tension * strut_lanes_load(state->rest_rate + j);

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-static const strut_integrator *const table[] = {&strut_integrator_rk4};
+static const strut_integrator *const table[] = {&strut_integrator_rk4, &strut_integrator_rk4_events,
+                                               &strut_integrator_verlet_events};
 
 const strut_integrator *strut_integrator_at(size_t i) {
   return i < sizeof table / sizeof table[0] ? table[i] : NULL;

@@ -32,6 +32,7 @@ STRUT_API const strut_integrator *strut_integrator_at(size_t i);
 STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 
 /* The rows of the table. */
-extern const strut_integrator strut_integrator_rk4;
+extern const strut_integrator strut_integrator_rk4, strut_integrator_rk4_events,
+    strut_integrator_verlet_events;
 
 #endif

@@ -43,6 +43,8 @@ typedef struct strut_state {
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */
   double *rest_rate; /* (slots) [m/s] */
+  double *taut_stretch, *taut_tension; /* (slots) a member acts where both are exceeded [m], [N]:
+                        0 for cables, -INFINITY otherwise; methods with events freeze cables here */
   double drive_time; /* the time these two are for [s]; NAN before the first evaluation */
 
   /* position, velocity and time dependent: strut_forces */
@@ -51,6 +53,9 @@ typedef struct strut_state {
   double *friction;  /* (contacts) friction force along the ground [N] */
   double power[STRUT_POWER_COUNT]; /* [W]; only where the ledger is kept */
 
+  /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
+     forces follow from q, v and t alone */
+  const double *held_normal, *held_friction;
   bool ledger;       /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch;   /* (length) for the mass solve */
   strut_arena arena;

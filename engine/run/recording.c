@@ -205,6 +205,10 @@ strut_status strut_recording_sample(const strut_model *model, strut_state *state
   int64_t evaluations = state->evaluations;
   strut_forces_evaluate(model, state, t, state->q, state->v);
   state->evaluations = evaluations; /* looking on is not part of the run's cost */
+  for (int32_t i = 0; i < model->contacts.count && state->held_normal; i++) {
+    state->normal[i] = state->held_normal[i];
+    state->friction[i] = state->held_friction[i];
+  }
   strut_members_measure(model, state, r->length, r->force);
   row[0] = t;
   for (size_t k = 0; k < r->layout.channel_count; k++)

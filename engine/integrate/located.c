@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of methods with events: from grid point to grid point, stopping where modes end. */
+#include "engine/integrate/located.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A root this close to where the step begins, in grid steps, is there already. */
+static const double AT_ONCE = 1e-9;
+/* After so many switches without a step one is taken whatever the modes say. */
+enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60 };
+
+static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
+  size_t length = (size_t)model->length, members = (size_t)model->members.count;
+  if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
+  if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
+  end->a = strut_arena_allocate(arena, length, sizeof(double));
+  end->touch = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof *end->touch);
+  bool slack = model->plan & STRUT_TERM_SLACK;
+  end->tension = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  end->stretch = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  return end->q && end->v && end->a && end->touch && end->tension && end->stretch;
+}
+
+static bool make_arrays(const strut_model *model, strut_state *state, strut_located *l) {
+  strut_arena *arena = &state->arena;
+  size_t contacts = (size_t)model->contacts.count, length = (size_t)model->length;
+  l->mode = strut_arena_allocate(arena, contacts, 1);
+  l->side = strut_arena_allocate(arena, contacts, 1);
+  l->damper = strut_arena_allocate(arena, contacts, 1);
+  l->closed = strut_arena_allocate(arena, contacts, sizeof *l->closed);
+  l->stuck = strut_arena_allocate(arena, contacts, sizeof *l->stuck);
+  l->damped = strut_arena_allocate(arena, contacts, sizeof *l->damped);
+  l->response = strut_arena_allocate(arena, contacts, sizeof *l->response);
+  l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
+  l->scatter = strut_arena_allocate(arena, length, sizeof(double));
+  l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
+  bool ready = l->mode && l->side && l->damper && l->closed && l->stuck && l->damped &&
+               l->response && l->settling_time && l->scatter && l->stage;
+  for (int k = 0; k < l->stepper->stages && ready; k++)
+    ready = (l->stage[k] = strut_arena_allocate(arena, length, sizeof(double)));
+  return ready;
+}
+
+static bool list_cables(const strut_model *model, strut_state *state, strut_located *l) {
+  const strut_member_table *t = &model->members;
+  if (!(model->plan & STRUT_TERM_SLACK)) return true;
+  size_t count = (size_t)t->count;
+  l->cable = strut_arena_allocate(&state->arena, count, sizeof *l->cable);
+  l->pulling = strut_arena_allocate(&state->arena, count, 1);
+  for (int32_t j = 0; j < t->count && l->cable; j++)
+    if (t->slack[j] == 0.0) l->cable[l->cable_count++] = j;
+  return l->cable && l->pulling;
+}
+
+/* Contact forces for whoever looks on. */
+static bool make_held(const strut_model *model, strut_state *state) {
+  size_t contacts = (size_t)model->contacts.count;
+  double *normal = strut_arena_allocate(&state->arena, contacts, sizeof *normal);
+  double *friction = strut_arena_allocate(&state->arena, contacts, sizeof *friction);
+  state->held_normal = normal, state->held_friction = friction;
+  return normal && friction;
+}
+
+void *strut_located_create(const strut_model *model, strut_state *state,
+                           const strut_stepper *stepper) {
+  strut_located *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
+  if (!l) return NULL;
+  l->stepper = stepper;
+  l->now.q = state->q, l->now.v = state->v;
+  l->tolerance = model->scene->experiment.tolerance;
+  if (!make_end(model, &state->arena, &l->now, true) ||
+      !make_end(model, &state->arena, &l->next, false) || !make_arrays(model, state, l) ||
+      !list_cables(model, state, l) || !make_held(model, state) ||
+      strut_located_prepare(model, state, l))
+    return NULL;
+  return l;
+}
+
+void strut_located_restart(const strut_model *model, strut_state *state, void *workspace,
+                           double dt) {
+  strut_located *l = workspace;
+  double t = (double)state->step * dt;
+  memcpy(l->next.q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
+  memcpy(l->next.v, state->v, (size_t)model->length * sizeof(double));
+  l->refined_until = -HUGE_VAL;
+  l->h = 0.0;
+  l->fastest = 0.0;
+  strut_modes_start(model, state, l, t);
+  l->started = true;
+}
+
+static void copy(int32_t n, const double *restrict from, double *restrict to) {
+  for (int32_t i = 0; i < n; i++) to[i] = from[i];
+}
+
+/* next becomes now. */
+static void accept(const strut_model *model, strut_state *state, strut_located *l) {
+  int32_t n = model->length;
+  copy(n, l->next.q, l->now.q);
+  copy(n, l->next.v, l->now.v);
+  double *a = l->now.a;
+  l->now.a = l->next.a, l->next.a = a;
+  strut_touch *touch = l->now.touch;
+  l->now.touch = l->next.touch, l->next.touch = touch;
+  double *swap = l->now.tension;
+  l->now.tension = l->next.tension, l->next.tension = swap;
+  swap = l->now.stretch;
+  l->now.stretch = l->next.stretch, l->next.stretch = swap;
+  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) {
+    state->work[p] += l->gained[p];
+    l->now.power[p] = l->next.power[p];
+  }
+}
+
+/* Fraction of h where the value passes 0 between both ends of the bracket (Illinois). */
+typedef struct bracket {
+  double low, high, at_low, at_high;
+  int side;
+} bracket;
+
+static double guess(const bracket *b) {
+  double f = b->low + (b->high - b->low) * b->at_low / (b->at_low - b->at_high);
+  return f > b->low && f < b->high ? f : 0.5 * (b->low + b->high);
+}
+
+static void narrow(bracket *b, double fraction, double value) {
+  if (value < 0.0) {
+    b->high = fraction, b->at_high = value;
+    if (b->side < 0) b->at_low *= 0.5;
+    b->side = -1;
+  } else {
+    b->low = fraction, b->at_low = value;
+    if (b->side > 0) b->at_high *= 0.5;
+    b->side = 1;
+  }
+}
+
+/*
+ * Takes the step again up to the event. Returns the length taken; l->next is its end. Exact steppers
+ * go on until the root is known to 1e-13 of the step or the value is nothing but rounding.
+ */
+static double retake(const strut_model *model, strut_state *state, strut_located *l, double t,
+                     double h, strut_event *event) {
+  double now = strut_event_value(model, l, &l->now, event->kind, event->index);
+  double end = strut_event_value(model, l, &l->next, event->kind, event->index);
+  bracket b = {0.0, 1.0, now > 0.0 ? now : 0.0, end, 0};
+  double fraction = event->fraction, scale = fabs(now) + fabs(end);
+  for (int k = 0; k < MOST_TRIALS; k++) {
+    if (fraction * h <= 0.0) return 0.0;
+    l->stepper->trial(model, state, l, t, fraction * h);
+    if (!l->stepper->exact) return fraction * h;
+    strut_event other = strut_event_first(model, state, l, fraction * h);
+    if (other.kind && (other.kind != event->kind || other.index != event->index)) {
+      double value = strut_event_value(model, l, &l->next, other.kind, other.index);
+      double before = strut_event_value(model, l, &l->now, other.kind, other.index);
+      *event = other; /* another one comes first */
+      b = (bracket){0.0, fraction, before > 0.0 ? before : 0.0, value, 0};
+      scale = fabs(before) + fabs(value);
+      fraction *= other.fraction;
+      continue;
+    }
+    double value = strut_event_value(model, l, &l->next, event->kind, event->index);
+    if (fabs(value) <= 4e-15 * scale) return fraction * h;
+    narrow(&b, fraction, value);
+    if (b.high - b.low <= 1e-13) return fraction * h;
+    fraction = guess(&b);
+  }
+  return fraction * h;
+}
+
+/* Size of the next step within what is left to the grid point. */
+static double step_size(const strut_located *l, double t, double rest, double dt) {
+  double h = rest;
+  if (l->stepper->adaptive) {
+    h = l->h > 0.0 ? l->h : dt * 1e-3;
+    if (h < rest && h > 0.5 * rest) h = 0.5 * rest;
+  } else if (l->refine > 1.0 && t < l->refined_until) {
+    h = dt / l->refine;
+  }
+  return h > rest * (1.0 - 1e-9) ? rest : h;
+}
+
+/* New step after an error of l->error in a method of fifth order. */
+static void control(strut_located *l, double h, bool whole) {
+  double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
+  factor = factor < 0.2 ? 0.2 : factor > 5.0 ? 5.0 : factor;
+  if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
+}
+
+/* One trial over at most h; handles rejection and events. Returns the time gone, 0 if none. */
+static double step(const strut_model *model, strut_state *state, strut_located *l, double t,
+                   double h, double dt, int *at_once) {
+  strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
+  bool force = *at_once >= MOST_AT_ONCE;
+  double whole = h;
+  if (l->stepper->predict && !force) {
+    event = strut_event_predict(model, state, l, h);
+    if (event.kind) h *= event.fraction;
+  }
+  if (h > AT_ONCE * dt) {
+    l->stepper->trial(model, state, l, t, h);
+    if (l->stepper->adaptive) {
+      double error = l->error;
+      control(l, h, h < l->h);
+      if (!(error <= 1.0)) {
+        if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_TROUBLE_STEP;
+        return 0.0;
+      }
+    }
+    strut_event inside = force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0}
+                               : strut_event_first(model, state, l, h);
+    if (inside.kind) {
+      event = inside;
+      double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
+                         ? 0.0
+                         : retake(model, state, l, t, h, &event);
+      h = taken > AT_ONCE * dt ? taken : 0.0;
+    }
+  } else if (event.kind) {
+    h = 0.0;
+  }
+  if (h > 0.0) {
+    accept(model, state, l);
+    *at_once = 0;
+  } else {
+    ++*at_once;
+  }
+  if (event.kind) {
+    strut_event_apply(model, state, l, event, t + h);
+    state->events++;
+  } else if (force) {
+    strut_modes_start(model, state, l, t + h);
+  } else if (strut_modes_after_step(model, l)) {
+    strut_located_derive(model, state, l, t + h);
+  }
+  return h == whole ? whole : h;
+}
+
+static void grid_step(const strut_model *model, strut_state *state, strut_located *l, double dt) {
+  double begin = (double)state->step * dt, done = 0.0;
+  int at_once = 0;
+  for (;;) {
+    double rest = dt - done;
+    if (rest <= 1e-12 * dt || state->trouble) break;
+    double h = step_size(l, begin + done, rest, dt);
+    double gone = step(model, state, l, begin + done, h, dt, &at_once);
+    done = gone == rest ? dt : done + gone;
+  }
+  state->step++;
+}
+
+static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
+  double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    bool open = l->mode[i] == STRUT_MODE_OPEN;
+    normal[i] = open ? 0.0 : l->now.touch[i].normal;
+    friction[i] = open ? 0.0 : l->now.touch[i].friction;
+  }
+}
+
+void strut_located_advance(const strut_model *model, strut_state *state, void *workspace,
+                           double dt, int64_t count) {
+  strut_located *l = workspace;
+  if (!l->started) strut_located_restart(model, state, workspace, dt);
+  for (int64_t end = state->step + count; state->step < end && !state->trouble;)
+    grid_step(model, state, l, dt);
+  show_contacts(model, state, l);
+}

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finding what ends a mode within a step. See located.h. */
+#include <math.h>
+
+#include "engine/integrate/located_kernel.h"
+
+/* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
+static const double FAINT = 1e-12;
+
+static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
+  return q[c->at[i]] * c->normal[0] + (q[c->at[i] + 1] - c->height) * c->normal[1];
+}
+
+/* Edge of the band, or 0 where sticking is exact. */
+static double edge(const strut_contact_entry *e) {
+  return e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+}
+
+static double band_force(const strut_contact_entry *e, const strut_touch *o) {
+  double most = e->mu_static * o->normal;
+  if (fabs(o->applied) < most) return -o->applied;
+  return -e->mu_kinetic * o->normal * strut_sign(o->applied);
+}
+
+double strut_event_value(const strut_model *model, const strut_located *l,
+                         const strut_step_end *end, strut_event_kind kind, int32_t i) {
+  if (kind == STRUT_EVENT_CABLE) {
+    bool loose = end->stretch[i] < end->tension[i];
+    if (l->pulling[i]) return end->tension[i];
+    return loose ? -end->stretch[i] : -end->tension[i];
+  }
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_touch *o = &end->touch[i];
+  double s = l->side[i];
+  switch (kind) {
+    case STRUT_EVENT_TOUCH: return gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_OPEN: return -gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_SLOW: return s * o->slip - edge(e);
+    case STRUT_EVENT_LEAVE: return edge(e) - fabs(o->slip);
+    case STRUT_EVENT_RELEASE: return e->mu_static * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->mu_kinetic * o->normal;
+    case STRUT_EVENT_CREEP_IN: return s * (band_force(e, o) - o->friction);
+    case STRUT_EVENT_PUSH: {
+      double room = e->mu_static * o->normal - fabs(o->applied);
+      return l->mode[i] == STRUT_MODE_BAND ? room : -room;
+    }
+    case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
+    default: return 1.0;
+  }
+}
+
+/* Rate of the value where it is known; false where a secant must do. */
+static bool value_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
+                       int32_t i, double *rate) {
+  const strut_touch *o = &end->touch[i];
+  switch (kind) {
+    case STRUT_EVENT_OPEN: *rate = -o->into; return true;
+    case STRUT_EVENT_SLOW: *rate = l->side[i] * o->slip_rate; return true;
+    case STRUT_EVENT_LEAVE: *rate = o->slip < 0.0 ? o->slip_rate : -o->slip_rate; return true;
+    case STRUT_EVENT_DAMPER: *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate; return true;
+    default: return false;
+  }
+}
+
+/* First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
+static double cubic_root(double g0, double d0, double g1, double d1) {
+  double low = 0.0, high = 1.0, x = g0 / (g0 - g1);
+  for (int k = 0; k < 60 && high - low > 1e-15; k++) {
+    double r = 1.0 - x;
+    double value = g0 * (1.0 + 2.0 * x) * r * r + d0 * x * r * r + g1 * x * x * (3.0 - 2.0 * x) -
+                   d1 * x * x * r;
+    double slope = 6.0 * x * r * (g1 - g0) + d0 * r * (r - 2.0 * x) + d1 * x * (x - 2.0 * r);
+    *(value > 0.0 ? &low : &high) = x;
+    double next = x - value / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (fabs(next - x) <= 1e-16) break;
+    x = next;
+  }
+  return x;
+}
+
+/* Where between now and next the event's value passes 0. */
+static double fraction_of(const strut_model *model, const strut_located *l, strut_event_kind kind,
+                          int32_t i, double h) {
+  double g0 = strut_event_value(model, l, &l->now, kind, i), d0, d1;
+  double g1 = strut_event_value(model, l, &l->next, kind, i);
+  if (!(g0 > 0.0)) return 0.0;
+  if (kind == STRUT_EVENT_TOUCH) {
+    const strut_contact_table *c = &model->contacts;
+    strut_touch a, b;
+    located_place(c, i, l->now.q, l->now.v, &a);
+    located_place(c, i, l->next.q, l->next.v, &b);
+    return cubic_root(g0, h * a.into, g1, h * b.into);
+  }
+  if (kind != STRUT_EVENT_CABLE && value_rate(l, &l->now, kind, i, &d0) &&
+      value_rate(l, &l->next, kind, i, &d1))
+    return cubic_root(g0, h * d0, g1, h * d1);
+  return g0 / (g0 - g1);
+}
+
+/* What a closed contact's state at the end of a step contradicts of its mode. */
+static strut_event_kind contradiction(const strut_contact_entry *e, const strut_touch *o,
+                                      uint8_t mode, double s) {
+  switch (mode) {
+    case STRUT_MODE_SLIP: return s * o->slip < edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
+    case STRUT_MODE_STICK:
+      return fabs(o->friction) > e->mu_static * o->normal && o->gap < 0.0 ? STRUT_EVENT_RELEASE
+                                                                         : STRUT_EVENT_NONE;
+    case STRUT_MODE_CREEP:
+      if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
+      return s * (band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
+    case STRUT_MODE_BAND:
+    case STRUT_MODE_PUSH:
+      if (fabs(o->slip) > edge(e)) return STRUT_EVENT_LEAVE;
+      if (e->mu_static == e->mu_kinetic) return STRUT_EVENT_NONE;
+      return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
+                 ? STRUT_EVENT_NONE
+                 : STRUT_EVENT_PUSH;
+    default: return STRUT_EVENT_NONE;
+  }
+}
+
+static void keep_first(const strut_model *model, const strut_located *l, strut_event_kind kind,
+                       int32_t i, double h, strut_event *first) {
+  double fraction = fraction_of(model, l, kind, i, h);
+  if (first->kind && fraction >= first->fraction) return;
+  *first = (strut_event){kind, i, fraction};
+}
+
+/* Tensions, not clamped, and stretches of the cables at an end; the rest lengths are its own. */
+static void measure_cables(const strut_model *model, const strut_state *state,
+                           const strut_located *l, const strut_step_end *end) {
+  const strut_member_table *t = &model->members;
+  for (int32_t k = 0; k < l->cable_count; k++) {
+    int32_t j = l->cable[k];
+    const double *a = end->q + t->from[j], *b = end->q + t->to[j];
+    const double *va = end->v + t->from[j], *vb = end->v + t->to[j];
+    double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
+    double inverse = length > 0.0 ? 1.0 / length : 0.0;
+    double rate = ((vb[0] - va[0]) * dx + (vb[1] - va[1]) * dy) * inverse;
+    end->stretch[k] = length - state->rest[j];
+    end->tension[k] = t->stiffness[j] * end->stretch[k] +
+                      t->damping[j] * (rate - state->rest_rate[j]);
+  }
+}
+
+void strut_event_measure(const strut_model *model, const strut_state *state,
+                         const strut_located *l, const strut_step_end *end) {
+  if (l->cable_count) measure_cables(model, state, l, end);
+}
+
+strut_event strut_event_first(const strut_model *model, const strut_state *state,
+                              const strut_located *l, double h) {
+  const strut_contact_table *c = &model->contacts;
+  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  int32_t k = 0;
+  for (int32_t i = 0; i < c->count; i++) {
+    if (k < l->closed_count && l->closed[k] == i) {
+      const strut_touch *o = &l->next.touch[i];
+      strut_event_kind kind = contradiction(&c->entry[i], o, l->mode[i], l->side[i]);
+      if (kind) keep_first(model, l, kind, i, h, &first);
+      k++;
+      if (!l->stepper->exact) continue;
+      if (o->gap > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, &first);
+      if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
+          c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
+        keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
+    } else if (gap_of(c, i, l->next.q) < 0.0) {
+      keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
+    }
+  }
+  strut_event_measure(model, state, l, &l->next);
+  for (int32_t j = 0; j < l->cable_count; j++)
+    if (strut_event_value(model, l, &l->next, STRUT_EVENT_CABLE, j) < 0.0)
+      keep_first(model, l, STRUT_EVENT_CABLE, j, h, &first);
+  return first;
+}
+
+/* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
+static double parabola_root(double gap, double speed, double bend) {
+  if (!(gap > 0.0)) return speed < 0.0 || (speed == 0.0 && bend < 0.0) ? 0.0 : 2.0;
+  double inside = speed * speed - 4.0 * bend * gap;
+  if (!(inside >= 0.0)) return 2.0;
+  double below = -speed + sqrt(inside);
+  return below > 2.0 * gap ? 2.0 * gap / below : below == 2.0 * gap ? 1.0 : 2.0;
+}
+
+strut_event strut_event_predict(const strut_model *model, const strut_state *state,
+                                const strut_located *l, double h) {
+  const strut_contact_table *c = &model->contacts;
+  const double *q = state->q, *v = state->v, *a = l->now.a, *n = c->normal;
+  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  for (int32_t i = 0, k = 0; i < c->count; i++) {
+    if (k < l->closed_count && l->closed[k] == i) {
+      k++;
+      continue;
+    }
+    uint32_t at = c->at[i];
+    double gap = gap_of(c, i, q);
+    double speed = h * (v[at] * n[0] + v[at + 1] * n[1]);
+    double bend = 0.5 * h * h * (a[at] * n[0] + a[at + 1] * n[1]);
+    if (gap + (speed < 0.0 ? speed : 0.0) + (bend < 0.0 ? bend : 0.0) >= 0.0) continue;
+    double fraction = parabola_root(gap, speed, bend);
+    if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))
+      first = (strut_event){STRUT_EVENT_TOUCH, i, fraction};
+  }
+  return first;
+}
