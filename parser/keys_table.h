@@ -106,7 +106,11 @@
   X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, NOT_NEGATIVE, false, 0, "until little can be missing", "", "Random starts for each list of supports.") \
   X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, NOT_NEGATIVE, false, 0, "1", "", "Of the random starts; the same seed gives the same answer.") \
   X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4|euler|verlet|midpoint|rk4-events|euler-events|verlet-events|adaptive", "The method.") \
-  X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step. A run needs it.") \
+  X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step; of `adaptive` the longest. A run needs it, or `accuracy`.") \
+  X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, false, 0, "1e-6", "", "Of `adaptive`: local error of a step, relative.") \
+  X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, false, 0, "from the scene", "", "Of methods with events: so many times shorter steps after a touchdown; 1 for none.") \
+  X(SOLVER, REFINE_TIME, "refine_time", NUMBER, TIME, ABOVE_ZERO, false, 0, "from the scene", "", "For so long.") \
+  X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, false, 0, "", "", "Wanted of the measured quantity, relative, such as 1 %: method and step are chosen by it.") \
   X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, false, 3, "", "", "Length of the run.") \
   X(RUN, PERIODS, "periods", NUMBER, NONE, ABOVE_ZERO, false, 3, "", "", "Length of the run in periods; needs `of`.") \
   X(RUN, OF, "of", NAME, NONE, ANY, false, 0, "", "", "The actuator, load or signal whose periods count.") \

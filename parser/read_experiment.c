@@ -219,6 +219,10 @@ void strut_read_experiment(strut_reader *reader) {
   if (strut_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
                     &reader->solver)) {
     e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
+    e->tolerance = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_TOLERANCE, e->tolerance);
+    e->refine = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE, 0.0);
+    e->refine_time = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE_TIME, 0.0);
+    e->accuracy = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_ACCURACY, 0.0);
     read_integrator(reader);
   }
   if (!strut_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",

@@ -200,6 +200,10 @@ void strut_put_experiment(strut_writer *writer) {
   strut_put_key(writer, &first, "integrator");
   strut_put_name(writer, e->integrator);
   strut_put_value(writer, &first, "step", e->step);
+  if (e->tolerance != 1e-6) strut_put_value(writer, &first, "tolerance", e->tolerance);
+  strut_put_value(writer, &first, "refine", e->refine);
+  strut_put_value(writer, &first, "refine_time", e->refine_time);
+  strut_put_value(writer, &first, "accuracy", e->accuracy);
   strut_put(writer, "}\n");
   put_run(writer);
   strut_put(writer, "output: {");

@@ -33,6 +33,6 @@ STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 
 /* The rows of the table. */
 extern const strut_integrator strut_integrator_rk4, strut_integrator_rk4_events,
-    strut_integrator_verlet_events;
+    strut_integrator_verlet_events, strut_integrator_euler_events, strut_integrator_adaptive;
 
 #endif

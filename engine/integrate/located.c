@@ -15,11 +15,12 @@ static bool make_end(const strut_model *model, strut_arena *arena, strut_step_en
   if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
   if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
   end->a = strut_arena_allocate(arena, length, sizeof(double));
+  end->structure = strut_arena_allocate(arena, length, sizeof(double));
   end->touch = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof *end->touch);
   bool slack = model->plan & STRUT_TERM_SLACK;
   end->tension = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
   end->stretch = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
-  return end->q && end->v && end->a && end->touch && end->tension && end->stretch;
+  return end->q && end->v && end->a && end->structure && end->touch && end->tension && end->stretch;
 }
 
 static bool make_arrays(const strut_model *model, strut_state *state, strut_located *l) {
@@ -94,79 +95,75 @@ static void copy(int32_t n, const double *restrict from, double *restrict to) {
   for (int32_t i = 0; i < n; i++) to[i] = from[i];
 }
 
-/* next becomes now. */
+/* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
 static void accept(const strut_model *model, strut_state *state, strut_located *l) {
-  int32_t n = model->length;
-  copy(n, l->next.q, l->now.q);
-  copy(n, l->next.v, l->now.v);
-  double *a = l->now.a;
-  l->now.a = l->next.a, l->next.a = a;
-  strut_touch *touch = l->now.touch;
-  l->now.touch = l->next.touch, l->next.touch = touch;
-  double *swap = l->now.tension;
-  l->now.tension = l->next.tension, l->next.tension = swap;
-  swap = l->now.stretch;
-  l->now.stretch = l->next.stretch, l->next.stretch = swap;
-  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) {
-    state->work[p] += l->gained[p];
-    l->now.power[p] = l->next.power[p];
-  }
+  strut_step_end next = l->next, now = l->now;
+  copy(model->length, next.q, now.q);
+  copy(model->length, next.v, now.v);
+  l->now = next;
+  l->now.q = now.q, l->now.v = now.v;
+  l->next = now;
+  l->next.q = next.q, l->next.v = next.v;
+  l->fresh = true;
+  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) state->work[p] += l->gained[p];
 }
 
-/* Fraction of h where the value passes 0 between both ends of the bracket (Illinois). */
-typedef struct bracket {
-  double low, high, at_low, at_high;
-  int side;
-} bracket;
+/* Where a value passes 0: between low and high, and the latest two points of the search. */
+typedef struct search {
+  double low, high;
+  double x, value, last_x, last_value;
+} search;
 
-static double guess(const bracket *b) {
-  double f = b->low + (b->high - b->low) * b->at_low / (b->at_low - b->at_high);
-  return f > b->low && f < b->high ? f : 0.5 * (b->low + b->high);
+static search begin_search(double before, double fraction, double after, double first) {
+  return (search){.high = fraction, .x = first, .last_x = before > 0.0 ? 0.0 : fraction,
+                  .last_value = before > 0.0 ? before : after};
 }
 
-static void narrow(bracket *b, double fraction, double value) {
-  if (value < 0.0) {
-    b->high = fraction, b->at_high = value;
-    if (b->side < 0) b->at_low *= 0.5;
-    b->side = -1;
-  } else {
-    b->low = fraction, b->at_low = value;
-    if (b->side > 0) b->at_high *= 0.5;
-    b->side = 1;
-  }
+/* Newton's step where the slope is known, else the secant's; halves where they leave the bracket. */
+static double next_point(search *s, double slope) {
+  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
+  if (slope == 0.0) slope = (s->value - s->last_value) / (s->x - s->last_x);
+  double next = s->x - s->value / slope;
+  s->last_x = s->x, s->last_value = s->value;
+  return next > s->low && next < s->high ? next : 0.5 * (s->low + s->high);
+}
+
+/* The latest correction was small and did not make the value smaller: the rest is rounding. */
+static bool stagnant(const search *s) {
+  return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
 }
 
 /*
  * Takes the step again up to the event. Returns the length taken; l->next is its end. Exact steppers
- * go on until the root is known to 1e-13 of the step or the value is nothing but rounding.
+ * go on until the root is known to 1e-13 of the step, or to rounding.
  */
 static double retake(const strut_model *model, strut_state *state, strut_located *l, double t,
                      double h, strut_event *event) {
-  double now = strut_event_value(model, l, &l->now, event->kind, event->index);
-  double end = strut_event_value(model, l, &l->next, event->kind, event->index);
-  bracket b = {0.0, 1.0, now > 0.0 ? now : 0.0, end, 0};
-  double fraction = event->fraction, scale = fabs(now) + fabs(end);
-  for (int k = 0; k < MOST_TRIALS; k++) {
-    if (fraction * h <= 0.0) return 0.0;
-    l->stepper->trial(model, state, l, t, fraction * h);
-    if (!l->stepper->exact) return fraction * h;
-    strut_event other = strut_event_first(model, state, l, fraction * h);
-    if (other.kind && (other.kind != event->kind || other.index != event->index)) {
-      double value = strut_event_value(model, l, &l->next, other.kind, other.index);
-      double before = strut_event_value(model, l, &l->now, other.kind, other.index);
-      *event = other; /* another one comes first */
-      b = (bracket){0.0, fraction, before > 0.0 ? before : 0.0, value, 0};
-      scale = fabs(before) + fabs(value);
-      fraction *= other.fraction;
+  double before = strut_event_value(model, l, &l->now, event->kind, event->index);
+  double after = strut_event_value(model, l, &l->next, event->kind, event->index);
+  search s = begin_search(before, 1.0, after, event->fraction);
+  for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
+    l->stepper->trial(model, state, l, t, s.x * h);
+    if (!l->stepper->exact) break;
+    strut_event other = strut_event_first(model, state, l, s.x * h);
+    bool same = other.kind == event->kind && other.index == event->index;
+    if (other.kind && !same) { /* another one comes first */
+      *event = other;
+      before = strut_event_value(model, l, &l->now, other.kind, other.index);
+      after = strut_event_value(model, l, &l->next, other.kind, other.index);
+      s = begin_search(before, s.x, after, s.x * other.fraction);
       continue;
     }
-    double value = strut_event_value(model, l, &l->next, event->kind, event->index);
-    if (fabs(value) <= 4e-15 * scale) return fraction * h;
-    narrow(&b, fraction, value);
-    if (b.high - b.low <= 1e-13) return fraction * h;
-    fraction = guess(&b);
+    s.value = strut_event_value(model, l, &l->next, event->kind, event->index);
+    double rate = 0.0;
+    if (strut_event_rate(l, &l->next, event->kind, event->index, &rate)) rate *= h;
+    if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
+    if (s.value == 0.0 || (k > 0 && stagnant(&s))) break;
+    double x = next_point(&s, rate);
+    if (s.high - s.low <= 1e-13) break;
+    s.x = x;
   }
-  return fraction * h;
+  return s.x * h;
 }
 
 /* Size of the next step within what is left to the grid point. */

@@ -47,6 +47,8 @@ typedef struct strut_step_end {
   strut_touch *touch; /* (contacts) of those that are closed; of open ones the gap alone */
   double *tension, *stretch; /* (cables) not clamped [N], [m] */
   double power[STRUT_POWER_COUNT]; /* [W]; only with the ledger */
+  /* all forces but the ground's, and their powers: a change of modes needs no others anew */
+  double *structure, structure_power[STRUT_POWER_COUNT];
 } strut_step_end;
 
 typedef struct strut_located strut_located;
@@ -84,7 +86,7 @@ struct strut_located {
   double *settling_time;    /* (contacts) relaxation time of a closed contact [s] */
   double tolerance, h, error, fastest; /* adaptive: relative, [s], [1], [m/s] */
   int passes;               /* sweeps over normal and tangent where they are coupled by M */
-  bool fresh;               /* now.a holds for the present modes */
+  bool fresh;               /* now.structure holds for now */
   bool started;
 };
 
@@ -110,7 +112,7 @@ void strut_located_hold(const strut_model *model, strut_located *l, const double
 /** a += response of contact i to the force (normal, tangential) on its node. */
 void strut_located_respond(const strut_model *model, const strut_located *l, int32_t i,
                            double normal, double tangential, double *a);
-/** Fresh acceleration, contact forces and powers of l->now at time t, in the present modes. */
+/** Acceleration, contact forces and powers of l->now at time t, in the present modes. */
 void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
                           double t);
 
@@ -144,6 +146,9 @@ double strut_event_value(const strut_model *model, const strut_located *l,
 /** Cables' tensions and stretches at an end that has just been evaluated. */
 void strut_event_measure(const strut_model *model, const strut_state *state,
                          const strut_located *l, const strut_step_end *end);
+/** Time derivative of that value where it is known; false where a secant must do. */
+bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
+                      int32_t index, double *rate);
 /** Before a step of a stepper that predicts: the first touchdown. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_located *l, double h);

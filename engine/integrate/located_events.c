@@ -49,9 +49,9 @@ double strut_event_value(const strut_model *model, const strut_located *l,
   }
 }
 
-/* Rate of the value where it is known; false where a secant must do. */
-static bool value_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
-                       int32_t i, double *rate) {
+bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
+                      int32_t i, double *rate) {
+  if (kind == STRUT_EVENT_CABLE) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
@@ -92,8 +92,8 @@ static double fraction_of(const strut_model *model, const strut_located *l, stru
     located_place(c, i, l->next.q, l->next.v, &b);
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
-  if (kind != STRUT_EVENT_CABLE && value_rate(l, &l->now, kind, i, &d0) &&
-      value_rate(l, &l->next, kind, i, &d1))
+  if (kind != STRUT_EVENT_CABLE && strut_event_rate(l, &l->now, kind, i, &d0) &&
+      strut_event_rate(l, &l->next, kind, i, &d1))
     return cubic_root(g0, h * d0, g1, h * d1);
   return g0 / (g0 - g1);
 }

@@ -97,16 +97,42 @@ STRUT_INLINE void located_powers(const strut_model *model, strut_state *state,
   }
 }
 
-/* Acceleration with explicit contact dampers; contact forces into end->touch, powers into state. */
+/* Notes the forces of the structure at an end of a step. */
+STRUT_INLINE void located_keep(const strut_model *model, const strut_state *state,
+                               strut_step_end *end, bool ledger) {
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES)
+    strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->force + i));
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+    end->structure_power[p] = state->power[p];
+}
+
+/* From the forces of the structure in state->force to the acceleration. */
+STRUT_INLINE void located_close(const strut_model *model, strut_state *state, strut_located *l,
+                                const double *restrict q, const double *restrict v,
+                                double *restrict a, strut_step_end *end, bool ledger) {
+  if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
+  mass_kernel(model, state->force, a, state->scratch);
+  if (l->stuck_count) strut_located_hold(model, l, v, a, end);
+  if (ledger && l->closed_count) located_powers(model, state, l, end->touch);
+}
+
+/* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
 STRUT_INLINE void located_acceleration(const strut_model *model, strut_state *state,
                                        strut_located *l, double t, const double *restrict q,
                                        const double *restrict v, double *restrict a,
                                        strut_step_end *end, bool ledger) {
   forces_of_structure(model, state, t, q, v, ledger);
-  if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
-  mass_kernel(model, state->force, a, state->scratch);
-  if (l->stuck_count) strut_located_hold(model, l, v, a, end);
-  if (ledger && l->closed_count) located_powers(model, state, l, end->touch);
+  located_close(model, state, l, q, v, a, end, ledger);
+}
+
+/* The same at the end of a step, with all that belongs to that end. */
+STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, strut_located *l,
+                                 double t, strut_step_end *end, bool ledger) {
+  forces_of_structure(model, state, t, end->q, end->v, ledger);
+  located_keep(model, state, end, ledger);
+  located_close(model, state, l, end->q, end->v, end->a, end, ledger);
+  located_rates(model, l, end->a, end->touch);
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
 }
 
 #endif

@@ -9,17 +9,22 @@ static const double TIE = 1e-9;
 
 STRUT_CLONES
 static void derive(const strut_model *model, strut_state *state, strut_located *l, double t) {
-  if (state->ledger)
-    located_acceleration(model, state, l, t, l->now.q, l->now.v, l->now.a, &l->now, true);
-  else
-    located_acceleration(model, state, l, t, l->now.q, l->now.v, l->now.a, &l->now, false);
-  located_rates(model, l, l->now.a, l->now.touch);
+  strut_step_end *now = &l->now;
+  if (!l->fresh) {
+    located_finish(model, state, l, t, now, state->ledger);
+  } else {
+    for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
+    located_close(model, state, l, now->q, now->v, now->a, now, state->ledger);
+    located_rates(model, l, now->a, now->touch);
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];
+  }
+  l->fresh = true;
 }
 
 void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
                           double t) {
   derive(model, state, l, t);
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) l->now.power[p] = state->power[p];
   strut_event_measure(model, state, l, &l->now);
 }
 
@@ -43,6 +48,7 @@ static void cable_mode(const strut_model *model, strut_state *state, strut_locat
   int32_t j = l->cable[k];
   (void)model;
   l->pulling[k] = pulls;
+  l->fresh = false;
   state->taut_stretch[j] = pulls ? -HUGE_VAL : 0.0;
   state->taut_tension[j] = pulls ? -HUGE_VAL : HUGE_VAL;
 }
@@ -99,6 +105,7 @@ static void derive_consistently(const strut_model *model, strut_state *state, st
 }
 
 void strut_modes_start(const strut_model *model, strut_state *state, strut_located *l, double t) {
+  l->fresh = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
     located_place(&model->contacts, i, l->now.q, l->now.v, &o);

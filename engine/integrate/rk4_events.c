@@ -49,9 +49,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   }
   combine(n, h, l->now.q, v[0], v[1], v[2], v[3], l->next.q);
   combine(n, h, l->now.v, a[0], a[1], a[2], a[3], l->next.v);
-  located_acceleration(model, state, l, t + h, l->next.q, l->next.v, l->next.a, &l->next, ledger);
-  located_rates(model, l, l->next.a, l->next.touch);
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->next.power[p] = state->power[p];
+  located_finish(model, state, l, t + h, &l->next, ledger);
 }
 
 STRUT_CLONES

@@ -103,6 +103,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   double *predicted = l->stage[PREDICTED], *a1 = l->next.a;
   predict(n, h, l->now.q, l->now.v, l->now.a, l->next.q, predicted);
   forces_of_structure(model, state, t + h, l->next.q, predicted, ledger);
+  located_keep(model, state, &l->next, ledger);
   if (l->closed_count)
     located_ground(model, l, l->next.q, predicted, state->force, false, l->next.touch);
   mass_kernel(model, state->force, a1, state->scratch);
