@@ -51,7 +51,8 @@ static void add_contacts(const strut_model *model, const double *q, strut_closed
         if (row[a] < 0 || row[b] < 0) continue;
         double nn = c->normal[a] * c->normal[b];
         strut_triplets_add(stiffness, row[a], row[b], c->entry[i].stiffness * nn);
-        strut_triplets_add(damping, row[a], row[b], c->entry[i].damping * nn);
+        if (closed != STRUT_CLOSED_UNDAMPED)
+          strut_triplets_add(damping, row[a], row[b], c->entry[i].damping * nn);
       }
   }
 }

@@ -19,7 +19,8 @@ typedef struct strut_tangent {
 typedef enum strut_closed {
   STRUT_CLOSED_NONE,
   STRUT_CLOSED_TOUCHING, /* those below the ground in q */
-  STRUT_CLOSED_ALL       /* every node that may touch: the stiffest case */
+  STRUT_CLOSED_ALL,      /* every node that may touch: the stiffest case */
+  STRUT_CLOSED_UNDAMPED  /* the same without the ground's dampers */
 } strut_closed;
 
 /**

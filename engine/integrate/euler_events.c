@@ -37,6 +37,7 @@ const strut_integrator strut_integrator_euler_events = {
     .description = "semi-implicit Euler from event to event, fixed step",
     .order = 1,
     .evaluations = 1,
+    .region = STRUT_REGION_EULER,
     .events = true,
     .create = create,
     .restart = strut_located_restart,

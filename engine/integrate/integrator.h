@@ -7,12 +7,23 @@
 
 #include "engine/forces/forces.h"
 
+/** Which steps are stable, by the eigenvalues of small motions: see stability.h. */
+typedef enum strut_region {
+  STRUT_REGION_ALL, /* every step, or one that the method chooses */
+  STRUT_REGION_RK4,
+  STRUT_REGION_VERLET,
+  STRUT_REGION_EULER,
+  STRUT_REGIONS
+} strut_region;
+
 /** A method. Its workspace belongs to one state, whose arena holds it: freeing the state frees it. */
 typedef struct strut_integrator {
   const char *name;        /* as the language calls it */
   const char *description; /* one line for documents */
   int order;               /* of convergence on smooth scenes */
   int evaluations;         /* of the forces per step, where no event interrupts it */
+  strut_region region;
+  bool implicit_damper;    /* the ground's dampers do not limit the step */
   bool events;             /* locates events: modes of contacts are frozen within a step */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
   void *(*create)(const strut_model *model, strut_state *state);

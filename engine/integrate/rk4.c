@@ -93,6 +93,7 @@ const strut_integrator strut_integrator_rk4 = {
     .description = "classical Runge-Kutta, fixed step, forces at every stage",
     .order = 4,
     .evaluations = 4,
+    .region = STRUT_REGION_RK4,
     .create = rk4_create,
     .advance = rk4_advance,
 };

@@ -74,6 +74,7 @@ const strut_integrator strut_integrator_rk4_events = {
     .description = "classical Runge-Kutta from event to event, fixed step",
     .order = 4,
     .evaluations = 4,
+    .region = STRUT_REGION_RK4,
     .events = true,
     .create = create,
     .restart = strut_located_restart,

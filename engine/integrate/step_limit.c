@@ -7,41 +7,6 @@
 
 #include "engine/forces/stiffness.h"
 
-/* |R(z)| of RK4 for z = x + i y, R(z) = 1 + z (1 + z/2 (1 + z/3 (1 + z/4))). */
-static double growth(double x, double y) {
-  double re = 1.0, im = 0.0;
-  for (int k = 4; k >= 1; k--) {
-    double next = 1.0 + (re * x - im * y) / k;
-    im = (re * y + im * x) / k;
-    re = next;
-  }
-  return hypot(re, im);
-}
-
-double strut_rk4_limit(double re, double im) {
-  double size = hypot(re, im);
-  if (!(size > 0)) return HUGE_VAL;
-  if (re > 0) re = 0, size = fabs(im); /* a motion that grows by itself says nothing of the step */
-  if (!(size > 0)) return HUGE_VAL;
-  double x = re / size, y = im / size;
-  double inside = 0.0, outside = 3.5; /* RK4's region lies within |z| < 3.5 */
-  for (double r = 0.05; r < 3.5; r += 0.05) {
-    if (growth(r * x, r * y) > 1.0 + 1e-12) {
-      outside = r;
-      break;
-    }
-    inside = r;
-  }
-  for (int i = 0; i < 60; i++) {
-    double middle = 0.5 * (inside + outside);
-    if (growth(middle * x, middle * y) > 1.0 + 1e-12)
-      outside = middle;
-    else
-      inside = middle;
-  }
-  return inside / size;
-}
-
 /* A free-coordinate vector to node arrays, through M^-1, and back. */
 static void divide_by_mass(const strut_model *model, const strut_tangent *tangent, double *x,
                            double *work) {
@@ -153,9 +118,19 @@ static strut_status estimate(const strut_model *model, const strut_tangent *tang
   if (!lanczos_create(model, (size_t)tangent->n, arena, &l)) return STRUT_NO_MEMORY;
   double omega = sqrt(margin * largest_eigenvalue(model, tangent, tangent->stiffness, &l));
   double rate = margin * largest_eigenvalue(model, tangent, tangent->damping, &l);
+  for (int region = 0; region < STRUT_REGIONS; region++) {
+    double swing = strut_region_limit((strut_region)region, 0.0, omega, omega * omega, 0.0);
+    double decay = strut_region_limit((strut_region)region, -rate, 0.0, 0.0, rate);
+    /* with both at once less than each alone bears; a mode's d is not above the largest */
+    bool both = region != STRUT_REGION_RK4 && rate > 0.0 && omega > 0.0;
+    double mixed = both ? strut_region_limit((strut_region)region, 0.0, 0.0, omega * omega, rate)
+                        : HUGE_VAL;
+    limit->of[region] = fmin(fmin(swing, decay), mixed);
+  }
   double oscillating = rate <= 0.55 * omega ? strut_rk4_limit(0.0, omega) : 2.6 / omega;
   limit->largest_frequency = omega;
   limit->limit = fmin(omega > 0 ? oscillating : HUGE_VAL, strut_rk4_limit(-rate, 0.0));
+  limit->of[STRUT_REGION_RK4] = limit->limit;
   limit->exact = false;
   return STRUT_OK;
 }
@@ -174,12 +149,40 @@ static void fill_block(const strut_model *model, const strut_tangent *tangent,
   }
 }
 
-static void read_spectrum(const gsl_vector_complex *values, strut_step_limit *limit) {
-  limit->limit = HUGE_VAL;
+/*
+ * k and d of the mode with eigenvalue z and vector x: d from the damping block, k from z^2 + d z + k
+ * = 0. Both are exact where modes are not coupled by damping.
+ */
+static void mode_of(const gsl_matrix *system, gsl_complex z, const gsl_vector_complex *x,
+                    double *k, double *d) {
+  size_t n = system->size1 / 2;
+  double re = GSL_REAL(z), im = GSL_IMAG(z), size = 0.0, product = 0.0;
+  *d = -2.0 * re, *k = re * re + im * im;
+  if (im != 0.0) return;
+  for (size_t i = 0; i < n; i++) {
+    double xi = GSL_REAL(gsl_vector_complex_get(x, i)), sum = 0.0;
+    for (size_t j = 0; j < n; j++)
+      sum -= gsl_matrix_get(system, n + i, n + j) * GSL_REAL(gsl_vector_complex_get(x, j));
+    size += xi * xi;
+    product += xi * sum;
+  }
+  *d = size > 0.0 ? product / size : -re;
+  *k = fmax(0.0, -re * re - *d * re);
+}
+
+static void read_spectrum(const gsl_matrix *system, const gsl_vector_complex *values,
+                          const gsl_matrix_complex *vectors, strut_step_limit *limit) {
+  for (int region = 0; region < STRUT_REGIONS; region++) limit->of[region] = HUGE_VAL;
   for (size_t i = 0; i < values->size; i++) {
     gsl_complex z = gsl_vector_complex_get(values, i);
-    limit->limit = fmin(limit->limit, strut_rk4_limit(GSL_REAL(z), GSL_IMAG(z)));
+    gsl_vector_complex_const_view x = gsl_matrix_complex_const_column(vectors, i);
+    double k, d;
+    mode_of(system, z, &x.vector, &k, &d);
+    for (int region = 0; region < STRUT_REGIONS; region++)
+      limit->of[region] = fmin(limit->of[region],
+                               strut_region_limit((strut_region)region, GSL_REAL(z), GSL_IMAG(z), k, d));
   }
+  limit->limit = limit->of[STRUT_REGION_RK4];
 }
 
 /* All eigenvalues of the first-order system [0 1; -M^-1 K, -M^-1 D]. */
@@ -191,17 +194,19 @@ static strut_status solve_exactly(const strut_model *model, const strut_tangent 
   double *work = strut_arena_allocate(arena, 3 * both, sizeof *work);
   lanczos l;
   bool room = lanczos_create(model, n, arena, &l);
-  gsl_matrix *system = gsl_matrix_calloc(2 * n, 2 * n);
+  gsl_matrix *system = gsl_matrix_calloc(2 * n, 2 * n), *kept = gsl_matrix_calloc(2 * n, 2 * n);
   gsl_vector_complex *values = gsl_vector_complex_alloc(2 * n);
-  gsl_eigen_nonsymm_workspace *w = gsl_eigen_nonsymm_alloc(2 * n);
+  gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(2 * n, 2 * n);
+  gsl_eigen_nonsymmv_workspace *w = gsl_eigen_nonsymmv_alloc(2 * n);
   strut_status status = STRUT_NO_MEMORY;
-  if (x && y && work && room && system && values && w) {
+  if (x && y && work && room && system && kept && values && vectors && w) {
     for (size_t i = 0; i < n; i++) gsl_matrix_set(system, i, n + i, 1.0);
     fill_block(model, tangent, tangent->stiffness, system, 0, x, y, work);
     fill_block(model, tangent, tangent->damping, system, n, x, y, work);
     limit->largest_frequency = sqrt(largest_eigenvalue(model, tangent, tangent->stiffness, &l));
-    if (gsl_eigen_nonsymm(system, values, w) == 0) {
-      read_spectrum(values, limit);
+    gsl_matrix_memcpy(kept, system);
+    if (gsl_eigen_nonsymmv(system, values, vectors, w) == 0) {
+      read_spectrum(kept, values, vectors, limit);
       limit->exact = true;
       status = STRUT_OK;
     } else {
@@ -209,21 +214,44 @@ static strut_status solve_exactly(const strut_model *model, const strut_tangent 
     }
   }
   gsl_matrix_free(system);
+  gsl_matrix_free(kept);
+  gsl_matrix_complex_free(vectors);
   gsl_vector_complex_free(values);
-  gsl_eigen_nonsymm_free(w);
+  gsl_eigen_nonsymmv_free(w);
   return status;
+}
+
+/* The same without the ground's dampers, for methods in which they are implicit. */
+static strut_status limits(const strut_model *model, bool dampers, strut_arena *arena,
+                           strut_step_limit *limit) {
+  strut_tangent tangent;
+  *limit = (strut_step_limit){.limit = HUGE_VAL, .exact = true};
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of[region] = limit->of_implicit[region] = HUGE_VAL;
+  strut_status status = strut_tangent_assemble(model, model->start, model->members.rest,
+                                               dampers ? STRUT_CLOSED_ALL : STRUT_CLOSED_UNDAMPED,
+                                               arena, &tangent);
+  if (status || tangent.n == 0) return status;
+  return tangent.n <= STRUT_EXACT_LIMIT ? solve_exactly(model, &tangent, arena, limit)
+                                        : estimate(model, &tangent, arena, limit);
 }
 
 strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                        strut_error *error) {
   strut_arena arena = {0};
-  strut_tangent tangent;
-  *limit = (strut_step_limit){0.0, HUGE_VAL, true};
-  strut_status status = strut_tangent_assemble(model, model->start, model->members.rest,
-                                               STRUT_CLOSED_ALL, &arena, &tangent);
-  if (!status && tangent.n > 0)
-    status = tangent.n <= STRUT_EXACT_LIMIT ? solve_exactly(model, &tangent, &arena, limit)
-                                            : estimate(model, &tangent, &arena, limit);
+  strut_step_limit implicit;
+  bool damped = false;
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    damped = damped || model->contacts.entry[i].damping > 0.0;
+  strut_status status = limits(model, true, &arena, limit);
+  implicit = *limit;
+  if (!status && damped) status = limits(model, false, &arena, &implicit);
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of_implicit[region] = implicit.of[region];
   strut_arena_free(&arena);
   return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+}
+
+double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method) {
+  return method->implicit_damper ? limit->of_implicit[method->region] : limit->of[method->region];
 }

@@ -5,11 +5,13 @@
 #ifndef STRUT_ENGINE_INTEGRATE_STEP_LIMIT_H
 #define STRUT_ENGINE_INTEGRATE_STEP_LIMIT_H
 
-#include "engine/model/state.h"
+#include "engine/integrate/stability.h"
 
 typedef struct strut_step_limit {
   double largest_frequency; /* undamped, all contacts closed [rad/s]; 0 where nothing vibrates */
   double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
+  double of[STRUT_REGIONS];  /* largest stable step of each region, RK4's being `limit` */
+  double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
   bool exact;               /* from all eigenvalues; else from an estimate of the largest ones */
 } strut_step_limit;
 
@@ -22,8 +24,9 @@ typedef struct strut_step_limit {
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);
 
-/** Largest h with |R(h lambda)| <= 1 for RK4's R and lambda = re + i im, re <= 0; INFINITY at 0. */
-STRUT_API double strut_rk4_limit(double re, double im);
+/** The largest stable step of a method [s]. */
+STRUT_API double strut_step_limit_of(const strut_step_limit *limit,
+                                     const strut_integrator *method);
 
 enum { STRUT_EXACT_LIMIT = 60 };
 

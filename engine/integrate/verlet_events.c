@@ -146,6 +146,8 @@ const strut_integrator strut_integrator_verlet_events = {
                    "after a touchdown",
     .order = 2,
     .evaluations = 1,
+    .region = STRUT_REGION_VERLET,
+    .implicit_damper = true,
     .events = true,
     .create = create,
     .restart = strut_located_restart,

@@ -40,7 +40,7 @@ static double now(void) {
 
 static strut_status refuse_large_step(const run *r) {
   double limit = r->summary->step_limit;
-  if (r->dt <= limit || r->options->force || r->method->order == 5) return STRUT_OK;
+  if (r->dt <= limit || r->options->force) return STRUT_OK;
   return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                     "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run all the same",
@@ -86,7 +86,7 @@ static strut_status prepare(run *r) {
     return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
   strut_status status = strut_step_limit_estimate(r->model, &limit, r->error);
   if (status) return status;
-  r->summary->step_limit = limit.limit;
+  r->summary->step_limit = strut_step_limit_of(&limit, r->method);
   if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))
     return status;
