@@ -25,12 +25,13 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSI
                             STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,
                             STRUT_KEY_EQUILIBRIA_SUPPORTS,   STRUT_KEY_SOLVER_INTEGRATOR,
                             STRUT_KEY_RUN_DURATION,          STRUT_KEY_MEASURE_LAST,
+                            STRUT_KEY_STEADY_TOLERANCE,
                             STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_COUNT};
 
 static const char *const room_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
-    "initial", "settle", "equilibria", "solver",    "run",      "measure", "output"};
+    "initial", "settle", "equilibria", "solver",    "run",      "measure", "steady", "output"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
 _Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");
@@ -145,6 +146,8 @@ static const char *expected_shape(strut_key_type type) {
       return "a list of points such as [[0 s, 0], [1 s, 2]]";
     case STRUT_TYPE_SETTLE:
       return "true, or a mapping such as {limit: 100 s}";
+    case STRUT_TYPE_STEADY:
+      return "true, or a mapping such as {tolerance: 0.5 %}";
     case STRUT_TYPE_MAP:
       return "a mapping {key: value, ...}";
     default:

@@ -40,6 +40,7 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
     [STRUT_ROOM_SOLVER] = "`solver: {...}`.",
     [STRUT_ROOM_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
     [STRUT_ROOM_MEASURE] = "`run: {measure: {...}}`.",
+    [STRUT_ROOM_STEADY] = "`run: {measure: {steady: {...}}}`.",
     [STRUT_ROOM_OUTPUT] = "`output: {...}`."};
 
 /* "none, x, y or both", each in code style. */
@@ -80,6 +81,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_SIGNALS] = "list of signals",
       [STRUT_TYPE_TABLE] = "list of `[t, value]`",
       [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
+      [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
       [STRUT_TYPE_THINGS] = "names, each with "};
   if (key->type == STRUT_TYPE_MAP) {
     strut_put(writer, "[mapping](#");

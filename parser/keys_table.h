@@ -117,6 +117,10 @@
   X(RUN, MEASURE, "measure", MAP, NONE, ANY, false, 0, "", "", "What to measure. Without it: the centre of mass, over the whole run.") \
   X(MEASURE, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "The window: the last so many periods if the run is in periods, else the last so much time.") \
   X(MEASURE, NODE, "node", NAME, NONE, ANY, false, 0, "the centre of mass", "", "Whose velocity.") \
+  X(MEASURE, STEADY, "steady", STEADY, NONE, ANY, false, 0, "false", "", "Stop when the motion repeats itself, in a run by periods, which then are the most it takes: `true`, or a mapping.") \
+  X(STEADY, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, false, 0, "0.5 %", "", "Of the velocity, relative to it.") \
+  X(STEADY, FLOOR, "floor", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "from the scene", "", "Differences of the velocity below this count as none.") \
+  X(STEADY, SUCCESSIVE, "successive", NUMBER, NONE, ABOVE_ZERO, false, 0, "5", "", "So many repetitions in a row must agree.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, false, 0, "a thousandth", "", "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "Record the last so many periods, or the last so much time.") \
   X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, false, 0, "[position, length, force]", "position|velocity|length|force|contact|energy", "A list of what to record.")

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The initial state; solver, run and output. See reader.h. */
+#include <math.h>
 #include <string.h>
 
 #include "parser/reader.h"
@@ -180,6 +181,33 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
     fields->broken = true;
 }
 
+static void read_steady(strut_reader *reader, const strut_slot *slot) {
+  strut_steady *steady = &reader->scene->experiment.steady;
+  strut_owner owner = {"the steady state", NULL};
+  steady->wanted = true;
+  if (slot->value->kind == STRUT_TREE_SCALAR) {
+    steady->wanted = strcmp(slot->value->text, "true") == 0;
+    if (!slot->value->quoted && (steady->wanted || strcmp(slot->value->text, "false") == 0)) return;
+    strut_say(reader, slot->value->place,
+              "expected true, or a mapping such as {tolerance: 0.5 %%}, for 'steady' of the "
+              "measurement, found %s",
+              strut_found(reader, slot->value));
+    return;
+  }
+  strut_read_fields(reader, STRUT_ROOM_STEADY, slot->value, owner, &reader->steady);
+  steady->tolerance =
+      strut_number_or(&reader->steady, STRUT_KEY_STEADY_TOLERANCE, steady->tolerance);
+  steady->floor = strut_number_or(&reader->steady, STRUT_KEY_STEADY_FLOOR, steady->floor);
+  double successive =
+      strut_number_or(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE, steady->successive);
+  bool whole = successive == floor(successive) && successive >= 2.0 && successive <= 16.0;
+  if (whole)
+    steady->successive = (int32_t)successive;
+  else
+    strut_say(reader, strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE)->value->place,
+              "expected a whole number from 2 to 16 for 'successive' of the steady state");
+}
+
 static void read_run(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   strut_owner owner = {"the measurement", NULL};
@@ -192,6 +220,8 @@ static void read_run(strut_reader *reader) {
   if (measure->state == STRUT_GIVEN) {
     strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value,
                       (strut_owner){"the measurement", NULL}, &reader->measure);
+    const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
+    if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
     const strut_slot *node = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_NODE);
     bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;

@@ -136,6 +136,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
       return value->kind == STRUT_TREE_MAP;
     case STRUT_TYPE_SIGNAL:
     case STRUT_TYPE_SETTLE:
+    case STRUT_TYPE_STEADY:
       return scalar || value->kind == STRUT_TREE_MAP;
     case STRUT_TYPE_GROUPS:
     case STRUT_TYPE_FIXED:

@@ -56,6 +56,7 @@ static void prepare(strut_reader *reader) {
   reader->solver.room = STRUT_ROOM_SOLVER;
   reader->run.room = STRUT_ROOM_RUN;
   reader->measure.room = STRUT_ROOM_MEASURE;
+  reader->steady.room = STRUT_ROOM_STEADY;
   reader->output.room = STRUT_ROOM_OUTPUT;
 }
 

@@ -117,7 +117,7 @@ typedef struct strut_reader {
   strut_signal_state *signal_state;
   size_t signal_count;
   strut_source *configuration_source;
-  strut_fields ground, initial, settle, search, solver, run, measure, output;
+  strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
   const strut_tree *asking; /* the value whose expression is being evaluated */
   const char *asking_set;   /* or the parameter whose --set is */
   size_t suggestions;       /* names compared so far, to bound the effort */

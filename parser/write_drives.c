@@ -165,6 +165,16 @@ static const char *period_name(const strut_scene *scene) {
   return NULL;
 }
 
+static void put_steady(strut_writer *writer, bool *first, const strut_steady *steady) {
+  bool inner = true;
+  strut_put_key(writer, first, "steady");
+  strut_put(writer, "{");
+  strut_put_value(writer, &inner, "tolerance", steady->tolerance);
+  strut_put_value(writer, &inner, "floor", steady->floor);
+  strut_put_value(writer, &inner, "successive", steady->successive);
+  strut_put(writer, "}");
+}
+
 static void put_run(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   const strut_experiment *e = &scene->experiment;
@@ -178,10 +188,11 @@ static void put_run(strut_writer *writer) {
     strut_put_key(writer, &first, "of");
     strut_put_name(writer, name ? name : signal_name(writer, e->period_signal));
   }
-  if (e->measure_last > 0.0 || e->measure_node >= 0) {
+  if (e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted) {
     strut_put_key(writer, &first, "measure");
     strut_put(writer, "{");
     strut_put_value(writer, &inner, "last", e->measure_last);
+    if (e->steady.wanted) put_steady(writer, &inner, &e->steady);
     if (e->measure_node >= 0) {
       strut_put_key(writer, &inner, "node");
       strut_put_name(writer, scene->nodes[e->measure_node].name);

@@ -191,18 +191,17 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
   const double *q = state->q, *v = state->v, *a = l->now.a, *n = c->normal;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t i = 0, k = 0; i < c->count; i++) {
-    if (k < l->closed_count && l->closed[k] == i) {
-      k++;
-      continue;
-    }
+    bool closed = k < l->closed_count && l->closed[k] == i;
+    double sign = closed ? -1.0 : 1.0;
+    k += closed;
     uint32_t at = c->at[i];
-    double gap = gap_of(c, i, q);
-    double speed = h * (v[at] * n[0] + v[at + 1] * n[1]);
-    double bend = 0.5 * h * h * (a[at] * n[0] + a[at + 1] * n[1]);
+    double gap = sign * gap_of(c, i, q);
+    double speed = sign * h * (v[at] * n[0] + v[at + 1] * n[1]);
+    double bend = sign * 0.5 * h * h * (a[at] * n[0] + a[at + 1] * n[1]);
     if (gap + (speed < 0.0 ? speed : 0.0) + (bend < 0.0 ? bend : 0.0) >= 0.0) continue;
     double fraction = parabola_root(gap, speed, bend);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))
-      first = (strut_event){STRUT_EVENT_TOUCH, i, fraction};
+      first = (strut_event){closed ? STRUT_EVENT_OPEN : STRUT_EVENT_TOUCH, i, fraction};
   }
   return first;
 }

@@ -8,6 +8,17 @@
 
 /* Every helper does nothing once memory was out, so that only the end has to ask. */
 
+static void add_steady(strut_json *json, cJSON *to, const strut_steady_summary *s) {
+  static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
+  if (s->kind == STRUT_MOTION_NOT_WATCHED) return;
+  cJSON *steady = strut_json_object(json, to, "steady");
+  strut_json_text(json, steady, "kind", kinds[s->kind]);
+  strut_json_integer(json, steady, "repeats", s->repeats);
+  strut_json_integer(json, steady, "periods", s->periods);
+  strut_json_number(json, steady, "velocity_interval", s->interval);
+  strut_json_number(json, steady, "residual", s->residual);
+}
+
 static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool with_wall_time) {
   strut_json_text(json, to, "status", strut_status_text(s->status));
   strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
@@ -18,8 +29,11 @@ static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_number(json, to, "settle_time", s->settle_time);
   strut_json_integer(json, to, "steps", s->steps);
   strut_json_integer(json, to, "force_evaluations", s->force_evaluations);
+  strut_json_integer(json, to, "events", s->events);
+  strut_json_text(json, to, "method", s->method);
   strut_json_number(json, to, "step", s->step);
   strut_json_number(json, to, "step_limit", s->step_limit);
+  add_steady(json, to, &s->steady);
   if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);
 }
 

@@ -6,9 +6,8 @@
 /* A mark this close to a step's end, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
 
-/* x and velocity of the tracked point. */
-static void track(const strut_model *model, const strut_state *state, const strut_measure *m,
-                  double *x, double *v) {
+void strut_measure_track(const strut_model *model, const strut_state *state,
+                         const strut_measure *m, double *x, double *v) {
   if (m->node >= 0) {
     *x = state->q[2 * m->node];
     *v = state->v[2 * m->node];
@@ -23,28 +22,41 @@ static void track(const strut_model *model, const strut_state *state, const stru
   *v = rate / m->total_mass;
 }
 
-static void place_marks(const strut_span *span, strut_measure *m) {
+static void place_marks(const strut_span *span, double begin, strut_measure *m) {
   for (size_t i = 0; i < m->marks; i++)
-    m->time[i] = span->period > 0 ? span->window_start + (double)i * span->period
-                                  : (i ? span->duration : span->window_start);
-  m->time[m->marks - 1] = span->duration;
+    m->time[i] = begin + (span->period > 0 ? span->window_start + (double)i * span->period
+                                           : (i ? span->duration : span->window_start));
+  m->time[m->marks - 1] = begin + span->duration;
 }
 
-strut_status strut_measure_create(const strut_model *model, double step, strut_measure *m) {
+void strut_measure_window(const strut_model *model, const strut_state *state, double begin,
+                          double period, size_t periods, strut_measure *m) {
+  size_t contacts = (size_t)model->contacts.count;
+  m->marks = periods + 1 < m->room ? periods + 1 : m->room;
+  for (size_t i = 0; i < m->marks; i++) m->time[i] = begin + (double)i * period;
+  m->next = 0;
+  m->window_steps = 0;
+  for (size_t i = 0; i < contacts; i++) m->contact_steps[i] = 0, m->max_height[i] = -HUGE_VAL;
+  strut_measure_begin(model, state, m);
+}
+
+strut_status strut_measure_create(const strut_model *model, double step, double begin,
+                                  size_t room, strut_measure *m) {
   *m = (strut_measure){.step = step, .node = model->scene->experiment.measure_node};
   strut_span span = strut_scene_span(model->scene);
   double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
   size_t contacts = (size_t)model->contacts.count;
   m->marks = periods < 1.5 ? 2 : (size_t)ceil(periods - 1e-9) + 1;
-  m->time = strut_arena_allocate(&m->arena, m->marks, sizeof *m->time);
-  m->x = strut_arena_allocate(&m->arena, m->marks, sizeof *m->x);
+  m->room = room > m->marks ? room : m->marks;
+  m->time = strut_arena_allocate(&m->arena, m->room, sizeof *m->time);
+  m->x = strut_arena_allocate(&m->arena, m->room, sizeof *m->x);
   m->contact_steps = strut_arena_allocate(&m->arena, contacts, sizeof *m->contact_steps);
   m->max_height = strut_arena_allocate(&m->arena, contacts, sizeof *m->max_height);
   if (!m->time || !m->x || !m->contact_steps || !m->max_height) {
     strut_measure_free(m);
     return STRUT_NO_MEMORY;
   }
-  place_marks(&span, m);
+  place_marks(&span, begin, m);
   for (int32_t i = 0; i < model->node_count; i++) m->total_mass += model->weight[i];
   for (size_t i = 0; i < contacts; i++) m->max_height[i] = -HUGE_VAL;
   return STRUT_OK;
@@ -56,7 +68,7 @@ int64_t strut_measure_first_step(const strut_measure *m) {
 }
 
 void strut_measure_begin(const strut_model *model, const strut_state *state, strut_measure *m) {
-  track(model, state, m, &m->last_x, &m->last_v);
+  strut_measure_track(model, state, m, &m->last_x, &m->last_v);
   double position = m->time[0] / m->step - (double)state->step;
   if (fabs(position) < MARK_TOLERANCE) {
     m->x[0] = m->last_x;
@@ -85,7 +97,7 @@ static void count_contacts(const strut_model *model, const strut_state *state, s
 
 void strut_measure_step(const strut_model *model, const strut_state *state, strut_measure *m) {
   double x, v, n = (double)state->step;
-  track(model, state, m, &x, &v);
+  strut_measure_track(model, state, m, &x, &v);
   count_contacts(model, state, m);
   while (m->next < m->marks && m->time[m->next] / m->step <= n + MARK_TOLERANCE) {
     double s = m->time[m->next] / m->step - (n - 1.0);

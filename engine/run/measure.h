@@ -18,6 +18,7 @@ typedef struct strut_measure {
   int32_t node;       /* tracked node, or -1: centre of mass */
   double total_mass;  /* [kg] */
   size_t marks, next; /* number of marks; the next one to pass */
+  size_t room;        /* marks that there is memory for */
   double *time;       /* (marks) [s] */
   double *x;          /* (marks) tracked x there [m] */
   double last_x, last_v; /* tracked point after the latest step */
@@ -27,8 +28,18 @@ typedef struct strut_measure {
   strut_arena arena;
 } strut_measure;
 
-/** Prepares. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_measure_create(const strut_model *model, double step, strut_measure *measure);
+/**
+ * Prepares for a run that begins at the time `begin` [s]; room: marks that a later window may need.
+ * STRUT_OK or STRUT_NO_MEMORY.
+ */
+strut_status strut_measure_create(const strut_model *model, double step, double begin,
+                                  size_t room, strut_measure *measure);
+/** x [m] and velocity [m/s] of the tracked point. */
+void strut_measure_track(const strut_model *model, const strut_state *state,
+                         const strut_measure *measure, double *x, double *v);
+/** Another window from now on, `begin` [s]: so many periods, within the room for marks. */
+void strut_measure_window(const strut_model *model, const strut_state *state, double begin,
+                          double period, size_t periods, strut_measure *measure);
 /** First step number n after which strut_measure_step must be called for every step. */
 int64_t strut_measure_first_step(const strut_measure *measure);
 /** Before the first measured step: takes the point's x and v. */

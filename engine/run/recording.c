@@ -109,13 +109,14 @@ static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_recording_create(const strut_model *model, double step, strut_sink **sinks,
-                                    size_t sink_count, strut_recording *r, strut_error *error) {
+strut_status strut_recording_create(const strut_model *model, double step, double begin,
+                                    strut_sink **sinks, size_t sink_count, strut_recording *r,
+                                    strut_error *error) {
   *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .step = step,
                          .last = -1};
   if (!sink_count) return STRUT_OK;
   strut_span span = strut_scene_span(model->scene);
-  r->start = span.record_start;
+  r->start = begin + span.record_start;
   r->every = span.record_every;
   size_t members = model->scene->member_count;
   unsigned wanted = 0;

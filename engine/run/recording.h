@@ -33,10 +33,11 @@ typedef struct strut_recording {
   strut_arena arena;
 } strut_recording;
 
-/** Lays out the channels and begins every sink. Without sinks it costs nothing. */
-strut_status strut_recording_create(const strut_model *model, double step, strut_sink **sinks,
-                                    size_t sink_count, strut_recording *recording,
-                                    strut_error *error);
+/** Lays out the channels and begins every sink. Without sinks it costs nothing. begin: the time at
+    which the run begins [s]. */
+strut_status strut_recording_create(const strut_model *model, double step, double begin,
+                                    strut_sink **sinks, size_t sink_count,
+                                    strut_recording *recording, strut_error *error);
 /** The number of the step at whose end the next sample is due; INT64_MAX without sinks. */
 int64_t strut_recording_next_step(const strut_recording *recording);
 /** Takes a sample of the state now; hands rows over when enough have gathered. */

@@ -2,14 +2,15 @@
 #include "engine/run/simulate.h"
 
 #include <math.h>
+#include <string.h>
 #include <time.h>
 
-#include "engine/forces/energy.h"
-#include "engine/integrate/integrator.h"
 #include "engine/integrate/step_limit.h"
+#include "engine/run/balance.h"
 #include "engine/run/measure.h"
 #include "engine/run/recording.h"
 #include "engine/run/settle.h"
+#include "engine/run/steady.h"
 
 /* Beyond this many times the scene's size a run counts as diverged. */
 static const double BEYOND = 1e10;
@@ -28,8 +29,12 @@ typedef struct run {
   strut_measure measure;
   strut_recording recording;
   strut_stored initial;
+  bool watching;
+  strut_watch watch;
   double dt;
-  int64_t steps; /* planned */
+  int64_t first, steps;   /* the step number it begins with, and the one it is to end with */
+  int64_t period_steps;   /* of a drive period, where steady motion is watched for */
+  int64_t more_periods;   /* to run, and record, once it is steady */
 } run;
 
 static double now(void) {
@@ -64,13 +69,43 @@ static strut_status fill_names(run *r) {
   return STRUT_OK;
 }
 
+/* The step, made to divide the drive's period where that is watched; first and last step. */
+static void choose_steps(run *r, const strut_span *span) {
+  const strut_experiment *e = &r->model->scene->experiment;
+  double last = e->output_last;
+  r->dt = e->step;
+  if (r->watching) {
+    r->period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
+    r->dt = span->period / (double)r->period_steps;
+    r->more_periods = r->options->sink_count && last > 1.0 ? (int64_t)ceil(last - 1e-9) : 1;
+  }
+  r->summary->step = r->dt;
+  r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
+  r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
+}
+
+/* Where the run begins: as the scene says, settled, or where another one ended. */
+static strut_status place_state(run *r) {
+  const strut_snapshot *from = r->options->from;
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  r->state->step = r->first;
+  if (from) {
+    memcpy(r->state->q, from->q, bytes);
+    memcpy(r->state->v, from->v, bytes);
+    return STRUT_OK;
+  }
+  if (!r->model->scene->settle.wanted) return STRUT_OK;
+  return strut_settle_state(r->model, r->state, r->options->interrupt, &r->summary->settle_time,
+                            r->error);
+}
+
 /* Everything a run needs, before the first step: no memory is asked for after this. */
 static strut_status prepare(run *r) {
   const strut_scene *scene = r->model->scene;
   strut_span span = strut_scene_span(scene);
   strut_step_limit limit;
-  r->dt = r->summary->step = scene->experiment.step;
-  r->steps = (int64_t)ceil(span.duration / r->dt - 1e-6);
+  r->watching = scene->experiment.steady.wanted && span.period > 0.0;
+  choose_steps(r, &span);
   r->method = strut_integrator_find(scene->experiment.integrator);
   if (!r->method)
     return strut_fail(r->error, STRUT_USAGE, "there is no integrator '%s'",
@@ -91,17 +126,18 @@ static strut_status prepare(run *r) {
       (status = strut_state_create(r->model, &r->state, r->error)))
     return status;
   r->workspace = r->method->create(r->model, r->state);
-  if (!r->workspace || strut_measure_create(r->model, r->dt, &r->measure))
+  double begin = (double)r->first * r->dt;
+  if (!r->workspace ||
+      strut_measure_create(r->model, r->dt, begin, (size_t)r->more_periods + 1, &r->measure) ||
+      (r->watching && strut_watch_create(r->model, span.period, &r->watch)))
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
-  if (scene->settle.wanted &&
-      (status = strut_settle_state(r->model, r->state, r->options->interrupt,
-                                   &r->summary->settle_time, r->error)))
-    return status;
+  if ((status = place_state(r))) return status;
   r->state->ledger = true;
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   strut_energy_mark(r->model, r->state);
-  r->initial = strut_energy_stored(r->model, r->state, 0.0);
-  return strut_recording_create(r->model, r->dt, r->options->sinks, r->options->sink_count,
-                                &r->recording, r->error);
+  r->initial = strut_energy_stored(r->model, r->state, begin);
+  return strut_recording_create(r->model, r->dt, begin, r->options->sinks,
+                                r->options->sink_count, &r->recording, r->error);
 }
 
 /* The first node that is nowhere or too far away, or -1. */
@@ -127,6 +163,21 @@ static strut_status diverged(const run *r, int32_t node) {
                     r->summary->step_limit, remedy);
 }
 
+/* A method could not go on. */
+static strut_status stuck(const run *r) {
+  static const char *const why[] = {
+      [STRUT_TROUBLE_STEP] = "the step needed for the tolerance became too small to matter; give a "
+                             "larger solver.tolerance, or look for a member of zero length",
+      [STRUT_TROUBLE_NEWTON] = "the implicit step has no solution nearby; use a smaller step",
+      [STRUT_TROUBLE_RIGID] = "rigid bars cannot keep their lengths; use a smaller step, or look for "
+                              "bars that hold each other"};
+  return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
+                    r->method->name, (double)r->state->step * r->dt, why[r->state->trouble]);
+}
+
+/* A place within the period that no symmetry of the drive prefers. */
+static int64_t middle_of(int64_t period) { return (int64_t)(0.382 * (double)period); }
+
 /* Where to stop stepping for a while: a sample, the window, the end, or just to look around. */
 static int64_t next_stop(const run *r, int64_t chunk) {
   int64_t n = r->state->step, stop = n + chunk;
@@ -135,7 +186,29 @@ static int64_t next_stop(const run *r, int64_t chunk) {
   if (stop > r->steps) stop = r->steps;
   if (sample > n && stop > sample) stop = sample;
   if (window > n && stop > window) stop = window;
-  return stop;
+  if (!r->watching) return stop;
+  int64_t period = r->period_steps, past = (n - r->first) % period, end = n - past + period;
+  int64_t middle = n - past + middle_of(period);
+  if (middle > n && stop > middle) stop = middle;
+  return stop > end ? end : stop;
+}
+
+/*
+ * At the ends of periods, and once within each. When the motion has become steady the run goes on
+ * for the periods that are recorded, at least one, over which contacts are measured.
+ */
+static void watch_motion(run *r) {
+  int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
+  if (past == middle_of(r->period_steps)) strut_watch_middle(r->state, &r->watch);
+  if (past != 0) return;
+  double x, v;
+  bool before = r->watch.known;
+  strut_measure_track(r->model, r->state, &r->measure, &x, &v);
+  if (!strut_watch_period(r->state, x, &r->watch) || before) return;
+  double now = (double)n * r->dt, period = r->watch.period;
+  r->steps = n + r->more_periods * r->period_steps;
+  strut_measure_window(r->model, r->state, now, period, (size_t)r->more_periods, &r->measure);
+  if (r->model->scene->experiment.output_last > 0.0) r->recording.start = now;
 }
 
 static void advance_to(run *r, int64_t stop) {
@@ -160,6 +233,7 @@ static strut_status step_all(run *r) {
     int64_t n = r->state->step;
     int32_t lost = lost_node(r->model, r->state);
     if (lost >= 0) return diverged(r, lost);
+    if (r->watching) watch_motion(r);
     if (n == strut_measure_first_step(&r->measure))
       strut_measure_begin(r->model, r->state, &r->measure);
     if (n == strut_recording_next_step(&r->recording)) {
@@ -167,52 +241,40 @@ static strut_status step_all(run *r) {
       if (status) return status;
     }
     if (n >= r->steps) return STRUT_OK;
+    if (r->state->trouble) return stuck(r);
     if (o->interrupt && *o->interrupt)
       return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
                         (double)n * r->dt);
     if (o->progress && now() - told > 0.1) {
-      o->progress(o->progress_context, (double)n / (double)r->steps);
+      o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
       told = now();
     }
     advance_to(r, next_stop(r, chunk));
   }
 }
 
-static double change(double a, double b) { return fabs(a - b); }
-
-static void fill_energy(run *r) {
-  const double *w = r->state->work;
-  strut_stored end = strut_energy_stored(r->model, r->state, (double)r->state->step * r->dt);
-  const strut_stored *begin = &r->initial;
-  strut_energy *e = &r->summary->energy;
-  double loads = strut_energy_load_work(r->model, r->state);
-  e->kinetic = end.kinetic, e->elastic = end.elastic, e->gravity = end.gravity;
-  e->contact = end.contact;
-  e->drive_work = w[STRUT_POWER_DRIVE];
-  e->load_work = w[STRUT_POWER_LOAD] + loads;
-  e->belt_work = w[STRUT_POWER_BELT];
-  e->dissipated_members = w[STRUT_POWER_MEMBERS];
-  e->dissipated_contact = w[STRUT_POWER_CONTACT];
-  e->dissipated_friction = w[STRUT_POWER_FRICTION];
-  e->initial = begin->kinetic + begin->elastic + begin->gravity + begin->contact;
-  e->residual = end.kinetic + end.elastic + end.gravity + end.contact - e->initial -
-                e->drive_work - e->load_work - e->belt_work + e->dissipated_members +
-                e->dissipated_contact + e->dissipated_friction;
-  e->moved = change(end.kinetic, begin->kinetic) + change(end.elastic, begin->elastic) +
-             change(end.gravity, begin->gravity) + change(end.contact, begin->contact) +
-             fabs(loads) + w[STRUT_POWER_MOVED];
+/* The end of the run for whoever goes on from it. */
+static void keep_end(const run *r) {
+  strut_snapshot *to = r->options->to;
+  if (!to) return;
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  memcpy(to->q, r->state->q, bytes);
+  memcpy(to->v, r->state->v, bytes);
+  to->time = (double)r->state->step * r->dt;
 }
 
 static void fill_summary(run *r, strut_status status) {
   strut_summary *s = r->summary;
   s->status = status;
-  s->steps = r->state->step;
+  s->steps = r->state->step - r->first;
   s->duration = (double)s->steps * r->dt;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
   strut_measure_finish(r->model, &r->measure, s);
+  if (r->watching) strut_watch_finish(&r->watch, s);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
-  fill_energy(r);
+  strut_balance_fill(r->model, r->state, &r->initial, (double)r->state->step * r->dt, &s->energy);
+  keep_end(r);
 }
 
 strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
@@ -239,6 +301,7 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
     if (!(summary->reason[i] = error->message[i])) break;
   strut_recording_free(&r.recording);
   strut_measure_free(&r.measure);
+  strut_watch_free(&r.watch);
   strut_state_free(r.state);
   return status;
 }

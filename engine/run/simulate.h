@@ -11,6 +11,12 @@
 #include "engine/run/recorder.h"
 #include "engine/run/summary.h"
 
+/** A state to go on from, or to keep: coordinate arrays of the model's length, owned by the caller. */
+typedef struct strut_snapshot {
+  double *q, *v; /* [m], [m/s] */
+  double time;   /* [s]: where drives and loads stand */
+} strut_snapshot;
+
 /** How to run; zero-initialised it means: obey the step limit, tell nobody, record nothing. */
 typedef struct strut_run_options {
   bool force;                             /* run even above the step limit */
@@ -19,6 +25,9 @@ typedef struct strut_run_options {
   void *progress_context;
   strut_sink **sinks; /* (sink_count) */
   size_t sink_count;
+  const strut_snapshot *from; /* instead of the scene's start; its time becomes a whole number of
+                                 steps; may be NULL */
+  strut_snapshot *to;         /* filled at the end; may be NULL */
 } strut_run_options;
 
 /**

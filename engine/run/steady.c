@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/steady.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Repetitions looked for, in drive periods; the first that holds is reported. */
+static const int32_t repeats[STRUT_REPEATS] = {1, 2, 3, 4, 6, 8};
+/* Velocities below this part of size times frequency are not told from standing still. */
+static const double STANDING = 1e-3;
+/* A shape that repeats itself so well, relative to its motion, differs by rounding. */
+static const double ROUNDING = 1e-11;
+
+static const double TURN = 6.28318530717958647692;
+
+strut_status strut_watch_create(const strut_model *model, double period, strut_watch *w) {
+  const strut_steady *wanted = &model->scene->experiment.steady;
+  size_t both = 2 * (size_t)model->length;
+  *w = (strut_watch){.model = model, .period = period, .tolerance = wanted->tolerance,
+                     .floor = wanted->floor, .successive = wanted->successive};
+  if (w->successive < 2) w->successive = 2;
+  if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
+  if (!(w->floor > 0.0)) w->floor = STANDING * model->size / period * w->tolerance;
+  w->travels = model->contacts.count > 0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) w->travels = w->travels && !model->fixed[i];
+  bool ready = (w->middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  for (int k = 0; k < STRUT_RING && ready; k++)
+    ready = (w->state[k] = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  w->result.kind = STRUT_MOTION_TRANSIENT;
+  if (ready) return STRUT_OK;
+  strut_watch_free(w);
+  return STRUT_NO_MEMORY;
+}
+
+static void take(const strut_state *state, const strut_watch *w, double *out) {
+  size_t length = (size_t)w->model->length;
+  memcpy(out, state->q, length * sizeof *out);
+  memcpy(out + length, state->v, length * sizeof *out);
+}
+
+/* Mean shift along the ground between two states; 0 where there is no such freedom. */
+static double travel(const strut_watch *w, const double *from, const double *to) {
+  const double *t = w->model->contacts.tangent;
+  double sum = 0.0;
+  int32_t n = w->model->node_count;
+  for (int32_t i = 0; i < n && w->travels; i++)
+    sum += (to[2 * i] - from[2 * i]) * t[0] + (to[2 * i + 1] - from[2 * i + 1]) * t[1];
+  return n > 0 ? sum / n : 0.0;
+}
+
+/* Largest difference of two shapes: positions over the size, velocities over size times 2 pi f. */
+static double distance(const strut_watch *w, const double *a, const double *b) {
+  const double *t = w->model->contacts.tangent;
+  double along = travel(w, a, b), shift[2] = {along * t[0], along * t[1]};
+  double size = w->model->size, speed = size * TURN / w->period, most = 0.0;
+  int32_t length = w->model->length;
+  for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
+    most = fmax(most, fabs(b[i] - a[i] - (w->travels ? shift[i % 2] : 0.0)) / size);
+    most = fmax(most, fabs(b[length + i] - a[length + i]) / speed);
+  }
+  return most;
+}
+
+void strut_watch_middle(const strut_state *state, strut_watch *w) { take(state, w, w->middle); }
+
+/* What is left of a decay: the sum of the geometric series that goes on from the latest change. */
+static double remaining(const double *residual, int64_t now, int32_t over, double amplitude) {
+  double last = residual[now % STRUT_RING], first = residual[(now - over) % STRUT_RING];
+  if (last <= ROUNDING * amplitude) return 0.0;
+  if (!(first > 0.0)) return HUGE_VAL;
+  double rate = pow(last / first, 1.0 / over);
+  return rate < 0.9999 ? rate / (1.0 - rate) : HUGE_VAL;
+}
+
+static double mean_velocity(const strut_watch *w, int64_t now, int32_t periods) {
+  double dx = w->place[now % STRUT_RING] - w->place[(now - periods) % STRUT_RING];
+  return dx / (periods * w->period);
+}
+
+/* Neighbouring periods still grow alike: a transient may look as if it came back after n of them. */
+static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
+  int32_t over = 2 * n > w->successive ? 2 * n : w->successive;
+  if (now <= over + n) return true;
+  double last = 0.0, first = 0.0; /* means over n periods, so that the order within them is no matter */
+  for (int32_t j = 0; j < n; j++) {
+    last += w->residual[0][(now - j) % STRUT_RING];
+    first += w->residual[0][(now - over - j) % STRUT_RING];
+  }
+  return last < pow(0.99, over) * first;
+}
+
+/* Does the motion repeat itself every n periods? */
+static bool repeats_itself(strut_watch *w, int64_t now, int k) {
+  int32_t n = repeats[k], over = w->successive;
+  if (now < 2 * n + over) return false;
+  if (n > 1 && still_decays(w, now, n)) return false;
+  int32_t rounds = n * ((over + n - 1) / n);
+  double velocity = mean_velocity(w, now, rounds), change = 0.0;
+  for (int64_t j = now - over + 1; j <= now; j++)
+    change = fmax(change, w->change[k][j % STRUT_RING]);
+  double rest = remaining(w->residual[k], now, over, w->amplitude);
+  double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
+  double residual = w->residual[k][now % STRUT_RING];
+  double still = w->floor * w->period / w->model->size;
+  if (!(change <= allowed && change * rest <= allowed)) return false;
+  if (!(residual * fmax(rest, 1.0) <= 4.0 * fmax(w->tolerance * w->amplitude, still)))
+    return false;
+  w->result.kind = STRUT_MOTION_PERIODIC;
+  w->result.repeats = n;
+  w->result.periods = now;
+  w->result.interval = change * (1.0 + rest);
+  w->result.residual = w->amplitude > 0.0 ? residual / w->amplitude : 0.0;
+  return true;
+}
+
+bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
+  int64_t now = w->seen++;
+  double *latest = w->state[now % STRUT_RING];
+  take(state, w, latest);
+  w->place[now % STRUT_RING] = x;
+  if (now > 0) w->amplitude = distance(w, w->middle, latest);
+  for (int k = 0; k < STRUT_REPEATS && now >= repeats[k]; k++) {
+    int32_t n = repeats[k];
+    w->residual[k][now % STRUT_RING] = distance(w, w->state[(now - n) % STRUT_RING], latest);
+    if (now < 2 * n) continue;
+    w->change[k][now % STRUT_RING] =
+        fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
+  }
+  for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);
+  int32_t n = w->known ? w->result.repeats : 1;
+  int32_t rounds = n * ((w->successive + n - 1) / n);
+  if (now >= rounds) w->velocity = mean_velocity(w, now, rounds);
+  return w->known;
+}
+
+void strut_watch_finish(const strut_watch *w, strut_summary *summary) {
+  summary->steady = w->result;
+  if (!w->known) {
+    summary->steady.periods = w->seen > 0 ? w->seen - 1 : 0;
+    return;
+  }
+  int64_t now = w->seen - 1;
+  double square = 0.0;
+  for (int32_t j = 0; j < w->successive; j++) {
+    double d = mean_velocity(w, now - j, 1) - w->velocity;
+    square += d * d;
+  }
+  summary->velocity = w->velocity;
+  summary->velocity_spread = sqrt(square / (w->successive - 1));
+}
+
+void strut_watch_free(strut_watch *w) { strut_arena_free(&w->arena); }
