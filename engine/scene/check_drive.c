@@ -262,7 +262,7 @@ static void check_step(strut_checker *checker, bool length_known) {
   if (!e->integrator || !*e->integrator)
     strut_find(checker, STRUT_ON_SOLVER, 0, "integrator", "the solver names no integrator");
   if (e->step == 0.0) {
-    if (checker->purpose == STRUT_FOR_RUN)
+    if (checker->purpose == STRUT_FOR_RUN && !(e->accuracy > 0.0))
       strut_find(checker, STRUT_ON_SOLVER, 0, "step",
                  "the solver has no step, expected a time such as '0.1 ms'");
     return;
@@ -296,6 +296,9 @@ void strut_check_experiment(strut_checker *checker) {
     strut_find(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
   if ((unsigned)scene->mass_model > STRUT_MASS_LUMPED)
     strut_find(checker, STRUT_ON_SCENE, 0, "mass_model", "the mass model is unknown");
+  if (e->steady.wanted && !(e->periods > 0.0) && checker->purpose == STRUT_FOR_RUN)
+    strut_find(checker, STRUT_ON_RUN, 0, "measure",
+               "steady motion is looked for from period to period: the run needs 'periods' and 'of'");
   bool length_known = check_length(checker);
   if (checker->purpose == STRUT_FOR_RUN && e->duration == 0.0 && e->periods == 0.0)
     strut_find(checker, STRUT_ON_RUN, 0, NULL, "the run has neither a duration nor periods");

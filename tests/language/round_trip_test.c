@@ -154,6 +154,14 @@ static void same_scene(const strut_scene *a, const strut_scene *b) {
   SAME(experiment.periods);
   SAME(experiment.period_signal);
   SAME(experiment.measure_last);
+  SAME(experiment.tolerance);
+  SAME(experiment.refine);
+  SAME(experiment.refine_time);
+  SAME(experiment.accuracy);
+  SAME(experiment.steady.wanted);
+  SAME(experiment.steady.tolerance);
+  SAME(experiment.steady.floor);
+  SAME(experiment.steady.successive);
   SAME(experiment.measure_node);
   SAME(experiment.output_every);
   SAME(experiment.output_last);
