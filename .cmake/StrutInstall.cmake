@@ -8,7 +8,7 @@ set(strut_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/strut")
 
 install(TARGETS strut RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(
-  TARGETS strut_engine strut_output strut_pictures strut_parser
+  TARGETS strut_engine strut_output strut_pictures strut_study strut_parser
   EXPORT strut
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
@@ -43,7 +43,7 @@ foreach(header IN LISTS headers)
           DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut/${folder}")
 endforeach()
 
-# CMake: find_package(strut), targets strut::engine, strut::output, strut::pictures, strut::parser.
+# CMake: find_package(strut), targets strut::engine, strut::output, strut::pictures, strut::study, strut::parser.
 install(EXPORT strut NAMESPACE strut:: FILE strutTargets.cmake DESTINATION "${strut_package_dir}")
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/.cmake/strutConfig.cmake.in" "${PROJECT_BINARY_DIR}/strutConfig.cmake"

@@ -57,6 +57,9 @@ extern "C" {
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/equilibria/stand.h"
+#include "engine/study/tradeoff.h"
+#include "engine/study/tradeoff_figure.h"
+#include "engine/study/tradeoff_report.h"
 #include "parser/read_scene.h"
 #include "parser/write_scene.h"
 

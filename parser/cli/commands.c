@@ -15,6 +15,7 @@
 #include "parser/cli/command_plot.h"
 #include "parser/cli/command_rigidity.h"
 #include "parser/cli/command_run.h"
+#include "parser/cli/command_tradeoff.h"
 #include "parser/cli/command_view.h"
 #include "parser/cli/command_write.h"
 #include "parser/diagnostics.h"
@@ -27,6 +28,7 @@ static const strut_command *const commands[] = {
     &strut_command_form,
     &strut_command_path,
     &strut_command_rigidity,
+    &strut_command_tradeoff,
     &strut_command_view,
     &strut_command_export,
     &strut_command_plot,

@@ -62,15 +62,21 @@ static strut_status refuse(const strut_command *command, int code, char **argv) 
   return wrong(command);
 }
 
-/* One --set: splits NAME=VALUE in place. */
-static strut_status take_override(const strut_command *command, char *text, strut_arguments *to) {
+/* One --set or --vary: splits NAME=VALUE in place. */
+static strut_status take_override(const strut_command *command, int id, char *text,
+                                  strut_arguments *to) {
   char *equals = strchr(text, '=');
+  bool varied = id == STRUT_OPTION_VARY;
   if (!equals || equals == text) {
-    fprintf(stderr, "strut %s: --set expects NAME=VALUE, not '%s'\n", command->name, text);
+    fprintf(stderr, "strut %s: --%s expects NAME=%s, not '%s'\n", command->name,
+            varied ? "vary" : "set", varied ? "RANGE" : "VALUE", text);
     return wrong(command);
   }
   *equals = '\0';
-  to->overrides[to->override_count++] = (strut_override){text, equals + 1};
+  if (varied)
+    to->varied[to->varied_count++] = (strut_override){text, equals + 1};
+  else
+    to->overrides[to->override_count++] = (strut_override){text, equals + 1};
   return STRUT_OK;
 }
 
@@ -93,7 +99,8 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     case POSITIONAL:
       return take_model(command, optarg, to);
     case STRUT_OPTION_SET:
-      return take_override(command, optarg, to);
+    case STRUT_OPTION_VARY:
+      return take_override(command, id, optarg, to);
     case STRUT_OPTION_OUTPUT:
       to->output = optarg;
       break;
@@ -108,6 +115,9 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
       break;
     case STRUT_OPTION_STUCK:
       to->stuck = true;
+      break;
+    case STRUT_OPTION_OWN:
+      to->own = true;
       break;
     case STRUT_OPTION_HELP:
       to->help = true;
@@ -150,7 +160,8 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   fill_getopt(command, letters, rows);
   *arguments = (strut_arguments){0};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
-  if (!arguments->overrides) {
+  arguments->varied = strut_allocate((size_t)argc, sizeof *arguments->varied);
+  if (!arguments->overrides || !arguments->varied) {
     fprintf(stderr, "strut %s: out of memory\n", command->name);
     return STRUT_NO_MEMORY;
   }
@@ -185,6 +196,7 @@ const char *strut_option_text(const strut_arguments *arguments, strut_option_id 
 
 void strut_arguments_free(strut_arguments *arguments) {
   strut_release(arguments->overrides);
+  strut_release(arguments->varied);
   *arguments = (strut_arguments){0};
 }
 

@@ -25,6 +25,8 @@ typedef enum strut_option_id {
   STRUT_OPTION_JSON,
   STRUT_OPTION_FORCE,
   STRUT_OPTION_STUCK,
+  STRUT_OPTION_OWN,
+  STRUT_OPTION_VARY,
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -60,6 +62,11 @@ typedef enum strut_option_id {
   STRUT_OPTION_TITLE,
   STRUT_OPTION_LOG,
   STRUT_OPTION_EQUILIBRIA,
+  STRUT_OPTION_MEASURE, /* of a tradeoff */
+  STRUT_OPTION_METHODS,
+  STRUT_OPTION_PERIODS,
+  STRUT_OPTION_POINTS,
+  STRUT_OPTION_BUDGET,
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
@@ -75,10 +82,12 @@ typedef struct strut_option {
 typedef struct strut_arguments {
   const char *model; /* NULL where the command takes none or none is given */
   const char *output;
-  bool help, json, quiet, force, stuck;
+  bool help, json, quiet, force, stuck, own;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides; /* (override_count) */
   size_t override_count;
+  strut_override *varied; /* (varied_count) of --vary */
+  size_t varied_count;
 } strut_arguments;
 
 /** A command: the whole of what the program knows about it. */
