@@ -9,10 +9,10 @@
 #include "engine/model/model.h"
 #include "engine/study/tradeoff_parts.h"
 
-enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, MOST_GROUPS = 64, ABOVE = 2, BEST_METHODS = 2 };
+enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, MOST_GROUPS = 64, ABOVE = 3, BEST_METHODS = 2 };
 static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SHORT = 0.05; /* [s], [1], [s] */
 static const double BELOW = 0.95, IN_DECADE = 5, SPEED_SHARE = 1e-3;
-static const double above[ABOVE] = {1.5, 1.1};
+static const double above[ABOVE] = {2.5, 1.5, 1.1};
 /* Of the budget: the own references, the own rows, their refinement; other models have the rest. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
@@ -183,7 +183,7 @@ static strut_status add_method(study *s, ladders *all, int fidelity,
   study_outcome outcome, refined;
   study_setting first = {method, s->base.step, (double)NAN, 1};
   bool adaptive = strut_study_adaptive(method);
-  if (adaptive) first.step *= 10, first.tolerance = 1e-2;
+  if (adaptive) first.step = fmax(10 * first.step, s->limit), first.tolerance = 1e-2;
   strut_status status = probe(s, fidelity, first, &outcome);
   if (status != STRUT_OK || outcome.cannot) return status;
   bool limited = !adaptive && isfinite(outcome.step_limit) && outcome.step_limit > 0;
@@ -267,7 +267,7 @@ static strut_status prepare(study *s, size_t count) {
   r->point_count = count;
   r->measure = choose_measure(scene, s->options->measure);
   r->value_count = r->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
-  size_t most = count > r->value_count ? count : r->value_count;
+  size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
   s->size = strut_arena_allocate(&r->arena, count, sizeof *s->size);
   s->scale = strut_arena_allocate(&r->arena, count, sizeof *s->scale);
   s->base_evaluations = strut_arena_allocate(&r->arena, count, sizeof *s->base_evaluations);
@@ -279,7 +279,16 @@ static strut_status prepare(study *s, size_t count) {
   strut_status status = measure_points(s);
   if (status != STRUT_OK) return status;
   r->scale = s->scale[0];
-  return strut_study_list_fidelities(s) == STRUT_OK ? STRUT_OK : out_of_memory(s);
+  return STRUT_OK;
+}
+
+/* What stays where it is, or only goes up and down, has no velocity to be measured by. */
+static void look_elsewhere(study *s) {
+  strut_tradeoff *r = s->result;
+  bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(s->scratch[0]) < 1e-9 * s->scale[0];
+  if (s->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
+  r->measure = STRUT_TRADEOFF_POSITION;
+  r->value_count = 2 * s->scenes[0]->node_count;
 }
 
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
@@ -305,6 +314,7 @@ static strut_status choose_base(study *s) {
     if (wild && isfinite(outcome.step_limit)) s->base.step = 0.5 * outcome.step_limit;
     s->base.step = strut_study_fit(s, 0, s->base.step);
     s->base.refine = (double)NAN;
+    s->limit = isfinite(outcome.step_limit) ? outcome.step_limit : 0;
     return STRUT_OK;
   }
   return s->error->status != STRUT_OK
@@ -413,6 +423,8 @@ static strut_status make(study *s, size_t count) {
   ladders own = {.count = 0};
   strut_status status = prepare(s, count);
   if (status == STRUT_OK) status = choose_base(s);
+  if (status == STRUT_OK) look_elsewhere(s);
+  if (status == STRUT_OK && strut_study_list_fidelities(s) != STRUT_OK) status = out_of_memory(s);
   if (status == STRUT_OK) status = own_model(s, &own);
   double others = (double)(r->fidelity_count - 1);
   for (size_t i = 1; i < r->fidelity_count && status == STRUT_OK; i++) {

@@ -21,7 +21,8 @@
 #include "engine/scene/scene.h"
 
 typedef enum strut_tradeoff_measure {
-  STRUT_TRADEOFF_AUTOMATIC, /* velocity with contacts or a run by periods, else position */
+  STRUT_TRADEOFF_AUTOMATIC, /* velocity with contacts or a run by periods, where it is not
+                                0; else position */
   STRUT_TRADEOFF_VELOCITY,  /* summary.velocity, relative to it or to `scale` if that is larger */
   STRUT_TRADEOFF_POSITION,  /* of all nodes at the end: the farthest off, over the scene's size */
   STRUT_TRADEOFF_ENERGY     /* |energy residual| over the energy moved; needs no reference */
@@ -117,6 +118,8 @@ STRUT_API strut_spread strut_spread_of(const double *values, size_t count, doubl
 /** Errors for which strut_tradeoff_best is asked, in the order in which they are told. */
 enum { STRUT_TRADEOFF_LEVELS = 4 };
 STRUT_API double strut_tradeoff_level(int i);
+/** The largest worst total error of a row and of all finer ones of its group. */
+STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
 /**
  * The cheapest row of a fidelity whose worst total error stays within `level`, and that of all
  * smaller steps or tolerances of its group too: a single small error at a large step is luck. -1:

@@ -31,6 +31,7 @@ typedef struct study {
   double *size, *scale; /* (points) [m], [m/s] */
   double *scratch;    /* (max(points, values)) */
   study_setting base;
+  double limit;       /* of the base's method [s]; 0 where there is none */
   double *base_evaluations; /* (points) */
   size_t row_room;
 } study;

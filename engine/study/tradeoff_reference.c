@@ -17,10 +17,10 @@ static int merit(const study *s, const strut_integrator *method) {
   return merit;
 }
 
-static study_setting setting_of(const study_reference *r, int which, int level) {
+static study_setting setting_of(const study *s, const study_reference *r, int which, int level) {
   study_setting setting = {r->method[which], r->limit * pow(0.5, level + 1), (double)NAN, 1};
   if (strut_study_adaptive(r->method[which])) {
-    setting.step = 10 * r->limit;
+    setting.step = fmax(10 * r->limit, s->limit);
     setting.tolerance = FIRST_TOLERANCE * pow(0.1, level);
   }
   return setting;
@@ -46,7 +46,7 @@ static strut_status choose(const study *s, study_reference *r, int which,
     tried[at] = true;
     r->method[which] = best;
     study_outcome outcome;
-    strut_status status = strut_study_run(s, 0, r->fidelity, setting_of(r, which, 0),
+    strut_status status = strut_study_run(s, 0, r->fidelity, setting_of(s, r, which, 0),
                                           r->latest, &outcome);
     if (status != STRUT_OK) return status;
     if (which == 0 && outcome.step_limit > 0 && !outcome.cannot)
@@ -102,9 +102,9 @@ static strut_status refine_point(study *s, study_reference *r, size_t p) {
   double before = strut_study_clock();
   study_outcome outcome;
   strut_status status =
-      strut_study_run(s, p, r->fidelity, setting_of(r, 0, r->level[p]), a, &outcome);
+      strut_study_run(s, p, r->fidelity, setting_of(s, r, 0, r->level[p]), a, &outcome);
   if (status == STRUT_OK)
-    status = strut_study_run(s, p, r->fidelity, setting_of(r, 1, r->level[p]), b, &outcome);
+    status = strut_study_run(s, p, r->fidelity, setting_of(s, r, 1, r->level[p]), b, &outcome);
   if (status != STRUT_OK) return status;
   r->last_cost = strut_study_clock() - before;
   double apart = strut_study_distance(s, p, a, b);
@@ -113,7 +113,7 @@ static strut_status refine_point(study *s, study_reference *r, size_t p) {
     f->floor[p] = apart;
     for (size_t i = 0; i < count; i++) kept[i] = 0.5 * (a[i] + b[i]);
     for (int k = 0; k < 2 && p == 0; k++)
-      name_setting(setting_of(r, k, r->level[p]), f->reference[k]);
+      name_setting(setting_of(s, r, k, r->level[p]), f->reference[k]);
   }
   r->level[p]++;
   return STRUT_OK;

@@ -83,14 +83,19 @@ static bool finer(const strut_tradeoff_row *a, const strut_tradeoff_row *b) {
   return isfinite(a->tolerance) ? b->tolerance <= a->tolerance : b->step <= a->step;
 }
 
+double strut_tradeoff_promise(const strut_tradeoff *r, int row) {
+  double most = 0;
+  for (size_t k = 0; k < r->row_count; k++)
+    if (finer(&r->rows[row], &r->rows[k])) most = fmax(most, r->rows[k].total_spread.worst);
+  return most;
+}
+
 int strut_tradeoff_best(const strut_tradeoff *r, int fidelity, double level) {
   int best = -1;
   for (size_t i = 0; i < r->row_count; i++) {
     const strut_tradeoff_row *row = &r->rows[i];
-    bool keeps = row->fidelity == fidelity;
-    for (size_t k = 0; k < r->row_count && keeps; k++)
-      keeps = !finer(row, &r->rows[k]) || r->rows[k].total_spread.worst <= level;
-    if (keeps && (best < 0 || row->evaluations < r->rows[best].evaluations)) best = (int)i;
+    if (row->fidelity != fidelity || !(strut_tradeoff_promise(r, (int)i) <= level)) continue;
+    if (best < 0 || row->evaluations < r->rows[best].evaluations) best = (int)i;
   }
   return best;
 }

@@ -67,8 +67,8 @@ static void advise_level(strut_buffer *text, const strut_tradeoff *r, double lev
                    refined(row, b), row->evaluations, base->method->name,
                    strut_study_step(base, c));
   if (isfinite(row->cpu)) strut_buffer_add(text, " (%.2g of its CPU time)", row->cpu);
-  strut_buffer_add(text, "; %serror %s\n", r->point_count > 1 ? "worst " : "",
-                   strut_study_percent(row->error_spread.worst, d));
+  strut_buffer_add(text, "; error at most %s\n",
+                   strut_study_percent(strut_tradeoff_promise(r, best), d));
 }
 
 /* Whether a fidelity reaches some level cheaper than the scene's own model does, and which. */
@@ -113,7 +113,7 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int fideli
 }
 
 void strut_study_advise(strut_buffer *text, const strut_tradeoff *r) {
-  strut_buffer_add(text, "Advice: what keeps an error, at that and all finer settings\n");
+  strut_buffer_add(text, "Advice: the cheapest that keep an error, there and at all finer settings that were run\n");
   for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++)
     advise_level(text, r, strut_tradeoff_level(i));
   if (r->fidelity_count > 1)

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""strut tradeoff: errors against closed forms, fronts and percentiles computed once more, its files.
+
+usage: tradeoff_test.py STRUT
+"""
+import csv
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+strut = os.path.abspath(sys.argv[1])
+OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
+HOPPER = "tests/cli/hopper.yaml"
+failures = 0
+
+
+def fail(text):
+    global failures
+    failures += 1
+    print("FAILED:", text)
+
+
+def run(*words, code=0):
+    done = subprocess.run([strut, "tradeoff", *words], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL)
+    if done.returncode != code:
+        fail(f"strut tradeoff {' '.join(words)}: {done.returncode}, not {code}: {done.stderr}")
+    return done
+
+
+def read(*words):
+    done = run(*words, "--json")
+    return json.loads(done.stdout) if done.returncode == 0 else None
+
+
+def infinite(values):
+    return [math.inf if v is None else v for v in values]
+
+
+def close(a, b, relative=1e-12):
+    return a == b or abs(a - b) <= relative * max(abs(a), abs(b))
+
+
+def spread(values):
+    """Median, 90th percentile and worst, from the definitions."""
+    ordered = sorted(values)
+    n = len(ordered)
+    median = ordered[n // 2] if n % 2 else (ordered[n // 2 - 1] + ordered[n // 2]) / 2
+    ninety = next(v for v in ordered if 10 * sum(w <= v for w in ordered) >= 9 * n)
+    return median, ninety, ordered[-1]
+
+
+def check_spreads(what, answer):
+    for row in answer["settings"]:
+        for kind in ("step_error", "total_error"):
+            told = row[kind]
+            wanted = spread(infinite(told["points"]))
+            if not all(close(a, b) for a, b in zip(
+                    wanted, infinite([told["median"], told["ninety"], told["worst"]]))):
+                fail(f"{what}: {row['group']} {row['step']}: {kind} {told}, not {wanted}")
+        if row["diverged"] != sum(v is None for v in row["step_error"]["points"]):
+            fail(f"{what}: {row['group']} {row['step']} does not count what diverged")
+
+
+def check_front(what, answer):
+    """A setting is on the front of its model unless another is no worse in both, better in one."""
+    for row in answer["settings"]:
+        cost, error = row["evaluations"], row["step_error"]["worst"]
+        others = [(r["evaluations"], r["step_error"]["worst"]) for r in answer["settings"]
+                  if r["model"] == row["model"] and r["step_error"]["worst"] is not None]
+        wanted = error is not None and not any(
+            c <= cost and e <= error and (c < cost or e < error) for c, e in others)
+        if row["front"] != wanted:
+            fail(f"{what}: {row['group']} {row['step']}: front is {row['front']}")
+
+
+def check_advice(what, answer):
+    """The cheapest whose group keeps the error from there on down."""
+    own = [r for r in answer["settings"] if r["model"] == answer["models"][0]["name"]]
+    for advice in answer["advice"]:
+        keepers = []
+        for row in own:
+            finer = [r for r in own if r["group"] == row["group"] and
+                     (r["tolerance"] <= row["tolerance"] if row["tolerance"] is not None
+                      else r["step"] <= row["step"])]
+            if all(r["total_error"]["worst"] is not None and
+                   r["total_error"]["worst"] <= advice["error"] for r in finer):
+                keepers.append(row["evaluations"])
+        told = advice["setting"]
+        if (told is None) != (not keepers) or (
+                keepers and answer["settings"][told]["evaluations"] != min(keepers)):
+            fail(f"{what}: advice for {advice['error']} is {told}, costs that keep it: {keepers}")
+
+
+def check_errors(what, answer):
+    """Velocities: errors from values, reference and floor."""
+    for row in answer["settings"]:
+        model = next(m for m in answer["models"] if m["name"] == row["model"])
+        own = answer["models"][0]
+        for p, value in enumerate(row["values"]):
+            for kind, m in (("step_error", model), ("total_error", own)):
+                told, reference = row[kind]["points"][p], m["values"][p]
+                if value is None:
+                    wanted = None
+                else:
+                    wanted = max(abs(value - reference) / max(abs(reference), answer["scale"]),
+                                 m["floor"]["points"][p])
+                if (told is None) != (wanted is None) or (told is not None and
+                                                          not close(told, wanted, 1e-9)):
+                    fail(f"{what}: {row['group']} {row['step']}: {kind} {told}, not {wanted}")
+
+
+# ---- A mass on a spring: x = 1 + a Re R(i w h)^n for RK4, 1 + a cos(n acos(1 - z^2/2)) for Verlet.
+answer = read(OSCILLATOR)
+if answer:
+    w, a, size = 10.0, 0.01, 1.0
+    floor = answer["models"][0]["floor"]["worst"]
+    reference = answer["models"][0]["values"][2]
+    # Its end is where the cosine vanishes.
+    if abs(reference - 1) > max(floor, 1e-13) or not 0 <= floor < 1e-9:
+        fail(f"the oscillator ends at {reference}, floor {floor}")
+    seen = set()
+    for row in answer["settings"]:
+        n = round(answer["duration"] / row["step"])
+        z = w * answer["duration"] / n
+        if row["method"] == "rk4":
+            value = ((1 + 1j * z - z**2 / 2 - 1j * z**3 / 6 + z**4 / 24) ** n).real
+        elif row["method"] == "verlet" and z < 2:
+            value = math.cos(n * math.acos(1 - z * z / 2))
+        else:
+            continue
+        seen.add(row["method"])
+        wanted = max(a * abs(value) / size, floor)
+        if row["step_error"]["worst"] is None or row["step_error"]["worst"] > 1:
+            if abs(value) * a < 1:
+                fail(f"{row['group']} at {row['step']} diverged")
+        elif abs(row["step_error"]["worst"] - wanted) > 2 * floor + 1e-9 * wanted + 1e-13:
+            fail(f"{row['group']} at {row['step']}: {row['step_error']['worst']}, not {wanted}")
+        per_step = {"rk4": 4, "verlet": 1}[row["method"]]
+        ratio = n * per_step / answer["base_evaluations"]
+        if abs(row["evaluations"] / ratio - 1) > 2 / n:
+            fail(f"{row['group']} at {row['step']} costs {row['evaluations']}, not {ratio}")
+    if "rk4" not in seen:
+        fail("no rk4 for the oscillator")
+    steps = [r["step"] for r in answer["settings"] if r["method"] == "rk4"]
+    if not any(h > 2.828 / w for h in steps) or sum(h < 2.829 / w for h in steps) < 8:
+        fail(f"rk4's steps {steps} do not lie on both sides of its limit")
+    if not any(r["diverged"] and r["step_error"]["worst"] is None for r in answer["settings"]):
+        fail("nothing diverged above the limit")
+    check_front("oscillator", answer)
+    check_advice("oscillator", answer)
+    if any(r["method"].endswith("-events") for r in answer["settings"]):
+        fail("methods with events in a scene without any")
+
+# ---- The energy of the same: R R* to the n-th, no reference needed.
+answer = read(OSCILLATOR, "--measure", "energy", "--methods", "rk4")
+if answer:
+    for row in answer["settings"]:
+        n = round(answer["duration"] / row["step"])
+        z = 10.0 * answer["duration"] / n
+        gain = (1 - z**6 / 72 + z**8 / 576) ** n - 1
+        told = row["step_error"]["worst"]
+        if told is not None and z < 1 and not 0.2 * abs(gain) < told < 5 * abs(gain) + 1e-14:
+            fail(f"energy at {row['step']}: {told}, of the order of {abs(gain)}")
+
+# ---- Contact, drawn at random: everything once more from the values. Twice the same bits.
+words = (HOPPER, "--vary", "stiffness=(300 N/m)..(0.5 kN/m)", "--points", "11",
+         "--seed", "7", "--steps", "3", "--own-model")
+answer = read(*words)
+if answer:
+    check_spreads("ball", answer)
+    check_errors("ball", answer)
+    check_front("ball", answer)
+    check_advice("ball", answer)
+    drawn = [p["stiffness"] for p in answer["points"]]
+    if len(set(drawn)) != 11 or not all(300 <= k <= 500 for k in drawn):
+        fail(f"stiffnesses {drawn}")
+    if sum(r["base"] for r in answer["settings"]) != 1:
+        fail("there is not one base")
+    base = answer["settings"][answer["base_setting"]]
+    if base["method"] != "rk4" or base["evaluations"] != 1 or not base["base"]:
+        fail(f"the base is {base}")
+
+    def measured(answer):
+        answer = json.loads(json.dumps(answer))
+        for row in answer["settings"]:
+            row.pop("cpu"), row.pop("seconds")
+        answer.pop("base_seconds"), answer.pop("spent_seconds")
+        return answer
+
+    if measured(read(*words)) != measured(answer):
+        fail("the same seed gives something else")
+    other = read(*words[:-4], "8", *words[-3:])
+    if other and other["points"] == answer["points"]:
+        fail("another seed gives the same points")
+
+# ---- Words are drawn too; other models of a block that slides.
+answer = read("models/basics/sliding-block.yaml", "--steps", "3", "--vary", "mu=0.2,0.3",
+              "--points", "6")
+if answer:
+    if {round(p["mu"], 9) for p in answer["points"]} != {0.2, 0.3}:
+        fail(f"words: {answer['points']}")
+    names = [m["name"] for m in answer["models"]]
+    if names[0] != "the scene's own model" or "Coulomb friction" not in names:
+        fail(f"models of a block: {names}")
+    coulomb = answer["models"][names.index("Coulomb friction")]
+    for point, value in zip(answer["points"], coulomb["values"]):
+        # Way to the stop, in a second: v^2 / (2 mu g).
+        if not close(value, 1 / (2 * point["mu"] * 9.81), 1e-6):
+            fail(f"Coulomb's block at mu {point['mu']}: {value}")
+
+# ---- Files: all of them or none; the same numbers as in the answer.
+with tempfile.TemporaryDirectory() as here:
+    out = os.path.join(here, "deep", "out")
+    done = run(BALL, "--steps", "4", "-o", out, "--own-model")
+    if sorted(os.listdir(out)) != ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"]:
+        fail(f"files: {os.listdir(out)}")
+    if "Advice" not in done.stdout or "0.5 %:" not in done.stdout:
+        fail(f"the table lacks something: {done.stdout}")
+    written = json.load(open(os.path.join(out, "tradeoff.json")))
+    rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
+    if len(rows) != len(written["settings"]):
+        fail(f"{len(rows)} rows of {len(written['settings'])} settings")
+    for row, setting in zip(rows, written["settings"]):
+        error = setting["step_error"]["worst"]
+        if float(row["step [s]"]) != setting["step"] or row["group"] != setting["group"] or \
+                float(row["error worst"]) != (math.inf if error is None else error):
+            fail(f"{row} and {setting} differ")
+    svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
+    if "</svg>" not in svg:
+        fail("half a picture")
+    before = {f: open(os.path.join(out, f), "rb").read() for f in os.listdir(out)}
+    os.mkdir(os.path.join(here, "blocked"))
+    os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
+    done = run(BALL, "--steps", "1", "-o", os.path.join(here, "blocked"), code=4)
+    if done.stdout or os.listdir(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
+        fail(f"a blocked file: {done.stdout} {os.listdir(os.path.join(here, 'blocked'))}")
+    run(BALL, "--methods", "rk5", "-o", out, code=1)
+    if before != {f: open(os.path.join(out, f), "rb").read() for f in os.listdir(out)}:
+        fail("a refusal changed files")
+    done = run(BALL, "--steps", "1", "-o", "/dev/full/x", code=4)
+
+# ---- Wrong use: one sentence, nothing on stdout.
+for words, text in (
+        (("--measure", "speed"), "--measure expects velocity, position or energy"),
+        (("--methods", "rk4,rk5"), "there is no method 'rk5'"),
+        (("--methods", ""), "there is no method ''"),
+        (("--steps", "0"), "a whole number from 1 to 40"),
+        (("--periods", "-1"), "--periods is from"),
+        (("--budget", "3 m"), "--budget expects"),
+        (("--budget", "-3 s"), "--budget is from"),
+        (("--points", "3"), "belong to what --vary draws"),
+        (("--seed", "3"), "belong to what --vary draws"),
+        (("--vary", "height"), "--vary expects NAME=RANGE"),
+        (("--vary", "height=..2"), "--vary expects NAME=LOW..HIGH"),
+        (("--vary", "height=1.."), "--vary expects NAME=LOW..HIGH"),
+        (("--vary", "height=1,,2"), "--vary expects NAME=LOW..HIGH"),
+        (("--vari", "height=1..2"), "did you mean '--vary'")):
+    done = run(BALL, *words, code=1)
+    if done.stdout or text not in done.stderr or done.stderr.count("\n") > 2:
+        fail(f"{words}: {done.stderr}")
+for words, text in ((("--vary", "heigth=1..2"), "heigth"),
+                    (("--vary", "height=1 s..2 s"), "operating point 1"),
+                    (("--set", "step=0"), "step")):
+    done = run(BALL, *words, code=2)
+    if done.stdout or text not in done.stderr:
+        fail(f"{words}: {done.stderr}")
+done = run("models/gallery/x-joint.yaml", code=2)
+if done.stdout or not done.stderr:
+    fail(f"a scene without a run: {done.stderr}")
+sys.exit(failures > 0)
