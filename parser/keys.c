@@ -73,6 +73,8 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
       return STRUT_DIM_STIFFNESS;
     case STRUT_MEASURE_DAMPING:
       return STRUT_DIM_DAMPING;
+    case STRUT_MEASURE_DISSIPATION:
+      return STRUT_DIM_DISSIPATION;
     default:
       return STRUT_DIM_NONE;
   }

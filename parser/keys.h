@@ -75,7 +75,8 @@ typedef enum strut_measure {
   STRUT_MEASURE_ACCELERATION,
   STRUT_MEASURE_FORCE,
   STRUT_MEASURE_STIFFNESS,
-  STRUT_MEASURE_DAMPING
+  STRUT_MEASURE_DAMPING,
+  STRUT_MEASURE_DISSIPATION
 } strut_measure;
 
 typedef enum strut_key_range {
@@ -104,7 +105,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 20 }; /* of one room */
+enum { STRUT_MOST_KEYS = 24 }; /* of one room */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a room. */

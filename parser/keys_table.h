@@ -19,6 +19,7 @@
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, true, 0, "", "`[x, y]` or the keys of a node", "The points of the structure.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, false, 0, "", "the keys of a member", "What joins the nodes.") \
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, false, 0, "consistent", "consistent|lumped", "How a member's mass acts: as of a uniform rod (the paper's), or half at each end.") \
+  X(SCENE, BARS, "bars", WORD, NONE, ANY, false, 0, "elastic", "elastic|rigid", "Of a run: `rigid` bars keep the length they have at its start, as loaded there; their stiffness and damping then count only while it settles.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, false, 0, "[0, 0]", "", "Acceleration of free fall.") \
   X(SCENE, GROUND, "ground", MAP, NONE, ANY, false, 0, "", "", "The line that nodes may touch. Without it there is none.") \
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, false, 0, "", "the keys of an actuator", "Members whose rest length a signal changes. Several on one member add up.") \
@@ -50,17 +51,21 @@
   X(GROUND, BELT_SPEED, "belt_speed", NUMBER, VELOCITY, ANY, false, 0, "0", "", "Speed of the surface along itself, towards +x.") \
   X(GROUND, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, true, 0, "", "", "Force for each depth of a node below the line.") \
   X(GROUND, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, false, 0, "0", "", "Force for each speed of a node that moves into the ground.") \
+  X(GROUND, DAMPING_LAW, "damping_law", WORD, NONE, ANY, false, 0, "printed", "printed|hunt_crossley", "`printed`: stiffness * depth + damping * speed inwards, which jumps at touchdown. `hunt_crossley`: stiffness * depth * (1 + dissipation * speed inwards), never pulling, without a jump.") \
+  X(GROUND, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, false, 0, "0", "", "Of the Hunt-Crossley law, instead of `damping`.") \
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, false, 0, "", "", "Friction of every contact. Without it there is none.") \
   X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, false, 0, "all", "", "Which nodes may touch the ground: `all`, or a list.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, false, 0, "", "the keys of a contact", "What is different for a node; named by the node.") \
-  X(FRICTION, LAW, "law", WORD, NONE, ANY, false, 0, "karnopp", "none|karnopp", "Coulomb friction with Karnopp's stick band, or none.") \
+  X(FRICTION, LAW, "law", WORD, NONE, ANY, false, 0, "karnopp", "none|karnopp|coulomb|smooth", "`karnopp`: Coulomb friction with a stick band, the paper's. `coulomb`: exact sticking; needs a method with events. `smooth`: -mu_kinetic N u / sqrt(u^2 + width^2), which creeps.") \
   X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Both coefficients.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sticking.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sliding.") \
   X(FRICTION, STICK_VELOCITY, "stick_velocity", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "", "", "Half the width of the stick band. Karnopp's law needs it.") \
+  X(FRICTION, WIDTH, "width", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "", "", "Of the smooth law, which needs it: the speed at which friction has 0.71 of its full value.") \
   X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, false, 0, "", "", "Where its defaults come from; the later group wins.") \
   X(CONTACT, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, false, 0, "the ground's", "", "Instead of the ground's.") \
   X(CONTACT, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, false, 0, "the ground's", "", "Instead of the ground's.") \
+  X(CONTACT, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, false, 0, "the ground's", "", "Instead of the ground's.") \
   X(CONTACT, FRICTION, "friction", MAP, NONE, ANY, false, 0, "the ground's", "", "Overrides the ground's key by key.") \
   X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, true, 0, "", "", "The member it drives.") \
   X(ACTUATOR, SIGNAL, "signal", SIGNAL, LENGTH, ANY, true, 0, "", "", "Added to the member's rest length.") \

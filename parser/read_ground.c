@@ -7,7 +7,7 @@
 /* Friction of one contact while layers of keys are laid over each other. */
 typedef struct friction_layers {
   strut_friction friction;
-  bool any, law, statics, kinetics, stick; /* given so far */
+  bool any, law, statics, kinetics, stick, width; /* given so far */
   bool broken;
   const strut_tree *last; /* the mapping of the top layer, */
   strut_owner owner;      /* and whose it is */
@@ -23,7 +23,8 @@ static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owne
        &f->friction.mu_kinetic},
       {STRUT_KEY_FRICTION_MU_STATIC, &f->statics, NULL, &f->friction.mu_static, NULL},
       {STRUT_KEY_FRICTION_MU_KINETIC, &f->kinetics, NULL, &f->friction.mu_kinetic, NULL},
-      {STRUT_KEY_FRICTION_STICK_VELOCITY, &f->stick, NULL, &f->friction.stick_velocity, NULL}};
+      {STRUT_KEY_FRICTION_STICK_VELOCITY, &f->stick, NULL, &f->friction.stick_velocity, NULL},
+      {STRUT_KEY_FRICTION_WIDTH, &f->width, NULL, &f->friction.width, NULL}};
   f->any = true;
   f->last = fields->map;
   f->owner = owner;
@@ -43,32 +44,38 @@ static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owne
   }
 }
 
-/* Is the friction of Karnopp's law complete? Says at the top layer what is missing, once each. */
+static void lacks_speed(strut_reader *reader, const friction_layers *f, const char *key) {
+  char expected[200];
+  strut_say(reader, f->last->place, "%s lacks '%s', expected %s",
+            strut_owner_text(reader, f->owner), key,
+            strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
+}
+
+/* Is what the friction law needs complete? Says at the top layer what is missing, once each. */
 static bool finish_friction(strut_reader *reader, friction_layers *f, const strut_tree **said) {
   if (!f->any || f->broken) return !f->broken;
   if (!f->law) f->friction.law = STRUT_FRICTION_KARNOPP;
   if (f->friction.law == STRUT_FRICTION_NONE) return true;
+  bool smooth = f->friction.law == STRUT_FRICTION_SMOOTH;
+  bool stick = f->friction.law != STRUT_FRICTION_KARNOPP || f->stick, width = !smooth || f->width;
   const char *missing = !f->statics && !f->kinetics ? "mu"
-                        : !f->statics               ? "mu_static"
+                        : !f->statics && !smooth    ? "mu_static"
                         : !f->kinetics              ? "mu_kinetic"
                                                     : NULL;
-  if (!missing && f->stick) return true;
+  if (!missing && stick && width) return true;
   if (*said == f->last) return false;
   *said = f->last;
-  char expected[200];
   if (missing)
     strut_say(reader, f->last->place, "%s lacks '%s', expected a number such as 0.5",
               strut_owner_text(reader, f->owner), missing);
-  if (!f->stick)
-    strut_say(reader, f->last->place, "%s lacks 'stick_velocity', expected %s",
-              strut_owner_text(reader, f->owner),
-              strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
+  if (!stick) lacks_speed(reader, f, "stick_velocity");
+  if (!width) lacks_speed(reader, f, "width");
   return false;
 }
 
 /* What the contacts of the ground have in common. */
 typedef struct ground_defaults {
-  double stiffness, damping;
+  double stiffness, damping, dissipation;
   friction_layers friction;
   bool broken;
   const strut_tree *said;
@@ -100,12 +107,15 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   bool fine = !defaults->broken;
   contact->stiffness = defaults->stiffness;
   contact->damping = defaults->damping;
+  contact->dissipation = defaults->dissipation;
   if (key) {
     strut_fields fields;
     strut_read_fields(reader, STRUT_ROOM_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
     contact->stiffness = strut_number_or(&fields, STRUT_KEY_CONTACT_STIFFNESS, defaults->stiffness);
     contact->damping = strut_number_or(&fields, STRUT_KEY_CONTACT_DAMPING, defaults->damping);
+    contact->dissipation =
+        strut_number_or(&fields, STRUT_KEY_CONTACT_DISSIPATION, defaults->dissipation);
     own_friction(reader, &fields, owner, &layers);
     if (fields.broken) fine = false;
   }
@@ -192,8 +202,12 @@ void strut_read_ground(strut_reader *reader) {
   ground->height = strut_number_or(fields, STRUT_KEY_GROUND_HEIGHT, 0.0);
   ground->slope = strut_number_or(fields, STRUT_KEY_GROUND_SLOPE, 0.0);
   ground->belt_speed = strut_number_or(fields, STRUT_KEY_GROUND_BELT_SPEED, 0.0);
+  const strut_slot *law = strut_slot_of(fields, STRUT_KEY_GROUND_DAMPING_LAW);
+  if (law->state == STRUT_GIVEN) ground->damping_law = (strut_ground_damping)law->word;
   ground_defaults defaults = {.stiffness = strut_number_or(fields, STRUT_KEY_GROUND_STIFFNESS, 1.0),
                               .damping = strut_number_or(fields, STRUT_KEY_GROUND_DAMPING, 0.0),
+                              .dissipation =
+                                  strut_number_or(fields, STRUT_KEY_GROUND_DISSIPATION, 0.0),
                               .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
   if (friction->state == STRUT_GIVEN) {

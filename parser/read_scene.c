@@ -20,8 +20,10 @@ static void read_head(strut_reader *reader) {
   scene->description = keep_text(reader, STRUT_KEY_SCENE_DESCRIPTION);
   scene->source = keep_text(reader, STRUT_KEY_SCENE_SOURCE);
   const strut_slot *model = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MASS_MODEL);
+  const strut_slot *bars = strut_slot_of(&reader->top, STRUT_KEY_SCENE_BARS);
   strut_slot *gravity = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GRAVITY);
   if (model->state == STRUT_GIVEN) scene->mass_model = (strut_mass_model)model->word;
+  if (bars->state == STRUT_GIVEN) scene->bar_model = (strut_bar_model)bars->word;
   if (gravity->state == STRUT_GIVEN &&
       !strut_read_pair(reader, gravity->value, "gravity", (strut_owner){"the scene", NULL},
                        STRUT_DIM_ACCELERATION, scene->gravity))

@@ -91,6 +91,7 @@ static const struct dimension_words {
     {FORCE, "a force", "10 N", "N"},
     {{1, 0, -2, 0}, "a stiffness", "20 N/cm", "N/m"},
     {{1, 0, -1, 0}, "a damping", "0.2 N s/m", "N s/m"},
+    {{0, -1, 1, 0}, "a dissipation", "0.5 s/m", "s/m"},
     {{0, 2, 0, 0}, "an area", "10 mm^2", "m^2"},
     {{0, 3, 0, 0}, "a volume", "10 cm^3", "m^3"},
     {{1, -3, 0, 0}, "a density", "1000 kg/m^3", "kg/m^3"},

@@ -54,6 +54,7 @@ static void put_head(strut_writer *writer) {
   put_parameters(writer);
   strut_put(writer, "mass_model: ");
   strut_put(writer, scene->mass_model == STRUT_MASS_LUMPED ? "lumped\n" : "consistent\n");
+  if (scene->bar_model == STRUT_BARS_RIGID) strut_put(writer, "bars: rigid\n");
   strut_put(writer, "gravity: ");
   strut_put_pair(writer, scene->gravity);
   strut_put(writer, "\n");
@@ -108,25 +109,27 @@ static void put_members(strut_writer *writer) {
 
 static bool no_friction(const strut_friction *f) {
   return f->law == STRUT_FRICTION_NONE && f->mu_static == 0.0 && f->mu_kinetic == 0.0 &&
-         f->stick_velocity == 0.0;
+         f->stick_velocity == 0.0 && f->width == 0.0;
 }
 
 static bool same_friction(const strut_friction *a, const strut_friction *b) {
   return a->law == b->law &&
          same((const double[2]){a->mu_static, a->mu_kinetic},
               (const double[2]){b->mu_static, b->mu_kinetic}) &&
-         a->stick_velocity == b->stick_velocity;
+         a->stick_velocity == b->stick_velocity && a->width == b->width;
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
+  static const char *const laws[] = {"none", "karnopp", "coulomb", "smooth"};
   bool first = false;
   strut_put(writer, "{law: ");
-  strut_put(writer, f->law == STRUT_FRICTION_KARNOPP ? "karnopp" : "none");
+  strut_put(writer, laws[f->law]);
   strut_put_key(writer, &first, "mu_static");
   strut_put_number(writer, f->mu_static);
   strut_put_key(writer, &first, "mu_kinetic");
   strut_put_number(writer, f->mu_kinetic);
   strut_put_value(writer, &first, "stick_velocity", f->stick_velocity);
+  strut_put_value(writer, &first, "width", f->width);
   strut_put(writer, "}");
 }
 
@@ -136,13 +139,16 @@ static bool put_contact(strut_writer *writer, const strut_contact *c, bool share
   const strut_contact *all = &scene->contacts[0];
   bool first = true, friction = !shared && !no_friction(&c->friction);
   bool stiffness = c->stiffness != all->stiffness, damping = c->damping != all->damping;
-  if (!stiffness && !damping && !friction) return begun;
+  bool dissipation = c->dissipation != all->dissipation;
+  if (!stiffness && !damping && !dissipation && !friction) return begun;
   strut_put(writer, begun ? "    " : "  contacts:\n    ");
   strut_put_name(writer, scene->nodes[c->node].name);
   strut_put(writer, ": {");
   if (stiffness) strut_put_value(writer, &first, "stiffness", c->stiffness);
   if (damping) strut_put_key(writer, &first, "damping");
   if (damping) strut_put_number(writer, c->damping);
+  if (dissipation) strut_put_key(writer, &first, "dissipation");
+  if (dissipation) strut_put_number(writer, c->dissipation);
   if (friction) strut_put_key(writer, &first, "friction");
   if (friction) put_friction(writer, &c->friction);
   strut_put(writer, "}\n");
@@ -168,6 +174,9 @@ static void put_ground(strut_writer *writer) {
   put_line(writer, "belt_speed", scene->ground.belt_speed);
   put_line(writer, "stiffness", all->stiffness);
   put_line(writer, "damping", all->damping);
+  if (scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY)
+    strut_put(writer, "  damping_law: hunt_crossley\n");
+  put_line(writer, "dissipation", all->dissipation);
   for (size_t i = 1; i < scene->contact_count; i++)
     if (!same_friction(&all[i].friction, &all->friction)) shared = false;
   if (shared && !no_friction(&all->friction)) {

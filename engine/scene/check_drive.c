@@ -142,7 +142,7 @@ void strut_check_signals(strut_checker *checker) {
 
 static void check_friction(strut_checker *checker, size_t index, const char *owner) {
   const strut_friction *f = &checker->scene->contacts[index].friction;
-  if ((unsigned)f->law > STRUT_FRICTION_KARNOPP) {
+  if ((unsigned)f->law > STRUT_FRICTION_SMOOTH) {
     strut_find(checker, STRUT_ON_CONTACT, index, "law", "the friction law of %s is unknown", owner);
     return;
   }
@@ -152,6 +152,8 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
                    STRUT_NOT_NEGATIVE);
   strut_find_range(checker, STRUT_ON_CONTACT, index, "stick_velocity", owner, f->stick_velocity,
                    f->law == STRUT_FRICTION_KARNOPP ? STRUT_ABOVE_ZERO : STRUT_NOT_NEGATIVE);
+  strut_find_range(checker, STRUT_ON_CONTACT, index, "width", owner, f->width,
+                   f->law == STRUT_FRICTION_SMOOTH ? STRUT_ABOVE_ZERO : STRUT_NOT_NEGATIVE);
 }
 
 void strut_check_ground(strut_checker *checker) {
@@ -165,6 +167,8 @@ void strut_check_ground(strut_checker *checker) {
     strut_find(checker, STRUT_ON_GROUND, 0, "slope",
                "the slope of the ground must lie between -90 deg and 90 deg, found %g deg",
                g->slope / QUARTER_TURN * 90.0);
+  if ((unsigned)g->damping_law > STRUT_DAMPING_HUNT_CROSSLEY)
+    strut_find(checker, STRUT_ON_GROUND, 0, "damping_law", "the ground's damping law is unknown");
   if (g->present && !scene->contact_count)
     strut_find(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
   if (!g->present && scene->contact_count)
@@ -185,6 +189,8 @@ void strut_check_ground(strut_checker *checker) {
                      STRUT_ABOVE_ZERO);
     strut_find_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
                      STRUT_NOT_NEGATIVE);
+    strut_find_range(checker, STRUT_ON_CONTACT, i, "dissipation", owner, c->dissipation,
+                     STRUT_NOT_NEGATIVE);
     check_friction(checker, i, owner);
   }
 }
@@ -199,6 +205,11 @@ void strut_check_drives(strut_checker *checker) {
     strut_called(owner, "actuator", a->name, i);
     if (!there(a->member, scene->member_count))
       strut_find(checker, STRUT_ON_ACTUATOR, i, "member", "%s drives a member that does not exist",
+                 owner);
+    else if (scene->bar_model == STRUT_BARS_RIGID &&
+             scene->members[a->member].kind == STRUT_BAR)
+      strut_find(checker, STRUT_ON_ACTUATOR, i, "member",
+                 "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic",
                  owner);
     if (!there(a->signal, scene->signal_count))
       strut_find(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
@@ -296,6 +307,8 @@ void strut_check_experiment(strut_checker *checker) {
     strut_find(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
   if ((unsigned)scene->mass_model > STRUT_MASS_LUMPED)
     strut_find(checker, STRUT_ON_SCENE, 0, "mass_model", "the mass model is unknown");
+  if ((unsigned)scene->bar_model > STRUT_BARS_RIGID)
+    strut_find(checker, STRUT_ON_SCENE, 0, "bars", "the model of bars is unknown");
   if (e->steady.wanted && !(e->periods > 0.0) && checker->purpose == STRUT_FOR_RUN)
     strut_find(checker, STRUT_ON_RUN, 0, "measure",
                "steady motion is looked for from period to period: the run needs 'periods' and 'of'");

@@ -59,7 +59,7 @@ typedef enum strut_friction_law {
   STRUT_FRICTION_NONE,
   STRUT_FRICTION_KARNOPP, /* with a stick band, equation (9) of the paper as printed */
   STRUT_FRICTION_COULOMB, /* exact: a stuck node does not move. Needs a method with events */
-  STRUT_FRICTION_SMOOTH   /* -mu N tanh(u / width): creeps, but has no jump */
+  STRUT_FRICTION_SMOOTH   /* -mu N u / sqrt(u^2 + width^2): creeps, but has no jump */
 } strut_friction_law;
 
 /** Friction between a node and the ground, u being the speed along it. */

@@ -55,15 +55,18 @@ static void same_ground(const strut_scene *a, const strut_scene *b) {
   SAME(ground.height);
   SAME(ground.slope);
   SAME(ground.belt_speed);
+  SAME(ground.damping_law);
   assert_int_equal(a->contact_count, b->contact_count);
   for (size_t i = 0; i < a->contact_count; i++) {
     SAME(contacts[i].node);
     SAME(contacts[i].stiffness);
     SAME(contacts[i].damping);
+    SAME(contacts[i].dissipation);
     SAME(contacts[i].friction.law);
     SAME(contacts[i].friction.mu_static);
     SAME(contacts[i].friction.mu_kinetic);
     SAME(contacts[i].friction.stick_velocity);
+    SAME(contacts[i].friction.width);
   }
 }
 
@@ -134,6 +137,7 @@ static void same_scene(const strut_scene *a, const strut_scene *b) {
   assert_string_equal(a->description, b->description);
   assert_string_equal(a->source, b->source);
   SAME(mass_model);
+  SAME(bar_model);
   SAME(gravity);
   same_nodes(a, b);
   same_members(a, b);
