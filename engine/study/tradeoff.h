@@ -7,8 +7,8 @@
  * distance of its converged answer from that of the scene's own model. The *total error* is the
  * distance of a run from the latter.
  *
- * A reference is what two different methods agree on, each refined until they agree to a hundredth of
- * the smallest error there is, or until the budget is spent; how far they still differ is the
+ * A reference is what two different methods agree on, each refined until they agree to a hundredth
+ * of the smallest error there is, or until the budget is spent; how far they still differ is the
  * *floor*, and no error is given as smaller than it.
  */
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_H
@@ -80,7 +80,7 @@ typedef struct strut_tradeoff_row {
   double evaluations;   /* of the forces over those of the base: median over the points */
   double cpu;           /* CPU time over that of the base, measured in turn; NAN: not measured */
   double seconds;       /* CPU time of a run, median [s]; NAN: not measured */
-  bool front;           /* no other of the same model is as cheap and as good: `evaluations`, worst */
+  bool front;           /* no other of its model is as cheap and as good: `evaluations`, worst */
 } strut_tradeoff_row;
 
 /** All of it; strut_tradeoff_free. Names and methods outlive it. */

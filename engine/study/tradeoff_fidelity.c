@@ -99,9 +99,10 @@ static void describe(const study *s, kind what, strut_tradeoff_fidelity *f) {
   }
   if (what != GROUND) return;
   bool printed = scene->ground.damping_law == STRUT_DAMPING_PRINTED;
-  snprintf(f->name, sizeof f->name, "%s", printed ? "Hunt-Crossley ground" : "printed ground damping");
+  snprintf(f->name, sizeof f->name, "%s",
+           printed ? "Hunt-Crossley ground" : "printed ground damping");
   snprintf(f->remark, sizeof f->remark,
-           "damps as much as the scene's law at the depth at which the ground carries the weight, %s",
+           "damps as the scene's law does at the depth at which the ground carries the weight, %s",
            strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
 }
 

@@ -32,7 +32,7 @@ typedef struct study {
   double *scratch;    /* (max(points, values)) */
   study_setting base;
   double limit;       /* of the base's method [s]; 0 where there is none */
-  double *base_evaluations; /* (points) */
+  double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
   size_t row_room;
 } study;
 
@@ -77,7 +77,7 @@ typedef struct study_reference {
   double limit;        /* [s] first step of the first method */
   int *level, *idle;   /* (points) next level; levels in a row that did not help */
   double last_cost;    /* CPU time of the latest level of one point [s] */
-  double *latest;      /* (2, values) */
+  double *latest, *before; /* (2, values), (points, 2, values) */
 } study_reference;
 
 /** Chooses the methods. Where there are none, the fidelity is not run and says why. */

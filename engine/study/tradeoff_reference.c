@@ -50,7 +50,7 @@ static strut_status choose(const study *s, study_reference *r, int which,
                                           r->latest, &outcome);
     if (status != STRUT_OK) return status;
     if (which == 0 && outcome.step_limit > 0 && !outcome.cannot)
-      r->limit = fmin(s->base.step, outcome.step_limit);
+      r->limit = isfinite(outcome.step_limit) ? 0.5 * outcome.step_limit : s->base.step;
     if (!outcome.cannot) return STRUT_OK;
     r->method[which] = NULL;
   }
@@ -68,7 +68,9 @@ strut_status strut_study_reference_begin(study *s, int fidelity, study_reference
   r->level = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->level);
   r->idle = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->idle);
   r->latest = strut_arena_allocate(&result->arena, 2 * result->value_count, sizeof *r->latest);
-  if (!r->level || !r->idle || !r->latest)
+  r->before = strut_arena_allocate(&result->arena, 2 * result->value_count * result->point_count,
+                                   sizeof *r->before);
+  if (!r->level || !r->idle || !r->latest || !r->before)
     return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
   f->run = true;
   for (size_t p = 0; p < result->point_count; p++) f->floor[p] = HUGE_VAL;
@@ -93,6 +95,21 @@ static void name_setting(study_setting setting, char name[100]) {
              strut_quantity_of(setting.step, 3, "s").text);
 }
 
+/*
+ * How far a pair of answers is from what is sought: their distance, or a tenth of what either changed
+ * by since the level before, if that is more. Two coarse answers may agree by chance.
+ */
+static double doubt(const study *s, const study_reference *r, size_t p) {
+  size_t count = s->result->value_count;
+  const double *now = r->latest, *before = r->before + 2 * p * count;
+  if (r->level[p] == 0) return HUGE_VAL;
+  double apart = strut_study_distance(s, p, now, now + count);
+  for (size_t k = 0; k < 2; k++)
+    apart = fmax(apart,
+                 0.1 * strut_study_distance(s, p, now + k * count, before + k * count));
+  return apart;
+}
+
 /* One level more at one point. */
 static strut_status refine_point(study *s, study_reference *r, size_t p) {
   strut_tradeoff *result = s->result;
@@ -107,8 +124,10 @@ static strut_status refine_point(study *s, study_reference *r, size_t p) {
     status = strut_study_run(s, p, r->fidelity, setting_of(s, r, 1, r->level[p]), b, &outcome);
   if (status != STRUT_OK) return status;
   r->last_cost = strut_study_clock() - before;
-  double apart = strut_study_distance(s, p, a, b);
-  r->idle[p] = apart < 0.5 * f->floor[p] ? 0 : r->idle[p] + 1;
+  double apart = doubt(s, r, p);
+  memcpy(r->before + 2 * p * count, r->latest, 2 * count * sizeof *r->latest);
+  bool idle = r->level[p] > 1 && !(apart < 0.5 * f->floor[p]);
+  r->idle[p] = idle ? r->idle[p] + 1 : 0;
   if (apart < f->floor[p]) {
     f->floor[p] = apart;
     for (size_t i = 0; i < count; i++) kept[i] = 0.5 * (a[i] + b[i]);
@@ -127,7 +146,7 @@ strut_status strut_study_reference_refine(study *s, study_reference *r, double t
   for (bool more = true; more;) {
     more = false;
     for (size_t p = 0; p < result->point_count; p++) {
-      bool first = r->level[p] == 0;
+      bool first = r->level[p] < 2;
       if (f->floor[p] <= target || r->level[p] >= MOST_LEVELS || r->idle[p] >= MOST_IDLE) continue;
       if (!first && strut_study_left(s, share) < 2.5 * r->last_cost) continue;
       strut_status status = refine_point(s, r, p);

@@ -53,7 +53,7 @@ static void add_row(strut_buffer *table, const strut_tradeoff *r, const strut_tr
   char a[STRUT_STUDY_WORDS], b[STRUT_STUDY_WORDS], cpu[STRUT_STUDY_WORDS] = "-";
   char worst[STRUT_STUDY_WORDS];
   if (isfinite(row->cpu)) snprintf(cpu, sizeof cpu, "%.3g", row->cpu);
-  strut_buffer_add(table, "%c %-26s %9s %9.3g %8s", row->front ? '*' : row->base ? '=' : ' ',
+  strut_buffer_add(table, "%c%c %-25s %9s %9.3g %8s", row->front ? '*' : ' ', row->base ? '=' : ' ',
                    strut_study_group(row, a), strut_study_step(row, b), row->evaluations, cpu);
   strut_buffer_add(table, " %9s", strut_study_percent(row->error_spread.median, a));
   if (r->point_count > 1) {

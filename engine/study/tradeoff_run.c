@@ -47,7 +47,8 @@ static strut_span span_of(const study *s, size_t point) {
 double strut_study_fit(const study *s, size_t point, double step) {
   strut_span span = span_of(s, point);
   double turns = span.period > 0 ? span.duration / span.period : 0;
-  double unit = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns ? span.period : span.duration;
+  bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
+  double unit = whole ? span.period : span.duration;
   return unit / ceil(unit / step * (1 - 1e-9));
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors from values and references; spreads over the operating points; fronts; the best bargain. */
+/* Errors from values and references; spreads over the operating points; fronts; best bargains. */
 #include <math.h>
 #include <stdlib.h>
 

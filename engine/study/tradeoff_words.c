@@ -113,7 +113,8 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int fideli
 }
 
 void strut_study_advise(strut_buffer *text, const strut_tradeoff *r) {
-  strut_buffer_add(text, "Advice: the cheapest that keep an error, there and at all finer settings that were run\n");
+  strut_buffer_add(text, "Advice: the cheapest that keep an error, there and at all finer "
+                         "settings that were run\n");
   for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++)
     advise_level(text, r, strut_tradeoff_level(i));
   if (r->fidelity_count > 1)

@@ -63,7 +63,8 @@ static strut_status read_methods(const strut_arguments *arguments, wishes *w) {
     const strut_integrator *found = NULL;
     for (size_t i = 0; strut_integrator_at(i); i++) {
       const char *name = strut_integrator_at(i)->name;
-      if (strlen(name) == length && strncmp(name, text, length) == 0) found = strut_integrator_at(i);
+      if (strlen(name) == length && strncmp(name, text, length) == 0)
+        found = strut_integrator_at(i);
     }
     if (!found || w->study.method_count == MOST_METHODS) return bad_method(text, (int)length);
     w->methods[w->study.method_count++] = found;
@@ -134,7 +135,8 @@ static strut_status write_files(const char *stage, const strut_tradeoff *result,
   strut_release(csv);
   int used = snprintf(path, sizeof path, "%s/tradeoff.svg", stage);
   if (status == STRUT_OK && used >= (int)sizeof path)
-    status = strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", stage);
+    status = strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long",
+                        stage);
   return status == STRUT_OK ? strut_tradeoff_figure(path, PAGE, result, error) : status;
 }
 

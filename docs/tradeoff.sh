@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Measures what accuracy costs, for the crawler and five scenes of other kinds: the diagrams and
+# tables of docs/numerics.md, section "What accuracy costs". Takes some ten minutes.
+#
+#   sh docs/tradeoff.sh build/release/strut docs/tradeoff
+set -eu
+[ $# -eq 2 ] || { echo "usage: docs/tradeoff.sh STRUT DIRECTORY" >&2; exit 1; }
+here=$(cd "$(dirname "$0")" && pwd)
+strut=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+mkdir -p "$2"
+output=$(cd "$2" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# study NAME MODEL OPTION...: NAME.svg and what was printed, NAME.txt.
+study() {
+  name=$1 model=$2
+  shift 2
+  "$strut" tradeoff "$here/../models/$model.yaml" "$@" -o "$work/$name" |
+    sed '/^  took /d' >"$output/$name.txt"
+  awk -f "$here/smaller.awk" "$work/$name/tradeoff.svg" >"$output/$name.svg"
+  echo "$name"
+}
+
+study crawler crawler/crawler --vary frequency=9.8..15 --vary friction=0.05..0.5 \
+  --vary start=I,II --points 40 --seed 1 --steps 6 --budget "${BUDGET:-300 s}"
+study smooth gallery/double-pendulum
+study contact basics/bouncing-node
+study friction gallery/two-mass-crawler
+study stiff basics/pendulum
+study cable gallery/d-bar
