@@ -23,10 +23,14 @@ strut_model *motion_compile(const strut_scene *scene) {
 }
 
 void motion_begin(motion *m, const strut_scene *scene, double step) {
+  motion_begin_by(m, scene, "rk4", step);
+}
+
+void motion_begin_by(motion *m, const strut_scene *scene, const char *method, double step) {
   m->model = motion_compile(scene);
   assert_non_null(m->model->mass);
   assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
-  m->method = strut_integrator_find("rk4");
+  m->method = strut_integrator_find(method);
   assert_non_null(m->method);
   m->workspace = m->method->create(m->model, m->state);
   assert_non_null(m->workspace);

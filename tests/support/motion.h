@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * A compiled scene on its way through time: model, state and RK4's workspace in one.
+ * A compiled scene on its way through time: model, state and a method's workspace in one.
  */
 #ifndef STRUT_TESTS_SUPPORT_MOTION_H
 #define STRUT_TESTS_SUPPORT_MOTION_H
@@ -19,6 +19,8 @@ typedef struct motion {
 
 /** Checks and compiles the scene and stands at its start; whatever fails, fails the test. */
 void motion_begin(motion *m, const strut_scene *scene, double step);
+/** The same by the method of that name. */
+void motion_begin_by(motion *m, const strut_scene *scene, const char *method, double step);
 void motion_steps(motion *m, int64_t count);
 void motion_end(motion *m);
 

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Methods with located events against closed forms: bounce, belt, Coulomb's oscillator. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double PI = 3.14159265358979323846;
+static const char *const LOCATED[] = {"rk4-events", "adaptive"};
+enum { LOCATED_COUNT = sizeof LOCATED / sizeof LOCATED[0] };
+
+/* The damper of (8) acts on the way in only: x'' + 2 zeta w x' + w^2 x = 0, then without damping. */
+static double restitution(double zeta) {
+  if (zeta < 1) return exp(-zeta * acos(zeta) / sqrt(1 - zeta * zeta));
+  return zeta == 1 ? exp(-1.0) : exp(-zeta * acosh(zeta) / sqrt(zeta * zeta - 1));
+}
+
+/* The fastest rate of the contact over w: how much shorter a step must be to resolve it. */
+static double hurry(double zeta) { return zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1; }
+
+/*
+ * Speed after the bounce over speed before it; z is the step times the contact's fastest rate. The
+ * node arrives and leaves inside a step.
+ */
+static double bounce(const char *method, double zeta, double z) {
+  const double k = 2500, mass = 0.04, omega = sqrt(k / mass) * hurry(zeta), speed = 3;
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 1.37 * speed * 0.01 / omega, mass);
+  scene.nodes[0].velocity[1] = -speed;
+  build_contact(&scene, 0, k, 2 * zeta * sqrt(k * mass));
+  scene.experiment.tolerance = 1e-11;
+  motion_begin_by(&m, &scene, method, z / omega);
+  double touching = (zeta < 1 ? PI : PI + 4 * zeta) * hurry(zeta);
+  motion_steps(&m, (int64_t)ceil((touching + 0.1) / z) + 2);
+  assert_true(m.state->q[1] > 0);
+  double e = m.state->v[1] / speed;
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return e;
+}
+
+static void test_restitution_of_the_one_sided_damper(void **unused) {
+  (void)unused;
+  static const double zeta[] = {0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1, 1.5, 3};
+  for (int k = 0; k < LOCATED_COUNT; k++) {
+    double worst = 0;
+    for (size_t i = 0; i < sizeof zeta / sizeof zeta[0]; i++) {
+      double expected = restitution(zeta[i]), e = bounce(LOCATED[k], zeta[i], 0.01);
+      worst = fmax(worst, fabs(e - expected));
+      assert_near(e, expected, 1e-9);
+    }
+    print_message("%s: restitution off by %.1e at most, w dt = 0.01\n", LOCATED[k], worst);
+  }
+}
+
+static void test_order_through_a_bounce(void **unused) {
+  (void)unused;
+  static const double zeta[] = {0.05, 0.2, 0.4, 0.6, 0.8, 1.5};
+  for (size_t i = 0; i < sizeof zeta / sizeof zeta[0]; i++) {
+    double error[4];
+    for (int k = 0; k < 4; k++)
+      error[k] = fabs(bounce("rk4-events", zeta[i], ldexp(0.05, -k)) - restitution(zeta[i]));
+    double order = observed_order(error, 4);
+    print_message("zeta %g: order %.2f, errors %.1e %.1e %.1e %.1e\n", zeta[i], order, error[0], error[1], error[2], error[3]);
+    assert_true(order >= 3.5);
+  }
+}
+
+/* One block of 1 kg on level ground that carries it already, on a spring to a wall. */
+static void spring_block(strut_scene *scene, double stiffness, double mu_static, double mu_kinetic,
+                         double stretch) {
+  const double g = 9.81, ground = 1e5;
+  strut_scene_init(scene);
+  scene->gravity[1] = -g;
+  int32_t block = build_mass(scene, 0, -g / ground, 1);
+  int32_t wall = build_support(scene, -1, -g / ground);
+  build_member(scene, STRUT_SPRING, block, wall, stiffness, 0, 0);
+  scene->nodes[0].start[0] = stretch;
+  build_rough_contact(scene, 0, ground, 0, mu_static, mu_kinetic, 1e-4);
+  scene->contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+}
+
+/* Time within the latest step at which the velocity fell through 0, by Newton on its expansion. */
+static double turned(const motion *m, double v_before, double a_before, double rate_before) {
+  double t = -v_before / a_before;
+  for (int k = 0; k < 20; k++) {
+    double v = v_before + t * (a_before + t * (rate_before / 2)), a = a_before + t * rate_before;
+    t -= v / a;
+  }
+  assert_within(t, -1e-9 * m->step, m->step);
+  return t;
+}
+
+/* Mean time between turning points of a slipping block, from the first to the last of `count`. */
+static double turning_period(motion *m, double stiffness, double friction, int count) {
+  double first = 0, last = 0;
+  int found = 0;
+  for (int64_t n = 0; found < count; n++) {
+    assert_true(n < 100000000);
+    double x = m->state->q[0], v = m->state->v[0], at = (double)m->state->step * m->step;
+    motion_steps(m, 1);
+    if (!(v > 0 && m->state->v[0] <= 0)) continue;
+    double a = friction - stiffness * x;
+    last = at + turned(m, v, a, -stiffness * v);
+    if (found++ == 0) first = last;
+  }
+  return (last - first) / (count - 1);
+}
+
+static void test_belt_stick_slip_period(void **unused) {
+  (void)unused;
+  const double k = 100, belt = 0.1, weight = 9.81, most = 2, kinetic = 1, omega = 10;
+  const double gap = (most - kinetic) / k;
+  const double period = 2 * gap / belt + (PI + 2 * atan(belt / (omega * gap))) / omega;
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    strut_scene scene;
+    motion m;
+    spring_block(&scene, k, most / weight, kinetic / weight, 0);
+    scene.ground.belt_speed = scene.nodes[0].velocity[0] = belt;
+    scene.experiment.tolerance = 1e-10;
+    motion_begin_by(&m, &scene, LOCATED[i], 3e-4);
+    double found = turning_period(&m, k, kinetic, 6);
+    print_message("%s: stick-slip period %.10f s, exactly %.10f s\n", LOCATED[i], found, period);
+    assert_relative(found, period, 1e-6);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Carried along until it slips, the block swings by itself: it meets the belt's speed, no longer. */
+static void test_no_stick_slip_with_equal_coefficients(void **unused) {
+  (void)unused;
+  const double k = 100, belt = 0.1, weight = 9.81, kinetic = 1, omega = 10;
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    strut_scene scene;
+    motion m;
+    spring_block(&scene, k, kinetic / weight, kinetic / weight, 0);
+    scene.ground.belt_speed = scene.nodes[0].velocity[0] = belt;
+    scene.experiment.tolerance = 1e-10;
+    motion_begin_by(&m, &scene, LOCATED[i], 3e-4);
+    double found = turning_period(&m, k, kinetic, 30);
+    assert_relative(found, 2 * PI / omega, 1e-6);
+    double way = hypot(m.state->q[0] - kinetic / k, m.state->v[0] / omega);
+    assert_relative(way, belt / omega, 1e-6);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Amplitude about the centre of the present half-cycle, which friction shifts by mu N / k. */
+static double amplitude(const motion *m, double shift, double omega) {
+  double centre = m->state->v[0] > 0 ? -shift : shift;
+  return hypot(m->state->q[0] - centre, m->state->v[0] / omega);
+}
+
+static void test_coulomb_oscillator(void **unused) {
+  (void)unused;
+  const double k = 100, omega = 10, weight = 9.81, start = 0.1;
+  static const double mus[] = {0.05, 0.0813, 0.2};
+  for (int i = 0; i < LOCATED_COUNT * 3; i++) {
+    strut_scene scene;
+    motion m;
+    double mu = mus[i / LOCATED_COUNT], shift = mu * weight / k, step = 2e-4;
+    spring_block(&scene, k, mu, mu, start);
+    scene.experiment.tolerance = 1e-12;
+    motion_begin_by(&m, &scene, LOCATED[i % LOCATED_COUNT], step);
+    int halves = (int)ceil((start - shift) / (2 * shift));
+    double last = start + shift, worst = 0;
+    for (int half = 0; half < halves; half++) {
+      int64_t middle = (int64_t)llround((half + 0.5) * PI / omega / step);
+      motion_steps(&m, middle - m.state->step);
+      double now = amplitude(&m, shift, omega);
+      worst = fmax(worst, fabs(last - now - 2 * shift));
+      assert_near(last - now, 2 * shift, 1e-8);
+      last = now;
+    }
+    motion_steps(&m, 20000);
+    double rest = (start - 2 * shift * halves) * (halves % 2 ? -1 : 1);
+    double stood = m.state->q[0];
+    assert_near(stood, rest, 1e-9);
+    motion_steps(&m, 20000);
+    assert_true(m.state->q[0] == stood && m.state->v[0] == 0);
+    print_message("%s, mu %g: drop of a half-cycle off by %.1e m, stopping place by %.1e m\n",
+                  LOCATED[i % LOCATED_COUNT], mu, worst, fabs(stood - rest));
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_restitution_of_the_one_sided_damper),
+      cmocka_unit_test(test_order_through_a_bounce),
+      cmocka_unit_test(test_belt_stick_slip_period),
+      cmocka_unit_test(test_no_stick_slip_with_equal_coefficients),
+      cmocka_unit_test(test_coulomb_oscillator),
+  };
+  return cmocka_run_group_tests_name("extremes: events", tests, NULL, NULL);
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Friction at its extremes: none, a million, and slopes beside the angle of friction. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static const double G = 9.81;
+static const x_frame FRAME = {.side = 0.2, .cable_stiffness = 800, .bar_stiffness = 2e4,
+                              .force_density = 60, .cable_mass = 0.01, .bar_mass = 0.1,
+                              .cable_damping = 0.3, .bar_damping = 2};
+static double times = 1; /* how much longer the runs are in the long version */
+
+/* The frame above ground on which all its nodes may land. */
+static void frame_on_ground(strut_scene *scene, double above, double mu, strut_friction_law law) {
+  strut_scene_init(scene);
+  structure_x_frame(scene, &FRAME);
+  scene->gravity[1] = -G;
+  scene->ground.height = -0.5 * FRAME.side - above;
+  for (int32_t i = 0; i < 4; i++) {
+    if (law == STRUT_FRICTION_NONE)
+      build_contact(scene, i, 1e4, 20);
+    else
+      build_rough_contact(scene, i, 1e4, 20, mu, mu, 1e-4);
+    scene->contacts[i].friction.law = law;
+  }
+}
+
+static double momentum(const motion *m) {
+  double sum = 0;
+  for (int32_t i = 0; i < m->model->node_count; i++) sum += m->model->weight[i] * m->state->v[2 * i];
+  return sum;
+}
+
+static void test_without_friction_horizontal_momentum_stays(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4", "rk4-events", "verlet-events"};
+  for (int k = 0; k < 3; k++) {
+    strut_scene scene;
+    motion m;
+    frame_on_ground(&scene, 0.1, 0, STRUT_FRICTION_NONE);
+    for (int c = 0; c < 4; c++) scene.members[c].damping = 0;
+    structure_throw(&scene, 0.7, 0, 3);
+    motion_begin_by(&m, &scene, methods[k], 1e-4);
+    double before = momentum(&m), worst = 0, low = HUGE_VAL;
+    for (int part = 0; part < 100; part++) {
+      motion_steps(&m, (int64_t)(times * 1000));
+      worst = fmax(worst, fabs(momentum(&m) / before - 1));
+      for (int i = 0; i < 4; i++) low = fmin(low, m.state->q[2 * i + 1]);
+    }
+    assert_true(low < scene.ground.height); /* it did land */
+    print_message("%s: momentum changed by %.1e of itself in %lld steps\n", methods[k], worst,
+                  (long long)m.state->step);
+    assert_true(worst <= 1e-13);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Way along x of the standing nodes from 1 s, when all has calmed down, to the end. */
+static double creep(const char *method, double mu, double seconds) {
+  strut_scene scene;
+  motion m;
+  /* the ground carries it already */
+  frame_on_ground(&scene, -0.5 * 0.24 * G / 1e4, mu, STRUT_FRICTION_COULOMB);
+  motion_begin_by(&m, &scene, method, 5e-5);
+  motion_steps(&m, 20000);
+  double x[2] = {m.state->q[0], m.state->q[2]}, way = 0;
+  motion_steps(&m, (int64_t)((seconds - 1) / 5e-5));
+  for (int i = 0; i < 2; i++) way = fmax(way, fabs(m.state->q[2 * i] - x[i]));
+  assert_true(m.state->q[1] < scene.ground.height && m.state->q[3] < scene.ground.height);
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return way;
+}
+
+static void test_friction_of_a_million_holds_a_frame(void **unused) {
+  (void)unused;
+  double seconds = 10 * times;
+  static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events"};
+  for (int k = 0; k < 3; k++) {
+    double way = creep(methods[k], 1e6, seconds);
+    print_message("%s, coulomb: creep %.1e m in %g s\n", methods[k], way, seconds);
+    assert_true(way == 0);
+  }
+}
+
+/* One block that the slope already carries; the weight stays upright. */
+static void block(strut_scene *scene, double slope, double mu) {
+  const double stiffness = 1e5, depth = G * cos(slope) / stiffness;
+  strut_scene_init(scene);
+  scene->gravity[1] = -G;
+  build_mass(scene, depth * sin(slope), -depth * cos(slope), 1);
+  build_rough_contact(scene, 0, stiffness, 100, mu, mu, 1e-4);
+  scene->contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  scene->ground.slope = slope;
+}
+
+static double way_down(const char *method, double slope, double mu, double seconds) {
+  strut_scene scene;
+  motion m;
+  block(&scene, slope, mu);
+  motion_begin_by(&m, &scene, method, 1e-3);
+  double x = m.state->q[0], y = m.state->q[1];
+  motion_steps(&m, (int64_t)llround(seconds / 1e-3));
+  double way = (x - m.state->q[0]) * cos(slope) + (y - m.state->q[1]) * sin(slope);
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return way;
+}
+
+/* tan(slope) = mu (1 -+ 1e-6): one holds, the other slides as the closed form says. */
+static void test_slopes_beside_the_angle_of_friction(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
+  static const double mus[] = {0.01, 0.4, 3};
+  for (int k = 0; k < 12; k++) {
+    double mu = mus[k / 4], below = atan(mu * (1 - 1e-6)), above = atan(mu * (1 + 1e-6));
+    double seconds = 10, expected = 0.5 * G * cos(above) * mu * 1e-6 * seconds * seconds;
+    assert_near(way_down(methods[k % 4], below, mu, 60), 0, 1e-18); /* its depth is 1e-4 m */
+    assert_near(way_down(methods[k % 4], -below, mu, 60), 0, 1e-18);
+    double way = way_down(methods[k % 4], above, mu, seconds);
+    print_message("%s, mu %g: slid %.6e m, closed form %.6e m\n", methods[k % 4], mu, way, expected);
+    assert_relative(way, expected, 2e-4); /* Euler's is first order: 1e-4 */
+  }
+}
+
+int main(int count, char **words) {
+  if (count > 1) times = strtod(words[1], NULL);
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_without_friction_horizontal_momentum_stays),
+      cmocka_unit_test(test_friction_of_a_million_holds_a_frame),
+      cmocka_unit_test(test_slopes_beside_the_angle_of_friction),
+  };
+  return cmocka_run_group_tests_name("extremes: friction", tests, NULL, NULL);
+}
