@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Very many steps: energy, clock and memory. The number of steps is the program's argument. */
+#include <math.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+
+#include "engine/forces/energy.h"
+#include "tests/support/allocations.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+/* Widening is the point here; clang counts it as promotion. */
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
+static int64_t steps = 1000000;
+static const double K = 300, MASS = 0.7;
+
+static void oscillator(strut_scene *scene) {
+  strut_scene_init(scene);
+  build_support(scene, 0, 0);
+  build_mass(scene, 1, 0, MASS);
+  build_member(scene, STRUT_SPRING, 0, 1, K, 0, 0);
+  scene->nodes[1].start[0] = 1.25, scene->nodes[1].velocity[0] = 1.5;
+}
+
+static double energy(const motion *m) {
+  strut_stored e = strut_energy_stored(m->model, m->state, 0);
+  return e.kinetic + e.elastic;
+}
+
+static long resident(void) {
+  struct rusage usage;
+  assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+  return usage.ru_maxrss;
+}
+
+/* RK4 keeps 1 - z^6/72 + z^8/576 of the energy per step, exactly. */
+static void test_energy_of_rk4(void **unused) {
+  (void)unused;
+  static const double zs[] = {0.01, 0.1};
+  for (int k = 0; k < 2; k++) {
+    strut_scene scene;
+    motion m;
+    double z = zs[k];
+    oscillator(&scene);
+    motion_begin(&m, &scene, z / sqrt(K / MASS));
+    motion_steps(&m, 10);
+    double before = energy(&m);
+    uint64_t calls = allocations_so_far();
+    long memory = resident();
+    motion_steps(&m, steps);
+    assert_true(allocations_so_far() == calls);
+    assert_true(resident() == memory);
+    double per_step = -pow(z, 6) / 72 + pow(z, 8) / 576, ratio = energy(&m) / before;
+    double expected = exp((double)steps * log1p(per_step));
+    print_message("rk4, z = %g, %lld steps: energy %.12f, theory %.12f\n", z, (long long)steps,
+                  ratio, expected);
+    assert_relative(ratio, expected, 1e-9);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Verlet's energy stays within z^2 / 4 of what it was, for ever. */
+static void test_energy_of_verlet(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  motion m;
+  double z = 0.1, low = HUGE_VAL, high = 0;
+  oscillator(&scene);
+  motion_begin_by(&m, &scene, "verlet-events", z / sqrt(K / MASS));
+  double before = energy(&m);
+  for (int part = 0; part < 2000; part++) {
+    motion_steps(&m, part % 20 ? 1 : steps / 100 - 19); /* in every phase of a period */
+    low = fmin(low, energy(&m) / before), high = fmax(high, energy(&m) / before);
+  }
+  assert_int_equal(m.state->step, steps);
+  print_message("verlet, z = %g, %lld steps: energy from %.6f to %.6f of the first\n", z,
+                (long long)steps, low, high);
+  assert_within(low, 1 - z * z / 4, 1 + z * z / 4);
+  assert_within(high, 1 - z * z / 4, 1 + z * z / 4);
+  assert_true(high - low > z * z / 8); /* so that the bound means something */
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+/* The drive tells the time: its phase after so many steps of 1e-4 s, whose sum would drift. */
+static void test_the_clock(void **unused) {
+  (void)unused;
+  const double frequency = 12.70003, amplitude = 0.01, dt = 1e-4, pi = 3.14159265358979323846;
+  strut_scene scene;
+  motion m;
+  oscillator(&scene);
+  build_actuator(&scene, 0, build_sine(&scene, amplitude, frequency));
+  motion_begin(&m, &scene, dt);
+  motion_steps(&m, steps);
+  long double turns = (long double)frequency * ((long double)steps / 10000);
+  double angle = (double)(2 * acosl(-1) * (turns - floorl(turns)));
+  double sine = (m.state->rest[0] - 1) / amplitude; /* of the last stage, at the end of the step */
+  double rate = 2 * pi * frequency * cos(angle);
+  assert_true(fabs(cos(angle)) > 0.05);
+  double late = (sine - sin(angle)) / rate;
+  print_message("after %.0f s the clock is off by %.1e s\n", (double)steps * dt, late);
+  assert_true(fabs(late) < 1e-9);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+int main(int count, char **words) {
+  if (count > 1) steps = strtoll(words[1], NULL, 10);
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_energy_of_rk4),
+      cmocka_unit_test(test_energy_of_verlet),
+      cmocka_unit_test(test_the_clock),
+  };
+  return cmocka_run_group_tests_name("extremes: long", tests, NULL, NULL);
+}
