@@ -84,8 +84,7 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
   double t = (double)state->step * dt;
   memcpy(l->next.q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
   memcpy(l->next.v, state->v, (size_t)model->length * sizeof(double));
-  l->refined_until = -HUGE_VAL;
-  l->h = 0.0;
+    l->h = 0.0;
   l->fastest = 0.0;
   strut_modes_start(model, state, l, t);
   l->started = true;
@@ -167,12 +166,12 @@ static double retake(const strut_model *model, strut_state *state, strut_located
 }
 
 /* Size of the next step within what is left to the grid point. */
-static double step_size(const strut_located *l, double t, double rest, double dt) {
+static double step_size(const strut_state *state, const strut_located *l, double t, double rest, double dt) {
   double h = rest;
   if (l->stepper->adaptive) {
     h = l->h > 0.0 ? l->h : dt * 1e-3;
     if (h < rest && h > 0.5 * rest) h = 0.5 * rest;
-  } else if (l->refine > 1.0 && t < l->refined_until) {
+  } else if (l->refine > 1.0 && t < state->refined_until) {
     h = dt / l->refine;
   }
   return h > rest * (1.0 - 1e-9) ? rest : h;
@@ -240,7 +239,7 @@ static void grid_step(const strut_model *model, strut_state *state, strut_locate
   for (;;) {
     double rest = dt - done;
     if (rest <= 1e-12 * dt || state->trouble) break;
-    double h = step_size(l, begin + done, rest, dt);
+    double h = step_size(state, l, begin + done, rest, dt);
     double gone = step(model, state, l, begin + done, h, dt, &at_once);
     done = gone == rest ? dt : done + gone;
   }

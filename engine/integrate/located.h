@@ -82,7 +82,7 @@ struct strut_located {
   int32_t *cable, cable_count; /* members with a slack test */
   uint8_t *pulling;         /* (cables) */
   double *scatter;          /* (length) scratch, zero between uses */
-  double refine, refine_time, refined_until; /* [1], [s], [s] */
+  double refine, refine_time, refine_memory; /* [1], [s], [1] */
   double *settling_time;    /* (contacts) relaxation time of a closed contact [s] */
   double tolerance, h, error, fastest; /* adaptive: relative, [s], [1], [m/s] */
   int passes;               /* sweeps over normal and tangent where they are coupled by M */

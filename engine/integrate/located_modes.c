@@ -150,7 +150,7 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_l
 }
 
 static void begin_refinement(const strut_located *l, int32_t i, double t, double *until) {
-  double time = l->refine_time > 0.0 ? l->refine_time : 8.0 * l->settling_time[i];
+  double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
   *until = fmax(*until, t + time);
 }
 
@@ -160,7 +160,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
   switch (event.kind) {
     case STRUT_EVENT_TOUCH:
       close_contact(model, l, i);
-      begin_refinement(l, i, t, &l->refined_until);
+      begin_refinement(l, i, t, &state->refined_until);
       break;
     case STRUT_EVENT_OPEN: l->mode[i] = STRUT_MODE_OPEN; break;
     case STRUT_EVENT_SLOW:

@@ -71,8 +71,9 @@ strut_status strut_located_prepare(const strut_model *model, strut_state *state,
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
   }
   const strut_experiment *e = &model->scene->experiment;
-  l->refine = e->refine > 0.0 ? e->refine : fmax(1.0, ceil(fastest * e->step / 0.25));
+  l->refine = e->refine > 0.0 ? e->refine : fmax(1.0, ceil(fastest * e->step / e->refine_rate));
   l->refine_time = e->refine_time;
+  l->refine_memory = e->refine_memory;
   l->passes = c->normal[0] != 0.0 && !model->mass->shared ? 8 : 1;
   l->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
   size_t room = (size_t)l->stuck_room;

@@ -39,6 +39,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   state->evaluations = state->events = 0;
   state->trouble = STRUT_TROUBLE_NONE;
   state->drive_time = (double)NAN;
+  state->refined_until = -HUGE_VAL;
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);
   memcpy(state->rest, model->members.rest, slots);

@@ -36,6 +36,7 @@ typedef struct strut_state {
   double *v;     /* velocities [m/s] */
   double work[STRUT_POWER_COUNT]; /* powers integrated since t = 0 [J] */
   double load_mark;               /* strut_energy_mark: where the works count from [J] */
+  double refined_until;           /* methods that refine after touchdowns do so until then [s] */
   int64_t evaluations;            /* of the forces since the reset */
   int64_t events;                 /* switches located in time, since the reset */
   strut_trouble trouble;          /* why a method could not go on; it stays on the latest grid point */

@@ -19,6 +19,17 @@ static void add_steady(strut_json *json, cJSON *to, const strut_steady_summary *
   strut_json_number(json, steady, "residual", s->residual);
 }
 
+static void add_accuracy(strut_json *json, cJSON *to, const strut_accuracy_summary *a) {
+  if (!(a->wanted > 0.0)) return;
+  cJSON *accuracy = strut_json_object(json, to, "accuracy");
+  strut_json_number(json, accuracy, "wanted", a->wanted);
+  strut_json_number(json, accuracy, "expected", a->expected);
+  strut_json_bool(json, accuracy, "kept", a->kept);
+  strut_json_number(json, accuracy, "scale", a->scale);
+  strut_json_text(json, accuracy, "why", a->why);
+  strut_json_integer(json, accuracy, "check_evaluations", a->check_evaluations);
+}
+
 static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool with_wall_time) {
   strut_json_text(json, to, "status", strut_status_text(s->status));
   strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
@@ -34,6 +45,7 @@ static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_number(json, to, "step", s->step);
   strut_json_number(json, to, "step_limit", s->step_limit);
   add_steady(json, to, &s->steady);
+  add_accuracy(json, to, &s->accuracy);
   if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);
 }
 

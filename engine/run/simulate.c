@@ -92,6 +92,7 @@ static strut_status place_state(run *r) {
   if (from) {
     memcpy(r->state->q, from->q, bytes);
     memcpy(r->state->v, from->v, bytes);
+    r->state->refined_until = from->time + from->refined;
     return STRUT_OK;
   }
   if (!r->model->scene->settle.wanted) return STRUT_OK;
@@ -261,6 +262,7 @@ static void keep_end(const run *r) {
   memcpy(to->q, r->state->q, bytes);
   memcpy(to->v, r->state->v, bytes);
   to->time = (double)r->state->step * r->dt;
+  to->refined = fmax(0.0, r->state->refined_until - to->time);
 }
 
 static void fill_summary(run *r, strut_status status) {

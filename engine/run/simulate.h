@@ -15,6 +15,7 @@
 typedef struct strut_snapshot {
   double *q, *v; /* [m], [m/s] */
   double time;   /* [s]: where drives and loads stand */
+  double refined; /* refinement after a touchdown still lasts so long [s] */
 } strut_snapshot;
 
 /** How to run; zero-initialised it means: obey the step limit, tell nobody, record nothing. */

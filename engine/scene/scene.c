@@ -13,6 +13,8 @@ void strut_scene_init(strut_scene *scene) {
   scene->search.seed = 1;
   scene->experiment.integrator = "rk4";
   scene->experiment.tolerance = 1e-6;
+  scene->experiment.refine_rate = 0.25;
+  scene->experiment.refine_memory = 8.0;
   scene->experiment.steady = (strut_steady){.tolerance = 0.005, .successive = 5};
   scene->experiment.period_signal = -1;
   scene->experiment.measure_node = -1;

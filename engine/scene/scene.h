@@ -185,6 +185,9 @@ typedef struct strut_experiment {
   double refine;          /* after a touchdown steps so much shorter [1], by methods that do; 0:
                              taken from the scene; 1: none */
   double refine_time;     /* for so long [s]; 0: taken from the scene */
+  double refine_rate;     /* taken from the scene: fastest rate of a closed contact times the short
+                             step [1]; default 0.25 */
+  double refine_memory;   /* taken from the scene: so many relaxation times long [1]; default 8 */
   double accuracy;        /* wanted of the measured quantity, relative [1]: method and step are
                              chosen by it; 0: they are as given */
   strut_steady steady;

@@ -9,11 +9,13 @@
 #include "engine/output/hdf5.h"
 #include "engine/output/json.h"
 #include "engine/output/results.h"
+#include "engine/run/accuracy.h"
 #include "engine/run/simulate.h"
 #include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/progress.h"
 #include "parser/cli/run_pictures.h"
+#include "parser/cli/run_settings.h"
 #include "parser/cli/streams.h"
 #include "parser/write_scene.h"
 
@@ -23,6 +25,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
     {STRUT_OPTION_FORCE, "force", NULL, "run even where the step is above the stability limit"},
+    STRUT_RUN_SETTING_OPTIONS,
     STRUT_RUN_PICTURE_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -96,7 +99,9 @@ static strut_status simulate(const strut_model *model, const strut_arguments *ar
       .sinks = keep->sinks,
       .sink_count = keep->sink_count,
   };
-  status = strut_simulate(model, &run, summary, error);
+  status = model->scene->experiment.accuracy > 0.0
+               ? strut_simulate_accurately(model->scene, &run, summary, error)
+               : strut_simulate(model, &run, summary, error);
   strut_progress_end(&progress);
   return status;
 }
@@ -153,6 +158,12 @@ static strut_status run(const strut_arguments *arguments) {
   strut_status status = strut_run_pictures_read(&strut_command_run, arguments, &pictures);
   if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
   if (status != STRUT_OK) return status;
+  status = strut_run_settings_apply(&strut_command_run, arguments, &scene);
+  if (status != STRUT_OK) {
+    strut_run_pictures_free(&pictures);
+    strut_scene_free(&scene);
+    return status;
+  }
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_run_pictures_check(&pictures, model, &error);
   if (status == STRUT_OK) {

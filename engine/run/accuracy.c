@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/accuracy.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/step_limit.h"
+
+/* Part of the largest stable step that the cheapest method takes, and least steps in a period. */
+static const double OF_LIMIT = 0.82, LEAST_STEPS = 100.0;
+/* Velocities below this part of size over time are not measured relative to themselves. */
+static const double STANDING = 1e-3;
+
+strut_status strut_accuracy_run(const strut_accuracy *a, const strut_experiment *experiment,
+                                const strut_run_options *options, strut_summary *summary) {
+  strut_scene scene = *a->scene;
+  strut_model *model = NULL;
+  scene.experiment = *experiment;
+  scene.experiment.accuracy = 0.0;
+  strut_status status = strut_model_compile(&scene, &model, a->error);
+  if (!status) status = strut_simulate(model, options, summary, a->error);
+  strut_model_free(model);
+  return status;
+}
+
+/* Verlet from event to event, as large a step as it bears. */
+static strut_status choose_cheap(strut_accuracy *a) {
+  strut_model *model = NULL;
+  strut_step_limit limit;
+  strut_span span = strut_scene_span(a->scene);
+  strut_status status = strut_model_compile(a->scene, &model, a->error);
+  if (!status && !model->mass)
+    status = strut_fail(a->error, STRUT_SINGULAR, "some node that can move has no mass");
+  if (!status) status = strut_step_limit_estimate(model, &limit, a->error);
+  if (!status) {
+    strut_experiment *e = &a->cheap;
+    double unit = span.period > 0.0 ? span.period : span.duration;
+    *e = a->scene->experiment;
+    e->accuracy = 0.0;
+    e->integrator = "verlet-events";
+    e->step = OF_LIMIT * strut_step_limit_of(&limit, strut_integrator_find(e->integrator));
+    e->step = fmin(e->step, unit / LEAST_STEPS);
+    e->refine = e->refine_time = 0.0;
+    a->scale = STANDING * model->size / unit;
+  }
+  strut_model_free(model);
+  return status;
+}
+
+strut_status strut_simulate_accurately(const strut_scene *scene, const strut_run_options *options,
+                                       strut_summary *summary, strut_error *error) {
+  strut_error own = {0};
+  *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
+  strut_accuracy a = {.scene = scene,
+                      .options = options,
+                      .wanted = scene->experiment.accuracy,
+                      .summary = summary,
+                      .error = error ? error : &own};
+  bool done = false;
+  strut_status status = choose_cheap(&a);
+  if (!status && scene->experiment.periods > 0.0) status = strut_accuracy_by_orbit(&a, &done);
+  if (!status && !done) status = strut_accuracy_by_repetition(&a);
+  summary->status = status;
+  return status;
+}

@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* To an accuracy by way of the steady orbit: cheap to come near it, accurate where it counts. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/accuracy.h"
+#include "engine/run/orbit.h"
+
+/* From this accuracy on the cheap method's own orbit may do, if the correction confirms it. */
+static const double COARSE = 0.0099;
+/* Below this one the accurate method has the last word. */
+static const double FINE = 0.0019;
+/* Largest error of the accurate method's velocity over its tolerance, by random points. */
+static const double TOLERANCE_PER_ERROR = 1.0 / 1500.0;
+enum { MOST_CORRECTIONS = 4 };
+
+typedef struct way {
+  strut_accuracy *a;
+  strut_experiment accurate;
+  strut_period_map cheap, fine;
+  strut_summary run; /* of the cheap method, to its steady state */
+  strut_snapshot end;
+  double *base;      /* (2 length + 1) fixed point of the cheap map */
+  double travel;     /* over one application of it [m] */
+  strut_orbit orbit;
+  double error;      /* of orbit.velocity, estimated [m/s] */
+  bool finished;     /* the accurate method ran until it was steady */
+  strut_summary last; /* of that */
+  strut_arena arena;
+} way;
+
+/* Does anything but the drive's repetition still happen after t? */
+static bool changes_after(const strut_scene *scene, double t) {
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    double last = s->start;
+    if (isfinite(s->stop)) last = s->stop;
+    if (s->kind == STRUT_HALF_SINE) last = s->start + 0.5 / s->frequency;
+    if (s->kind == STRUT_TABLE) last = s->start + s->time[s->point_count - 1];
+    if (last > t) return true;
+  }
+  return false;
+}
+
+static double size_of_velocity(const strut_accuracy *a, double v) { return fmax(fabs(v), a->scale); }
+
+static strut_status allocate(way *w, const strut_model *model) {
+  size_t length = (size_t)model->length;
+  w->end.q = strut_arena_allocate(&w->arena, length, sizeof(double));
+  w->end.v = strut_arena_allocate(&w->arena, length, sizeof(double));
+  w->base = strut_arena_allocate(&w->arena, 2 * length + 1, sizeof(double));
+  w->orbit.y = strut_arena_allocate(&w->arena, 2 * length + 1, sizeof(double));
+  if (w->end.q && w->end.v && w->base && w->orbit.y) return STRUT_OK;
+  return strut_fail(w->a->error, STRUT_NO_MEMORY, "out of memory");
+}
+
+/* Adds what a further part of the run cost to the whole. */
+static void add_part(strut_summary *whole, strut_summary *part) {
+  int64_t steps = whole->steps + part->steps, events = whole->events + part->events;
+  int64_t evaluations = whole->force_evaluations + part->force_evaluations;
+  int64_t periods = whole->steady.periods + part->steady.periods;
+  double duration = whole->duration + part->duration, wall = whole->wall_time + part->wall_time;
+  double settle = whole->settle_time;
+  strut_summary_free(whole);
+  *whole = *part;
+  *part = (strut_summary){0};
+  whole->steps = steps, whole->events = events, whole->force_evaluations = evaluations;
+  whole->duration = duration, whole->wall_time = wall, whole->settle_time = settle;
+  whole->steady.periods = periods;
+}
+
+/* A run of `experiment` from w->end, or the scene's start, until steady; its end is w->end. */
+static strut_status run_until_steady(way *w, strut_experiment e, double tolerance,
+                                     int32_t successive, double periods, bool from_end,
+                                     strut_summary *summary) {
+  strut_accuracy *a = w->a;
+  strut_snapshot from = w->end;
+  e.steady.wanted = true;
+  e.steady.tolerance = tolerance;
+  e.steady.floor = tolerance * a->scale;
+  e.steady.successive = successive;
+  e.periods = fmin(e.periods, periods);
+  e.measure_last = fmin(e.measure_last, e.periods);
+  e.output_last = 0.0;
+  strut_run_options options = {.interrupt = a->options->interrupt,
+                               .progress = a->options->progress,
+                               .progress_context = a->options->progress_context,
+                               .from = from_end ? &from : a->options->from,
+                               .to = &w->end};
+  return strut_accuracy_run(a, &e, &options, summary);
+}
+
+/*
+ * The cheap method until the motion repeats itself. Its steps meet the grid here and there in
+ * another way each period, which may keep it from repeating itself very closely: then less must do.
+ * *steady is false where even that is not reached.
+ */
+static strut_status run_cheap(way *w, bool *steady) {
+  strut_accuracy *a = w->a;
+  strut_model *model = NULL;
+  double periods = a->scene->experiment.periods, first = fmin(150.0, periods);
+  strut_status status = strut_model_compile(a->scene, &model, a->error);
+  if (!status) status = allocate(w, model);
+  strut_model_free(model);
+  if (status) return status;
+  status = run_until_steady(w, a->cheap, fmin(0.001, 0.1 * a->wanted), 5, first, false, &w->run);
+  if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && periods > first) {
+    strut_summary more = {0};
+    status = run_until_steady(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true,
+                              &more);
+    if (!status) add_part(&w->run, &more);
+    strut_summary_free(&more);
+  }
+  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
+            !changes_after(a->scene, w->end.time);
+  return status == STRUT_DIVERGED ? STRUT_OK : status;
+}
+
+static strut_status make_maps(way *w) {
+  strut_accuracy *a = w->a;
+  int32_t repeats = w->run.steady.repeats;
+  w->accurate = a->cheap;
+  w->accurate.integrator = "adaptive";
+  w->accurate.tolerance = fmin(2.5e-6, fmax(1e-12, a->wanted * TOLERANCE_PER_ERROR));
+  w->accurate.step = strut_scene_span(a->scene).period / 50.0;
+  strut_status status = strut_period_map_create(a->scene, &a->cheap, repeats, &w->cheap, a->error);
+  if (!status)
+    status = strut_period_map_create(a->scene, &w->accurate, repeats, &w->fine, a->error);
+  if (status) return status;
+  w->cheap.time = w->fine.time = w->end.time;
+  size_t length = (size_t)w->cheap.model->length;
+  memcpy(w->base, w->end.q, length * sizeof(double));
+  memcpy(w->base + length, w->end.v, length * sizeof(double));
+  w->base[2 * length] = w->end.refined;
+  memcpy(w->orbit.y, w->base, (2 * length + 1) * sizeof(double));
+  w->travel = w->run.velocity * w->cheap.period * repeats;
+  return STRUT_OK;
+}
+
+/*
+ * Corrects until the next correction is expected to be small enough: each defect should be much
+ * smaller than the one before, and the velocity follows it in proportion.
+ */
+static strut_status correct(way *w, double enough, int least) {
+  double defect = HUGE_VAL;
+  w->error = HUGE_VAL;
+  for (int k = 0; k < MOST_CORRECTIONS; k++) {
+    strut_status status = strut_orbit_correct(&w->cheap, &w->fine, w->base, w->travel,
+                                              0.1 * enough * w->cheap.period, &w->orbit);
+    if (status) return strut_fail(w->a->error, status, "out of memory");
+    if (!w->orbit.converged || w->orbit.defect > 0.7 * defect) return STRUT_OK;
+    /* the first correction is taken to be right to a half, later ones by what they achieved */
+    double better = k == 0 ? 0.5 : fmax(0.1, w->orbit.defect / defect);
+    defect = w->orbit.defect;
+    w->error = better * fabs(w->orbit.correction);
+    if (k + 1 >= least && w->error <= enough) return STRUT_OK;
+  }
+  return STRUT_OK;
+}
+
+/* The motion on the orbit, by the accurate method: for what is recorded and told of contacts. */
+static strut_status run_orbit(way *w, strut_summary *summary) {
+  strut_accuracy *a = w->a;
+  size_t length = (size_t)w->cheap.model->length;
+  strut_experiment e = w->accurate;
+  double last = e.output_last;
+  e.measure_last = 0.0;
+  memcpy(w->end.q, w->orbit.y, length * sizeof(double));
+  memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
+  w->end.refined = w->orbit.y[2 * length];
+  e.steady.wanted = false;
+  e.periods = w->cheap.repeats;
+  if (a->options->sink_count && last > e.periods) e.periods = last;
+  e.output_last = 0.0;
+  strut_run_options options = *a->options;
+  options.from = &w->end;
+  options.progress = NULL;
+  return strut_accuracy_run(a, &e, &options, summary);
+}
+
+/*
+ * The accurate method itself until it is steady, from the orbit found, of which it then is
+ * independent. The run's costs are added to those of the cheap one.
+ */
+static strut_status run_accurate(way *w, strut_summary *last) {
+  strut_accuracy *a = w->a;
+  size_t length = (size_t)w->cheap.model->length;
+  memcpy(w->end.q, w->orbit.y, length * sizeof(double));
+  memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
+  w->end.refined = w->orbit.y[2 * length];
+  strut_status status =
+      run_until_steady(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
+                       fmax(20.0, a->scene->experiment.periods), true, last);
+  if (status || last->steady.kind != STRUT_MOTION_PERIODIC) return status;
+  memcpy(w->orbit.y, w->end.q, length * sizeof(double));
+  memcpy(w->orbit.y + length, w->end.v, length * sizeof(double));
+  w->orbit.velocity = last->velocity;
+  w->error = last->steady.interval;
+  w->finished = true;
+  return STRUT_OK;
+}
+
+static void say_why(const way *w, bool cheap_does, strut_accuracy_summary *told) {
+  double step = w->cheap.dt;
+  if (cheap_does)
+    snprintf(told->why, sizeof told->why,
+             "verlet-events with a step of %.3g s is the cheapest method that keeps it: one period "
+             "by adaptive (tolerance %.1g) and its effect on the orbit change the velocity by %.2g "
+             "m/s",
+             step, w->accurate.tolerance, fabs(w->orbit.velocity - w->run.velocity));
+  else
+    snprintf(told->why, sizeof told->why,
+             "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "
+             "corrected by periods of adaptive (tolerance %.1g), which changed the velocity by %.2g "
+             "m/s%s",
+             step, w->accurate.tolerance, fabs(w->orbit.velocity - w->run.velocity),
+             w->finished ? "; adaptive went on until it was steady itself" : "");
+}
+
+/* Puts together what the parts found and cost. */
+static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
+  strut_accuracy *a = w->a;
+  strut_summary *s = a->summary;
+  double velocity = cheap_does ? w->run.velocity : w->orbit.velocity;
+  double error = fmax(w->error, fabs(orbit->velocity - w->orbit.velocity)) + w->accurate.tolerance / TOLERANCE_PER_ERROR / 3.0 *
+                                size_of_velocity(a, w->orbit.velocity);
+  if (cheap_does) error += fabs(w->orbit.velocity - w->run.velocity);
+  int64_t corrections = w->cheap.evaluations + w->fine.evaluations;
+  double corrected = (double)(w->cheap.applied + w->fine.applied) * w->cheap.period;
+  *s = *orbit;
+  s->velocity = velocity;
+  s->velocity_spread = w->run.velocity_spread;
+  s->settle_time = w->run.settle_time;
+  s->steady = w->run.steady;
+  s->steady.interval = error;
+  s->steps = w->run.steps;
+  s->step = w->cheap.dt;
+  s->step_limit = w->run.step_limit;
+  s->duration = w->run.duration + (cheap_does ? 0.0 : corrected + w->last.duration);
+  s->force_evaluations =
+      w->run.force_evaluations + (cheap_does ? 0 : corrections + w->last.force_evaluations);
+  s->events = w->run.events +
+              (cheap_does ? 0 : w->cheap.events + w->fine.events + w->last.events);
+  s->wall_time = w->run.wall_time;
+  snprintf(s->method, sizeof s->method, "%s", cheap_does ? "verlet-events" : "verlet-events+adaptive");
+  s->accuracy = (strut_accuracy_summary){
+      .wanted = a->wanted,
+      .expected = error / size_of_velocity(a, velocity),
+      .scale = a->scale,
+      .check_evaluations = orbit->force_evaluations + (cheap_does ? corrections : 0)};
+  s->accuracy.kept = s->accuracy.expected <= a->wanted;
+  say_why(w, cheap_does, &s->accuracy);
+}
+
+static void release(way *w) {
+  strut_period_map_free(&w->cheap);
+  strut_period_map_free(&w->fine);
+  strut_summary_free(&w->run);
+  strut_summary_free(&w->last);
+  strut_arena_free(&w->arena);
+}
+
+/* What is known of the error of the orbit's velocity, in parts of what is wanted. */
+static double part_of_wanted(const way *w) {
+  double size = size_of_velocity(w->a, w->orbit.velocity);
+  return w->error / (w->a->wanted * size);
+}
+
+/* The orbit, as accurately as is wanted, and the motion on it. */
+static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
+  strut_accuracy *a = w->a;
+  double size = size_of_velocity(a, w->run.velocity);
+  strut_status status = make_maps(w);
+  if (!status) status = correct(w, 0.3 * a->wanted * size, a->wanted < COARSE ? 2 : 1);
+  if (status) return status;
+  double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
+  *cheap_does = a->wanted >= COARSE && moved <= 0.8 * a->wanted * size;
+  if (!*cheap_does && (a->wanted < FINE || !(part_of_wanted(w) <= 0.8)))
+    status = run_accurate(w, &w->last);
+  if (status || !isfinite(w->error)) return status;
+  return run_orbit(w, orbit);
+}
+
+strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
+  way w = {.a = a};
+  bool steady = false, cheap_does = false;
+  strut_summary orbit = {0};
+  a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
+  a->cheap.refine_memory = 3.0;
+  strut_status status = run_cheap(&w, &steady);
+  if (!status && steady) status = find_orbit(&w, &orbit, &cheap_does);
+  *done = !status && steady && isfinite(w.error);
+  if (*done)
+    tell(&w, &orbit, cheap_does);
+  else
+    strut_summary_free(&orbit);
+  a->cheap.refine_rate = 0.25;
+  a->cheap.refine_memory = 8.0;
+  release(&w);
+  return status == STRUT_DIVERGED ? STRUT_OK : status;
+}

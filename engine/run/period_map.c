@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/period_map.h"
+
+#include <math.h>
+#include <string.h>
+
+strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
+                                     int32_t repeats, strut_period_map *map, strut_error *error) {
+  *map = (strut_period_map){.scene = *scene, .repeats = repeats};
+  map->scene.experiment = *experiment;
+  map->period = strut_scene_span(&map->scene).period;
+  map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
+  map->dt = map->period / (double)map->steps;
+  map->method = strut_integrator_find(experiment->integrator);
+  strut_status status = strut_model_compile(&map->scene, &map->model, error);
+  if (!status) status = strut_state_create(map->model, &map->state, error);
+  if (!status) map->workspace = map->method->create(map->model, map->state);
+  if (!status && (!map->workspace || strut_measure_create(map->model, map->dt, 0, 0, &map->measure)))
+    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status) {
+    strut_period_map_free(map);
+    return status;
+  }
+  map->travels = map->model->contacts.count > 0;
+  for (int32_t i = 0; i < 2 * map->model->node_count; i++)
+    map->travels = map->travels && !map->model->fixed[i];
+  return STRUT_OK;
+}
+
+static double mean_along(const strut_model *model, const double *q) {
+  const double *t = model->contacts.tangent;
+  double sum = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) sum += q[2 * i] * t[0] + q[2 * i + 1] * t[1];
+  return sum / model->node_count;
+}
+
+double strut_period_map_apply(strut_period_map *map, double *y) {
+  const strut_model *model = map->model;
+  strut_state *state = map->state;
+  size_t bytes = (size_t)model->length * sizeof(double);
+  double from, to, speed, before = mean_along(model, y);
+  strut_state_reset(model, state);
+  state->step = llround(map->time / map->dt);
+  memcpy(state->q, y, bytes);
+  memcpy(state->v, y + model->length, bytes);
+  state->refined_until = map->time + y[2 * model->length];
+  strut_measure_track(model, state, &map->measure, &from, &speed);
+  if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
+  map->method->advance(model, state, map->workspace, map->dt, map->steps * map->repeats);
+  map->evaluations += state->evaluations;
+  map->events += state->events;
+  map->applied += map->repeats;
+  strut_measure_track(model, state, &map->measure, &to, &speed);
+  memcpy(y, state->q, bytes);
+  memcpy(y + model->length, state->v, bytes);
+  y[2 * model->length] = fmax(0.0, state->refined_until - (double)state->step * map->dt);
+  double shift = map->travels ? mean_along(model, y) - before : 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    y[i] -= shift * model->contacts.tangent[i % 2];
+  return state->trouble ? (double)NAN : to - from;
+}
+
+void strut_period_map_free(strut_period_map *map) {
+  strut_measure_free(&map->measure);
+  strut_state_free(map->state);
+  strut_model_free(map->model);
+  *map = (strut_period_map){.model = NULL};
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The map of a driven motion from the start of a drive period to its end, by one method.
+ *
+ * A state here is 2 length + 1 doubles: positions, velocities, and how much longer steps are refined
+ * after a touchdown. What travels along the ground is
+ * brought back after each period, so that a gait is a fixed point.
+ */
+#ifndef STRUT_ENGINE_RUN_PERIOD_MAP_H
+#define STRUT_ENGINE_RUN_PERIOD_MAP_H
+
+#include "engine/integrate/integrator.h"
+#include "engine/run/measure.h"
+
+typedef struct strut_period_map {
+  strut_scene scene; /* shares all but the experiment with the one it came from */
+  strut_model *model;
+  strut_state *state;
+  const strut_integrator *method;
+  void *workspace;
+  strut_measure measure;
+  double dt, period; /* [s] */
+  double time;       /* where an application begins, for drives and loads [s]; set it freely */
+  int64_t steps;     /* of one drive period */
+  int32_t repeats;   /* drive periods of one application */
+  bool travels;
+  int64_t evaluations, events, applied; /* so far; applied: drive periods */
+} strut_period_map;
+
+/** With the method and step of `experiment`; the step is made to divide the period. */
+strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
+                                     int32_t repeats, strut_period_map *map, strut_error *error);
+/**
+ * y becomes the state `repeats` drive periods later, brought back along the ground. Returns how far
+ * the measured point went [m]; NAN where the motion was lost.
+ */
+double strut_period_map_apply(strut_period_map *map, double *y);
+/** NULL-safe on a zeroed map. */
+void strut_period_map_free(strut_period_map *map);
+
+#endif
