@@ -15,6 +15,11 @@ static const double FINE = 0.0019;
 static const double TOLERANCE_PER_ERROR = 1.0 / 1500.0;
 enum { MOST_CORRECTIONS = 4 };
 
+/* What the cheap map has cost until it was steady. */
+typedef struct way_cost {
+  int64_t evaluations, events, applied;
+} way_cost;
+
 typedef struct way {
   strut_accuracy *a;
   strut_experiment accurate;
@@ -25,6 +30,7 @@ typedef struct way {
   double travel;     /* over one application of it [m] */
   strut_orbit orbit;
   double error;      /* of orbit.velocity, estimated [m/s] */
+  way_cost settled;
   bool finished;     /* the accurate method ran until it was steady */
   strut_summary last; /* of that */
   strut_arena arena;
@@ -104,7 +110,7 @@ static strut_status run_cheap(way *w, bool *steady) {
   if (!status) status = allocate(w, model);
   strut_model_free(model);
   if (status) return status;
-  status = run_until_steady(w, a->cheap, fmin(0.001, 0.1 * a->wanted), 5, first, false, &w->run);
+  status = run_until_steady(w, a->cheap, fmax(0.02, 4.0 * a->wanted), 3, first, false, &w->run);
   if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && periods > first) {
     strut_summary more = {0};
     status = run_until_steady(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true,
@@ -115,6 +121,15 @@ static strut_status run_cheap(way *w, bool *steady) {
   *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
             !changes_after(a->scene, w->end.time);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
+}
+
+/* The end of the run so far as fixed point of the cheap map. */
+static void take_end(way *w) {
+  size_t length = (size_t)w->cheap.model->length;
+  memcpy(w->base, w->end.q, length * sizeof(double));
+  memcpy(w->base + length, w->end.v, length * sizeof(double));
+  w->base[2 * length] = w->end.refined;
+  w->travel = w->run.velocity * w->cheap.period * w->cheap.repeats;
 }
 
 static strut_status make_maps(way *w) {
@@ -129,12 +144,7 @@ static strut_status make_maps(way *w) {
     status = strut_period_map_create(a->scene, &w->accurate, repeats, &w->fine, a->error);
   if (status) return status;
   w->cheap.time = w->fine.time = w->end.time;
-  size_t length = (size_t)w->cheap.model->length;
-  memcpy(w->base, w->end.q, length * sizeof(double));
-  memcpy(w->base + length, w->end.v, length * sizeof(double));
-  w->base[2 * length] = w->end.refined;
-  memcpy(w->orbit.y, w->base, (2 * length + 1) * sizeof(double));
-  w->travel = w->run.velocity * w->cheap.period * repeats;
+  take_end(w);
   return STRUT_OK;
 }
 
@@ -226,8 +236,10 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
   double error = fmax(w->error, fabs(orbit->velocity - w->orbit.velocity)) + w->accurate.tolerance / TOLERANCE_PER_ERROR / 3.0 *
                                 size_of_velocity(a, w->orbit.velocity);
   if (cheap_does) error += fabs(w->orbit.velocity - w->run.velocity);
-  int64_t corrections = w->cheap.evaluations + w->fine.evaluations;
-  double corrected = (double)(w->cheap.applied + w->fine.applied) * w->cheap.period;
+  const way_cost *settled = &w->settled;
+  int64_t corrections = w->cheap.evaluations - settled->evaluations + w->fine.evaluations;
+  double corrected =
+      (double)(w->cheap.applied - settled->applied + w->fine.applied) * w->cheap.period;
   *s = *orbit;
   s->velocity = velocity;
   s->velocity_spread = w->run.velocity_spread;
@@ -237,11 +249,13 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
   s->steps = w->run.steps;
   s->step = w->cheap.dt;
   s->step_limit = w->run.step_limit;
-  s->duration = w->run.duration + (cheap_does ? 0.0 : corrected + w->last.duration);
+  s->steady.periods += settled->applied;
+  s->duration = w->run.duration + (double)settled->applied * w->cheap.period +
+                (cheap_does ? 0.0 : corrected + w->last.duration);
   s->force_evaluations =
-      w->run.force_evaluations + (cheap_does ? 0 : corrections + w->last.force_evaluations);
-  s->events = w->run.events +
-              (cheap_does ? 0 : w->cheap.events + w->fine.events + w->last.events);
+      w->run.force_evaluations + settled->evaluations + (cheap_does ? 0 : corrections + w->last.force_evaluations);
+  s->events = w->run.events + settled->events +
+              (cheap_does ? 0 : w->cheap.events - settled->events + w->fine.events + w->last.events);
   s->wall_time = w->run.wall_time;
   snprintf(s->method, sizeof s->method, "%s", cheap_does ? "verlet-events" : "verlet-events+adaptive");
   s->accuracy = (strut_accuracy_summary){
@@ -261,6 +275,30 @@ static void release(way *w) {
   strut_arena_free(&w->arena);
 }
 
+/*
+ * From nearly steady to the fixed point of the cheap map: by extrapolation, or, where that fails, by
+ * running on. *steady is false where there is none.
+ */
+static strut_status settle_cheap(way *w, bool *steady) {
+  strut_accuracy *a = w->a;
+  bool found = false;
+  double enough = 0.1 * a->wanted * size_of_velocity(a, w->run.velocity) * w->cheap.period;
+  strut_status status = strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel,
+                                          &found);
+  if (status) return strut_fail(a->error, status, "out of memory");
+  if (!found) {
+    strut_summary more = {0};
+    status = run_until_steady(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, 150.0, true, &more);
+    *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC;
+    if (!status) add_part(&w->run, &more);
+    strut_summary_free(&more);
+    take_end(w);
+  }
+  w->run.velocity = w->travel / (w->cheap.period * w->cheap.repeats);
+  memcpy(w->orbit.y, w->base, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
+  return status;
+}
+
 /* What is known of the error of the orbit's velocity, in parts of what is wanted. */
 static double part_of_wanted(const way *w) {
   double size = size_of_velocity(w->a, w->orbit.velocity);
@@ -270,9 +308,14 @@ static double part_of_wanted(const way *w) {
 /* The orbit, as accurately as is wanted, and the motion on it. */
 static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   strut_accuracy *a = w->a;
-  double size = size_of_velocity(a, w->run.velocity);
+  bool steady = true;
   strut_status status = make_maps(w);
-  if (!status) status = correct(w, 0.3 * a->wanted * size, a->wanted < COARSE ? 2 : 1);
+  if (!status) status = settle_cheap(w, &steady);
+  double size = size_of_velocity(a, w->run.velocity);
+  w->error = HUGE_VAL;
+  if (status || !steady) return status;
+  w->settled = (way_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
+  status = correct(w, 0.3 * a->wanted * size, a->wanted < COARSE ? 2 : 1);
   if (status) return status;
   double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
   *cheap_does = a->wanted >= COARSE && moved <= 0.8 * a->wanted * size;

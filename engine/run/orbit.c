@@ -4,31 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double TURN = 6.28318530717958647692;
 /* The sum over a disturbance ends when it moves the structure so much less than at its height. */
 static const double REMAINDER = 0.02;
 enum { MOST_PERIODS = 120 };
-
-static double size_of(const strut_period_map *map, const double *d) {
-  const strut_model *model = map->model;
-  double speed = model->size * TURN / map->period, most = 0.0;
-  for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    most = fmax(most, fabs(d[i]) / model->size);
-    most = fmax(most, fabs(d[model->length + i]) / speed);
-  }
-  return most;
-}
-
-/* Shape of `to` less that of `from`: the mean shift along the ground taken out. */
-static void subtract(const strut_period_map *map, const double *from, const double *to, double *d) {
-  const strut_model *model = map->model;
-  const double *t = model->contacts.tangent;
-  double along = 0.0;
-  for (int32_t i = 0; i <= 2 * model->length; i++) d[i] = to[i] - from[i];
-  for (int32_t i = 0; i < model->node_count && map->travels; i++)
-    along += (d[2 * i] * t[0] + d[2 * i + 1] * t[1]) / model->node_count;
-  for (int32_t i = 0; i < 2 * model->node_count; i++) d[i] -= along * t[i % 2];
-}
 
 /*
  * What C makes of the disturbance d of `base`, summed over the periods, into sum; returns the sum of
@@ -38,13 +16,13 @@ static void subtract(const strut_period_map *map, const double *from, const doub
 static double follow(strut_period_map *cheap, const double *base, double travel, double enough,
                      double *d, double *sum, double *work) {
   int32_t both = 2 * cheap->model->length + 1;
-  double first = size_of(cheap, d), last = first, gone = 0.0, farthest = 0.0, last_step = 0.0;
+  double first = strut_period_map_size(cheap, d), last = first, gone = 0.0, farthest = 0.0, last_step = 0.0;
   for (int32_t i = 0; i < both; i++) sum[i] = d[i];
   for (int k = 0; k < MOST_PERIODS; k++) {
     for (int32_t i = 0; i < both; i++) work[i] = base[i] + d[i];
     double step = strut_period_map_apply(cheap, work) - travel;
-    subtract(cheap, base, work, d);
-    double now = size_of(cheap, d);
+    strut_period_map_subtract(cheap, base, work, d);
+    double now = strut_period_map_size(cheap, d);
     gone += step;
     for (int32_t i = 0; i < both; i++) sum[i] += d[i];
     if (!isfinite(step) || !(now < 30.0 * first)) return (double)NAN;
@@ -72,8 +50,8 @@ strut_status strut_orbit_correct(strut_period_map *cheap, strut_period_map *accu
   }
   memcpy(end, orbit->y, both * sizeof *end);
   double gone = strut_period_map_apply(accurate, end);
-  subtract(cheap, orbit->y, end, d);
-  orbit->defect = size_of(cheap, d);
+  strut_period_map_subtract(cheap, orbit->y, end, d);
+  orbit->defect = strut_period_map_size(cheap, d);
   double more = isfinite(gone) ? follow(cheap, base, travel, enough, d, sum, work) : (double)NAN;
   if (isfinite(more)) {
     double period = cheap->period * cheap->repeats;

@@ -31,4 +31,13 @@ strut_status strut_orbit_correct(strut_period_map *cheap, strut_period_map *accu
                                  const double *base, double travel, double enough,
                                  strut_orbit *orbit);
 
+/**
+ * The fixed point that a sequence of applications of the map tends to, by extrapolation from y
+ * (2 length + 1), which should be near it. enough: travel per application that may be missing [m].
+ * On success y is the fixed point and *travel what it goes [m]; *found is false where it could not be
+ * found so. STRUT_OK or STRUT_NO_MEMORY.
+ */
+strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, double *travel,
+                               bool *found);
+
 #endif

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double TURN = 6.28318530717958647692;
+
 strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
                                      int32_t repeats, strut_period_map *map, strut_error *error) {
   *map = (strut_period_map){.scene = *scene, .repeats = repeats};
@@ -58,6 +60,27 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     y[i] -= shift * model->contacts.tangent[i % 2];
   return state->trouble ? (double)NAN : to - from;
+}
+
+double strut_period_map_size(const strut_period_map *map, const double *d) {
+  const strut_model *model = map->model;
+  double speed = model->size * TURN / map->period, most = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    most = fmax(most, fabs(d[i]) / model->size);
+    most = fmax(most, fabs(d[model->length + i]) / speed);
+  }
+  return most;
+}
+
+void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
+                               double *d) {
+  const strut_model *model = map->model;
+  const double *t = model->contacts.tangent;
+  double along = 0.0;
+  for (int32_t i = 0; i <= 2 * model->length; i++) d[i] = to[i] - from[i];
+  for (int32_t i = 0; i < model->node_count && map->travels; i++)
+    along += (d[2 * i] * t[0] + d[2 * i + 1] * t[1]) / model->node_count;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) d[i] -= along * t[i % 2];
 }
 
 void strut_period_map_free(strut_period_map *map) {

@@ -35,6 +35,12 @@ strut_status strut_period_map_create(const strut_scene *scene, const strut_exper
  * the measured point went [m]; NAN where the motion was lost.
  */
 double strut_period_map_apply(strut_period_map *map, double *y);
+/** d = shape of `to` less that of `from`: the mean shift along the ground taken out. */
+void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
+                               double *d);
+/** Size of a difference: the largest of positions over the structure's size, and velocities over
+    size times 2 pi f. */
+double strut_period_map_size(const strut_period_map *map, const double *d);
 /** NULL-safe on a zeroed map. */
 void strut_period_map_free(strut_period_map *map);
 
