@@ -3,10 +3,10 @@
 
 #include <string.h>
 
-static const strut_integrator *const table[] = {&strut_integrator_rk4, &strut_integrator_rk4_events,
-                                               &strut_integrator_verlet_events,
-                                               &strut_integrator_euler_events,
-                                               &strut_integrator_adaptive};
+static const strut_integrator *const table[] = {
+    &strut_integrator_rk4,        &strut_integrator_euler,        &strut_integrator_verlet,
+    &strut_integrator_rk4_events, &strut_integrator_euler_events, &strut_integrator_verlet_events,
+    &strut_integrator_adaptive};
 
 const strut_integrator *strut_integrator_at(size_t i) {
   return i < sizeof table / sizeof table[0] ? table[i] : NULL;

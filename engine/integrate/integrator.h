@@ -43,7 +43,8 @@ STRUT_API const strut_integrator *strut_integrator_at(size_t i);
 STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 
 /* The rows of the table. */
-extern const strut_integrator strut_integrator_rk4, strut_integrator_rk4_events,
-    strut_integrator_verlet_events, strut_integrator_euler_events, strut_integrator_adaptive;
+extern const strut_integrator strut_integrator_rk4, strut_integrator_euler,
+    strut_integrator_verlet, strut_integrator_rk4_events, strut_integrator_euler_events,
+    strut_integrator_verlet_events, strut_integrator_adaptive;
 
 #endif

@@ -20,6 +20,30 @@ static const char *measured(const strut_scene *scene) {
   return node >= 0 ? scene->nodes[node].name : "the centre of mass";
 }
 
+/* Steady motion and wanted accuracy, where they were asked for. */
+static void add_claims(strut_buffer *table, const strut_summary *s) {
+  const strut_steady_summary *m = &s->steady;
+  const strut_accuracy_summary *a = &s->accuracy;
+  if (m->kind == STRUT_MOTION_PERIODIC) {
+    strut_buffer_add(table, "  steady      after %" PRId64 " periods, every ", m->periods);
+    if (m->repeats > 1)
+      strut_buffer_add(table, "%d of them alike", (int)m->repeats);
+    else
+      strut_buffer_add(table, "one alike");
+    strut_buffer_add(table, "; the velocity is known within %s\n", in(m->interval, "m/s").text);
+  } else if (m->kind == STRUT_MOTION_TRANSIENT) {
+    strut_buffer_add(table, "  steady      not within %" PRId64 " periods\n", m->periods);
+  } else if (m->kind == STRUT_MOTION_IRREGULAR) {
+    strut_buffer_add(table, "  irregular   mean velocity known within %s\n",
+                     in(m->interval, "m/s").text);
+  }
+  if (!(a->wanted > 0.0)) return;
+  strut_buffer_add(table, "  accuracy    %.2g %% %s, %.3g %% expected; checked with %" PRId64
+                          " forces more\n              %s\n",
+                   100.0 * a->wanted, a->kept ? "kept" : "NOT kept", 100.0 * a->expected,
+                   a->check_evaluations, a->why);
+}
+
 static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
   strut_buffer_add(table, "%s%s%s", scene->name, *scene->name ? ": " : "",
                    strut_status_text(s->status));
@@ -41,7 +65,9 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   if (s->steps > 0) {
     strut_buffer_add(table, ", %s per step", in(s->wall_time / (double)s->steps, "s").text);
   }
+  if (s->events > 0) strut_buffer_add(table, ", %" PRId64 " events located", s->events);
   strut_buffer_add(table, "\n");
+  add_claims(table, s);
 }
 
 static void add_more(strut_buffer *table, size_t count) {

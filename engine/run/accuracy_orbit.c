@@ -322,7 +322,12 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   if (!*cheap_does && (a->wanted < FINE || !(part_of_wanted(w) <= 0.8)))
     status = run_accurate(w, &w->last);
   if (status || !isfinite(w->error)) return status;
-  return run_orbit(w, orbit);
+  status = run_orbit(w, orbit);
+  double away = fabs(orbit->velocity - w->orbit.velocity);
+  if (status || *cheap_does || w->finished || away <= 0.6 * a->wanted * size) return status;
+  strut_summary_free(orbit); /* its own velocity does not confirm the orbit */
+  status = run_accurate(w, &w->last);
+  return status ? status : run_orbit(w, orbit);
 }
 
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {

@@ -44,6 +44,7 @@ static strut_status relax(const strut_model *model, strut_state *state,
   size_t bytes = (size_t)both * sizeof(double);
   double speed = HUGE_VAL, push = HUGE_VAL;
   memset(state->v, 0, bytes);
+  if (method->restart) method->restart(model, state, workspace, dt);
   while ((double)state->step * dt < wanted->limit) {
     if (interrupt && *interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
@@ -56,6 +57,7 @@ static strut_status relax(const strut_model *model, strut_state *state,
                         (double)state->step * dt, dt);
     if (kinetic < previous) {
       memset(state->v, 0, bytes);
+      if (method->restart) method->restart(model, state, workspace, dt);
       kinetic = 0.0;
     }
     previous = kinetic;

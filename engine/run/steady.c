@@ -11,6 +11,9 @@ static const double STANDING = 1e-3;
 /* A shape that repeats itself so well, relative to its motion, differs by rounding. */
 static const double ROUNDING = 1e-11;
 
+/* Nothing but one period alike is believed before: oscillating transients look so. */
+enum { SLOW = 24 };
+
 static const double TURN = 6.28318530717958647692;
 
 strut_status strut_watch_create(const strut_model *model, double period, strut_watch *w) {
@@ -93,7 +96,7 @@ static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
 static bool repeats_itself(strut_watch *w, int64_t now, int k) {
   int32_t n = repeats[k], over = w->successive;
   if (now < 2 * n + over) return false;
-  if (n > 1 && still_decays(w, now, n)) return false;
+  if (n > 1 && (now < SLOW + 4 * n || still_decays(w, now, n))) return false;
   int32_t rounds = n * ((over + n - 1) / n);
   double velocity = mean_velocity(w, now, rounds), change = 0.0;
   for (int64_t j = now - over + 1; j <= now; j++)

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Velocity Verlet with a fixed step and one evaluation of the forces per step. Forces that depend on
+ * velocities see the predicted v + h a, which keeps the second order.
+ */
+#include "engine/forces/forces_kernel.h"
+#include "engine/integrate/integrator.h"
+
+/* Accelerations at both ends of a step, predicted velocities, and the powers at its begin. */
+typedef struct verlet_workspace {
+  double *a, *next, *predicted;
+  double power[STRUT_POWER_COUNT];
+  bool started;
+} verlet_workspace;
+
+static void *verlet_create(const strut_model *model, strut_state *state) {
+  verlet_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
+  if (!w) return NULL;
+  double **all[] = {&w->a, &w->next, &w->predicted};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    if (!(*all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double))))
+      return NULL;
+  return w;
+}
+
+static void verlet_restart(const strut_model *model, strut_state *state, void *workspace,
+                           double dt) {
+  verlet_workspace *w = workspace;
+  strut_forces_acceleration(model, state, (double)state->step * dt, state->q, state->v, w->a);
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) w->power[p] = state->power[p];
+  w->started = true;
+}
+
+STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet_workspace *w,
+                            double dt, int64_t count, bool ledger) {
+  double *restrict q = state->q, *restrict v = state->v, *restrict predicted = w->predicted;
+  double half = 0.5 * dt;
+  int32_t n = model->length;
+  for (int64_t end = state->step + count; state->step < end; state->step++) {
+    double *a = w->a, *next = w->next;
+    for (int32_t i = 0; i < n; i += STRUT_LANES) {
+      strut_lanes rate = strut_lanes_load(v + i), bend = strut_lanes_load_pairs(a + i);
+      strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * (rate + half * bend));
+      strut_lanes_store(predicted + i, rate + dt * bend);
+    }
+    forces_kernel(model, state, ((double)state->step + 1.0) * dt, q, predicted, next, ledger);
+    for (int32_t i = 0; i < n; i += STRUT_LANES)
+      strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +
+                                                               strut_lanes_load_pairs(next + i)));
+    for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
+      state->work[p] += half * (w->power[p] + state->power[p]);
+      w->power[p] = state->power[p];
+    }
+    w->a = next, w->next = a;
+  }
+}
+
+STRUT_CLONES
+static void advance_plain(const strut_model *model, strut_state *state, verlet_workspace *w,
+                          double dt, int64_t count) {
+  run_steps(model, state, w, dt, count, false);
+}
+
+STRUT_CLONES
+static void advance_with_ledger(const strut_model *model, strut_state *state, verlet_workspace *w,
+                                double dt, int64_t count) {
+  run_steps(model, state, w, dt, count, true);
+}
+
+static void verlet_advance(const strut_model *model, strut_state *state, void *workspace,
+                           double dt, int64_t count) {
+  verlet_workspace *w = workspace;
+  if (!w->started) verlet_restart(model, state, workspace, dt);
+  if (state->ledger)
+    advance_with_ledger(model, state, w, dt, count);
+  else
+    advance_plain(model, state, w, dt, count);
+}
+
+const strut_integrator strut_integrator_verlet = {
+    .name = "verlet",
+    .description = "velocity Verlet, fixed step",
+    .order = 2,
+    .evaluations = 1,
+    .region = STRUT_REGION_VERLET,
+    .create = verlet_create,
+    .restart = verlet_restart,
+    .advance = verlet_advance,
+};
