@@ -8,7 +8,7 @@
 #include "engine/base/memory.h"
 #include "parser/diagnostics.h"
 
-enum { MOST_OPTIONS = 16, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
+enum { MOST_OPTIONS = 48, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
 
 static const strut_option help_option = {STRUT_OPTION_HELP, "help", NULL, "print this help"};
 

@@ -317,9 +317,9 @@ static void test_a_scene_without_mass_or_method_does_not_run(void **unused) {
   strut_error error;
   strut_run_options options = {0};
   stiff(&scene, 1e-3, 1);
-  scene.experiment.integrator = "euler";
+  scene.experiment.integrator = "leapfrog";
   assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_USAGE);
-  assert_non_null(strstr(error.message, "euler"));
+  assert_non_null(strstr(error.message, "leapfrog"));
   strut_summary_free(&s);
   scene.experiment.integrator = "rk4";
   scene.nodes[1].mass = 0;
