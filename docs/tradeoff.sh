@@ -24,9 +24,10 @@ study() {
 }
 
 study crawler crawler/crawler --vary frequency=9.8..15 --vary friction=0.05..0.5 \
-  --vary start=I,II --points 40 --seed 1 --steps 6 --budget "${BUDGET:-300 s}"
-study smooth gallery/double-pendulum
-study contact basics/bouncing-node
-study friction gallery/two-mass-crawler
-study stiff basics/pendulum
-study cable gallery/d-bar
+  --vary start=I,II --points 40 --seed 1 --periods 60 --steps 5 --own-model --budget "120 s"
+study models crawler/crawler --periods 60 --steps 5 --budget "60 s"
+study smooth gallery/double-pendulum --budget "20 s"
+study contact basics/bouncing-node --budget "20 s"
+study friction gallery/two-mass-crawler --budget "30 s"
+study stiff basics/pendulum --budget "20 s"
+study cable gallery/d-bar --budget "20 s"

@@ -3,6 +3,7 @@
 #include "engine/study/tradeoff.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "engine/model/model.h"
 #include "engine/study/tradeoff_ladder.h"
@@ -159,14 +160,39 @@ static size_t best_methods(const strut_tradeoff *r, const strut_integrator *best
   return count;
 }
 
+/* Whether the base's run at the first point is another one in another model. */
+static strut_status differs(study *s, int fidelity, bool *different) {
+  const strut_tradeoff *r = s->result;
+  study_outcome outcome;
+  *different = true;
+  if (!strut_study_able(s, s->base.method, fidelity)) return STRUT_OK;
+  strut_status status = strut_study_probe(s, fidelity, s->base, &outcome);
+  if (status != STRUT_OK || outcome.cannot || outcome.status != STRUT_OK) return status;
+  *different = false;
+  for (size_t i = 0; i < r->value_count; i++)
+    if (s->scratch[i] != r->rows[r->base].value[i]) *different = true;
+  return STRUT_OK;
+}
+
 static strut_status other_model(study *s, int fidelity, double share, double from, double to) {
   strut_tradeoff *r = s->result;
   const strut_integrator *best[BEST_METHODS];
   size_t count = best_methods(r, best);
   double before = strut_study_left(s, share);
+  if (before <= 0) {
+    snprintf(r->fidelities[fidelity].remark, sizeof r->fidelities[fidelity].remark,
+             "the budget did not suffice");
+    return STRUT_OK;
+  }
   study_reference reference;
   study_ladders all = {.count = 0};
-  strut_status status = strut_study_reference_begin(s, fidelity, &reference);
+  bool different = true;
+  strut_status status = differs(s, fidelity, &different);
+  if (status == STRUT_OK && !different)
+    snprintf(r->fidelities[fidelity].remark, sizeof r->fidelities[fidelity].remark,
+             "the motion does not depend on it");
+  if (status != STRUT_OK || !different) return status;
+  status = strut_study_reference_begin(s, fidelity, &reference);
   if (status == STRUT_OK)
     status = strut_study_reference_refine(s, &reference, FIRST_TARGET,
                                           share - 0.5 * fmax(0, before) / s->budget);

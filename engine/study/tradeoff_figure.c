@@ -9,6 +9,7 @@
 #include "engine/study/tradeoff_words.h"
 
 enum { MOST_GROUPS = 64 };
+static const double BEYOND = 10; /* an error of which nothing can be said but that it is one */
 static const double EDGE = 4, BETWEEN = 10, ASPECT = 0.62;
 
 /* A panel being gathered. */
@@ -30,21 +31,22 @@ static bool add_bargain(panel *p, const strut_tradeoff *r, const strut_tradeoff_
   char text[STRUT_STUDY_WORDS];
   char *name = label ? strut_arena_format(arena, "%s", strut_study_step(row, text)) : NULL;
   if (label && !name) return false;
-  bool many = r->point_count > 1 && isfinite(spread->median);
+  bool gone = !(spread->median <= BEYOND);
+  bool many = r->point_count > 1 && !gone;
   double worst = spread->worst;
-  for (size_t i = 0; i < r->point_count && many && isinf(worst); i++) {
+  if (many && !(worst <= BEYOND)) {
     const double *errors = spread == &row->total_spread ? row->total : row->error;
-    if (isinf(worst)) worst = spread->median;
+    worst = spread->median;
     for (size_t k = 0; k < r->point_count; k++)
-      if (isfinite(errors[k])) worst = fmax(worst, errors[k]);
+      if (errors[k] <= BEYOND) worst = fmax(worst, errors[k]);
   }
   p->bargains[p->count++] = (strut_bargain){.group = group,
                                             .label = name,
                                             .cost = row->evaluations,
-                                            .error = spread->median,
+                                            .error = gone ? HUGE_VAL : spread->median,
                                             .low = many ? spread->median : (double)NAN,
                                             .high = many ? worst : (double)NAN};
-  if (row->diverged && isfinite(spread->median))
+  if (row->diverged && !gone)
     p->bargains[p->count++] = (strut_bargain){.group = group,
                                               .cost = row->evaluations,
                                               .error = HUGE_VAL,
@@ -73,7 +75,7 @@ static bool fill_methods(panel *p, const strut_tradeoff *r, strut_arena *arena) 
 }
 
 static bool on_total_front(const strut_tradeoff *r, const strut_tradeoff_row *a) {
-  if (isinf(a->total_spread.worst)) return false;
+  if (!(a->total_spread.worst <= BEYOND)) return false;
   for (size_t i = 0; i < r->row_count; i++) {
     const strut_tradeoff_row *b = &r->rows[i];
     if (b->fidelity == a->fidelity && b->evaluations <= a->evaluations &&
@@ -140,7 +142,7 @@ static strut_status draw(const char *path, double width, const strut_tradeoff *r
   double height = (two ? 2 * box.height + BETWEEN : box.height) + 2 * EDGE;
   strut_status status = strut_canvas_open(path, width, height, r->name, &canvas, error);
   if (status != STRUT_OK) return status;
-  status = draw_panel(canvas, box, &panels[0], "Methods: the scene's own model", names[0], r);
+  status = draw_panel(canvas, box, &panels[0], "Methods: the scene's own model (beyond 1000 %: diverged)", names[0], r);
   box.y += box.height + BETWEEN;
   if (two && status == STRUT_OK)
     status = draw_panel(canvas, box, &panels[1], "Models: the best of the methods for each",

@@ -18,6 +18,7 @@ static int merit(const study *s, const strut_integrator *method) {
 }
 
 static study_setting setting_of(const study *s, const study_reference *r, int which, int level) {
+  if (which == 1 && r->method[0] == r->method[1]) level++; /* alone, it confirms itself */
   study_setting setting = {r->method[which], r->limit * pow(0.5, level + 1), (double)NAN, 1};
   if (strut_study_adaptive(r->method[which])) {
     setting.step = fmax(10 * r->limit, s->limit);
@@ -82,8 +83,12 @@ strut_status strut_study_reference_begin(study *s, int fidelity, study_reference
   strut_status status = choose(s, r, 0, NULL);
   if (status == STRUT_OK && r->method[0]) status = choose(s, r, 1, r->method[0]);
   if (status == STRUT_OK && !r->method[0]) give_up(f, s->error->message);
-  if (status == STRUT_OK && r->method[0] && !r->method[1])
-    give_up(f, "only one method can run it, so that none confirms its answer");
+  if (status == STRUT_OK && r->method[0] && !r->method[1]) {
+    r->method[1] = r->method[0];
+    size_t used = strlen(f->remark);
+    snprintf(f->remark + used, sizeof f->remark - used,
+             "%sonly one method can run it: no other confirms its answer", used ? "; " : "");
+  }
   return status;
 }
 

@@ -28,7 +28,7 @@ static strut_status run_command(const strut_command *command, int argc, char **a
     strut_command_help(command);
   } else if (status == STRUT_OK) {
     status = command->run(&arguments);
-    if (status == STRUT_OK && command->timed && !arguments.json) print_time(now() - begin);
+    if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet) print_time(now() - begin);
   }
   strut_arguments_free(&arguments);
   return status;

@@ -7,7 +7,7 @@
 #include "engine/output/draw/curves_parts.h"
 #include "engine/output/draw/palette.h"
 
-static const double MARKER = 2.4, STRIP = 14;
+static const double MARKER = 2.4, STRIP = 18;
 
 typedef struct diagram {
   strut_canvas *canvas;
@@ -53,7 +53,10 @@ static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_a
 static void place(const diagram *d, const strut_bargain *b, double at[2]) {
   double error = diverged(b) || !(b->error > 0) ? d->axes.y.high : b->error;
   strut_axes_point(&d->axes, b->cost, error, at);
-  if (diverged(b)) at[1] = d->strip.y + 0.5 * d->strip.height;
+  if (diverged(b)) { /* each group on a line of its own, so that none hides another */
+    double groups = d->wanted->group_count > 0 ? (double)d->wanted->group_count : 1;
+    at[1] = d->strip.y + d->strip.height * (0.2 + 0.6 * (b->group + 0.5) / groups);
+  }
   if (b->error == 0) at[1] = d->axes.frame.y + d->axes.frame.height; /* better than can be drawn */
 }
 
