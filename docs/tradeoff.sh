@@ -1,15 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Measures what accuracy costs, for the crawler and five scenes of other kinds: the diagrams and
-# tables of docs/numerics.md, section "What accuracy costs". Takes some ten minutes.
+# tables of docs/numerics.md, section "What accuracy costs". Takes some ten minutes. With names
+# behind the directory, only those.
 #
-#   sh docs/tradeoff.sh build/release/strut docs/tradeoff
+#   sh docs/tradeoff.sh build/release/strut docs/tradeoff [NAME]...
 set -eu
-[ $# -eq 2 ] || { echo "usage: docs/tradeoff.sh STRUT DIRECTORY" >&2; exit 1; }
+[ $# -ge 2 ] || { echo "usage: docs/tradeoff.sh STRUT DIRECTORY [NAME]..." >&2; exit 1; }
 here=$(cd "$(dirname "$0")" && pwd)
 strut=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 mkdir -p "$2"
 output=$(cd "$2" && pwd)
+shift 2
+wanted=" $* "
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -17,6 +20,7 @@ trap 'rm -rf "$work"' EXIT
 study() {
   name=$1 model=$2
   shift 2
+  case $wanted in "  " | *" $name "*) ;; *) return 0 ;; esac
   "$strut" tradeoff "$here/../models/$model.yaml" "$@" -o "$work/$name" |
     sed '/^  took /d' >"$output/$name.txt"
   awk -f "$here/smaller.awk" "$work/$name/tradeoff.svg" >"$output/$name.svg"
@@ -24,7 +28,8 @@ study() {
 }
 
 study crawler crawler/crawler --vary frequency=9.8..15 --vary friction=0.05..0.5 \
-  --vary start=I,II --points 40 --seed 1 --periods 60 --steps 5 --own-model --budget "120 s"
+  --vary start=I,II --points 40 --seed 1 --periods 60 --steps 5 --own-model --budget "120 s" \
+  --methods rk4,rk4-events,verlet-events,euler-events,adaptive
 study models crawler/crawler --periods 60 --steps 5 --budget "60 s"
 study smooth gallery/double-pendulum --budget "20 s"
 study contact basics/bouncing-node --budget "20 s"
