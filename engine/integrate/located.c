@@ -194,7 +194,7 @@ static double step(const strut_model *model, strut_state *state, strut_located *
     event = strut_event_predict(model, state, l, h);
     if (event.kind) h *= event.fraction;
   }
-  if (h > AT_ONCE * dt) {
+  if (h > AT_ONCE * dt || !event.kind) {
     l->stepper->trial(model, state, l, t, h);
     if (l->stepper->adaptive) {
       double error = l->error;

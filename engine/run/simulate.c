@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "engine/base/subnormals.h"
 #include "engine/integrate/step_limit.h"
 #include "engine/run/balance.h"
 #include "engine/run/measure.h"
@@ -212,7 +213,7 @@ static void watch_motion(run *r) {
   if (r->model->scene->experiment.output_last > 0.0) r->recording.start = now;
 }
 
-static void advance_to(run *r, int64_t stop) {
+static void step_to(run *r, int64_t stop) {
   int64_t n = r->state->step;
   if (n < strut_measure_first_step(&r->measure)) {
     r->method->advance(r->model, r->state, r->workspace, r->dt, stop - n);
@@ -222,6 +223,13 @@ static void advance_to(run *r, int64_t stop) {
     r->method->advance(r->model, r->state, r->workspace, r->dt, 1);
     strut_measure_step(r->model, r->state, &r->measure);
   }
+}
+
+/* Motion that has died away must not be slow: numbers too small for full speed are zero. */
+static void advance_to(run *r, int64_t stop) {
+  unsigned before = strut_subnormals_off();
+  step_to(r, stop);
+  strut_subnormals_restore(before);
 }
 
 static strut_status step_all(run *r) {

@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Far from the origin, parameters of any size, and motion that dies into the smallest numbers. */
+#include <gsl/gsl_errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "engine/scene/check.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/structures.h"
+
+static void shaken_frame(strut_scene *scene, double shift) {
+  const x_frame frame = {.side = 1, .cable_stiffness = 800, .bar_stiffness = 2000,
+                         .force_density = 60, .cable_mass = 0.05, .bar_mass = 0.1,
+                         .cable_damping = 0.3, .bar_damping = 0.3};
+  strut_scene_init(scene);
+  structure_x_frame(scene, &frame);
+  for (size_t j = 0; j < scene->member_count; j++) scene->members[j].kind = STRUT_SPRING;
+  structure_throw(scene, 0.5, 0.25, 2);
+  scene->nodes[0].velocity[0] += 5;
+  for (size_t i = 0; i < scene->node_count; i++)
+    scene->nodes[i].position[0] += shift, scene->nodes[i].start[0] += shift;
+}
+
+/* Each step rounds a position by half of 1.2e-10 m out there. */
+static void test_a_million_metres_from_the_origin(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4", "verlet-events", "adaptive"};
+  for (int k = 0; k < 3; k++) {
+    strut_scene near, far;
+    motion a, b;
+    double worst = 0;
+    shaken_frame(&near, 0);
+    shaken_frame(&far, 1e6);
+    motion_begin_by(&a, &near, methods[k], 1e-3);
+    motion_begin_by(&b, &far, methods[k], 1e-3);
+    motion_steps(&a, 1000);
+    motion_steps(&b, 1000);
+    for (int i = 0; i < 8; i++)
+      worst = fmax(worst, fabs(b.state->q[i] - (i % 2 ? 0 : 1e6) - a.state->q[i]));
+    print_message("%s, 1e6 m from the origin: 1 m off by %.1e m after 1 s\n", methods[k], worst);
+    assert_true(worst <= 1e-8);
+    motion_end(&a);
+    motion_end(&b);
+    strut_scene_free(&near);
+    strut_scene_free(&far);
+  }
+}
+
+static double any(uint64_t *r) {
+  if (random_once_in(r, 2)) return random_scale(r, 0.01, 100);
+  return exp(random_between(r, -690, 690)) * (random_once_in(r, 20) ? 0 : 1); /* 1e-300 .. 1e300 */
+}
+
+static double either(uint64_t *r) { return random_once_in(r, 2) ? any(r) : -any(r); }
+
+static void wild_scene(strut_scene *scene, uint64_t seed) {
+  uint64_t state = seed, *r = &state;
+  int32_t nodes = 2 + random_below(r, 4);
+  strut_scene_init(scene);
+  scene->mass_model = random_once_in(r, 2) ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+  for (int32_t i = 0; i < nodes; i++) {
+    build_mass(scene, either(r), either(r), any(r));
+    for (int c = 0; c < 2; c++) {
+      scene->nodes[i].fixed[c] = random_once_in(r, 4);
+      if (random_once_in(r, 3)) scene->nodes[i].velocity[c] = either(r);
+    }
+  }
+  for (int32_t j = 1; j < nodes; j++)
+    build_sized(scene, (strut_member_kind)random_below(r, 3), random_below(r, j), j, any(r), any(r),
+                any(r), any(r));
+  scene->gravity[1] = -any(r);
+  for (int32_t i = 0; i < nodes && random_once_in(r, 2); i++) {
+    build_rough_contact(scene, i, any(r), any(r), any(r), any(r), any(r));
+    if (random_once_in(r, 2)) scene->contacts[i].friction.law = STRUT_FRICTION_COULOMB;
+  }
+  scene->ground.height = either(r);
+  if (random_once_in(r, 2)) scene->ground.belt_speed = either(r);
+  const strut_integrator *method = NULL;
+  size_t methods = 0;
+  while (strut_integrator_at(methods)) methods++;
+  do /* one that chooses its steps takes as many as such numbers need */
+    method = strut_integrator_at((size_t)random_below(r, (int32_t)methods));
+  while (!strcmp(method->name, "adaptive"));
+  scene->experiment.integrator = method->name;
+  scene->experiment.refine = 1;
+  scene->experiment.step = any(r);
+  scene->experiment.duration = scene->experiment.step * 50;
+}
+
+typedef struct tally {
+  int invalid, refused, stopped, answered;
+} tally;
+
+static void run_wild(uint64_t seed, tally *t) {
+  strut_scene scene;
+  strut_findings findings = {0};
+  strut_model *model = NULL;
+  strut_error error = {0};
+  wild_scene(&scene, seed);
+  strut_status status = strut_scene_check(&scene, STRUT_FOR_RUN, &findings);
+  bool valid = !status && !findings.count;
+  if (status && findings.count) assert_true(strlen(findings.items[0].message) > 10);
+  strut_findings_free(&findings);
+  t->invalid += !valid;
+  if (valid) {
+    status = strut_model_compile(&scene, &model, &error);
+    if (status) {
+      t->refused++;
+      assert_true(strlen(error.message) > 10);
+    } else {
+      strut_run_options options = {.force = seed % 2};
+      strut_summary s = {0};
+      status = strut_simulate(model, &options, &s, &error);
+      if (status) assert_true(strlen(error.message) > 10);
+      *(!status ? &t->answered : s.steps ? &t->stopped : &t->refused) += 1;
+      for (size_t i = 0; !status && i < 2 * s.node_count; i++) {
+        assert_true(isfinite(s.positions[i]));
+      }
+      strut_summary_free(&s);
+    }
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_parameters_of_any_size(void **unused) {
+  (void)unused;
+  tally t = {0};
+  for (uint64_t seed = 1; seed <= 4000; seed++) run_wild(seed, &t);
+  print_message("1e-300 to 1e300: %d invalid, %d refused, %d stopped with a sentence, %d answers\n",
+                t.invalid, t.refused, t.stopped, t.answered);
+  assert_true(t.answered > 100 && t.refused > 100);
+}
+
+static double cpu_seconds(void) {
+  struct timespec now;
+  assert_int_equal(clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now), 0);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The least of several times that a run of so many steps takes. */
+static double time_of(strut_scene *scene, const char *method, int steps) {
+  double least = HUGE_VAL;
+  scene->experiment.integrator = method;
+  motion_experiment(scene, 1e-3, steps * 1e-3);
+  for (int k = 0; k < 7; k++) {
+    double begin = cpu_seconds();
+    strut_summary s = motion_simulate(scene);
+    least = fmin(least, cpu_seconds() - begin);
+    strut_summary_free(&s);
+  }
+  return least;
+}
+
+/* A damped row of springs without rest length about its support: it decays to zero itself. */
+static void dying(strut_scene *scene, double amplitude) {
+  strut_scene_init(scene);
+  build_support(scene, 0, 0);
+  for (int32_t i = 1; i <= 12; i++) {
+    build_mass(scene, 0, 0, 1);
+    scene->nodes[i].start[0] = amplitude * i, scene->nodes[i].start[1] = -amplitude;
+    build_sized(scene, STRUT_SPRING, i - 1, i, 100, 0.01, 0.1, 0);
+  }
+}
+
+/* Amplitudes whose squares, or which themselves, are subnormal. */
+static void test_motion_that_dies_is_not_slow(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4", "rk4-events", "verlet-events"};
+  static const double amplitude[] = {1, 1e-154, 1e-158, 1e-161, 1e-308, 1e-312, 1e-320};
+  for (int k = 0; k < 3; k++) {
+    double alive = 0, slowest = 0;
+    for (int i = 0; i < 7; i++) {
+      strut_scene scene;
+      dying(&scene, amplitude[i]);
+      double seconds = time_of(&scene, methods[k], 4000);
+      *(i ? &slowest : &alive) = fmax(i ? slowest : 0, seconds);
+      strut_scene_free(&scene);
+    }
+    print_message("%s: subnormal motion takes %.2f times as long\n", methods[k], slowest / alive);
+    assert_true(slowest <= 2 * alive);
+  }
+}
+
+int main(void) {
+  gsl_set_error_handler_off(); /* as the program does: GSL reports by its return values */
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_million_metres_from_the_origin),
+      cmocka_unit_test(test_parameters_of_any_size),
+      cmocka_unit_test(test_motion_that_dies_is_not_slow),
+  };
+  return cmocka_run_group_tests_name("extremes: scales", tests, NULL, NULL);
+}
