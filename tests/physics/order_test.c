@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Every fixed-step method of the table shows the order that its row claims, on smooth scenes. */
+#include <math.h>
+
+#include "tests/physics/smooth_scenes.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+enum { HALVINGS = 4, MOST = 200, REFERENCE = 8 };
+
+/* Ends a scene by a method with 2^-halvings of its step: places, then speeds times the duration. */
+static size_t reach(const smooth_scene *smooth, const char *method, int halvings, double *q) {
+  strut_scene scene;
+  motion m;
+  double step = ldexp(smooth->step, -halvings);
+  smooth->make(&scene);
+  size_t count = 2 * scene.node_count;
+  assert_true(2 * count <= MOST);
+  motion_begin_by(&m, &scene, method, step);
+  if (m.method->restart) m.method->restart(m.model, m.state, m.workspace, step);
+  motion_steps(&m, llround(smooth->duration / step));
+  assert_int_equal(m.state->trouble, 0);
+  for (size_t i = 0; i < count; i++) {
+    q[i] = m.state->q[i];
+    q[count + i] = smooth->duration * m.state->v[i];
+  }
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return 2 * count;
+}
+
+/*
+ * Methods of low order show it at smaller steps only. Semi-implicit Euler's places may converge at
+ * order two by luck (an oscillator thrown from rest length), so its speeds count, too; RK4's speeds
+ * would leave too little between steps that are too coarse and rounding.
+ */
+static double order_of(const smooth_scene *smooth, const strut_integrator *method,
+                       const double *exact) {
+  int first = method->order >= 4 ? 0 : method->order == 2 ? 2 : 4;
+  double error[HALVINGS + 1] = {0}, q[MOST];
+  for (int k = 0; k <= HALVINGS; k++) {
+    size_t count = reach(smooth, method->name, first + k, q);
+    if (method->order > 1) count /= 2;
+    for (size_t i = 0; i < count; i++) error[k] = fmax(error[k], fabs(q[i] - exact[i]));
+  }
+  double order = observed_order(error, HALVINGS + 1);
+  print_message("%s, %s: order %.3f, errors %.2g to %.2g m\n", method->name, smooth->name, order,
+                error[0], error[HALVINGS]);
+  return order;
+}
+
+static void test_every_method_has_its_order(void **unused) {
+  (void)unused;
+  int failures = 0;
+  for (int s = 0; s < SMOOTH_SCENES; s++) {
+    double exact[MOST];
+    reach(&smooth_scenes[s], "rk4", REFERENCE, exact);
+    const strut_integrator *method;
+    for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
+      if (method->region == STRUT_REGION_ALL) continue; /* chooses its steps itself */
+      double width = method->order == 2 ? 0.05 : 0.1;
+      double order = order_of(&smooth_scenes[s], method, exact);
+      failures += !(fabs(order - method->order) <= width);
+    }
+  }
+  assert_int_equal(failures, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_method_has_its_order)};
+  return cmocka_run_group_tests_name("order", tests, NULL, NULL);
+}
