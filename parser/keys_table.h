@@ -126,6 +126,7 @@
   X(STEADY, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, false, 0, "0.5 %", "", "Of the velocity, relative to it.") \
   X(STEADY, FLOOR, "floor", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "from the scene", "", "Differences of the velocity below this count as none.") \
   X(STEADY, SUCCESSIVE, "successive", NUMBER, NONE, ABOVE_ZERO, false, 0, "5", "", "So many repetitions in a row must agree.") \
+  X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, false, 0, "no", "no|yes", "Finish a periodic motion by Newton's method on its period, and give the Floquet multipliers; of structures with up to 48 free coordinates.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, false, 0, "a thousandth", "", "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "Record the last so many periods, or the last so much time.") \
   X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, false, 0, "[position, length, force]", "position|velocity|length|force|contact|energy", "A list of what to record.")

@@ -200,6 +200,8 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
   steady->floor = strut_number_or(&reader->steady, STRUT_KEY_STEADY_FLOOR, steady->floor);
   double successive =
       strut_number_or(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE, steady->successive);
+  const strut_slot *shooting = strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SHOOTING);
+  steady->shooting = shooting->state == STRUT_GIVEN && shooting->word == 1;
   bool whole = successive == floor(successive) && successive >= 2.0 && successive <= 16.0;
   if (whole)
     steady->successive = (int32_t)successive;

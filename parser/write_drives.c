@@ -172,6 +172,10 @@ static void put_steady(strut_writer *writer, bool *first, const strut_steady *st
   strut_put_value(writer, &inner, "tolerance", steady->tolerance);
   strut_put_value(writer, &inner, "floor", steady->floor);
   strut_put_value(writer, &inner, "successive", steady->successive);
+  if (steady->shooting) {
+    strut_put_key(writer, &inner, "shooting");
+    strut_put(writer, "yes");
+  }
   strut_put(writer, "}");
 }
 

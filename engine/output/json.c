@@ -10,6 +10,7 @@
 
 static void add_steady(strut_json *json, cJSON *to, const strut_steady_summary *s) {
   static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
+  double sizes[STRUT_MOST_MULTIPLIERS];
   if (s->kind == STRUT_MOTION_NOT_WATCHED) return;
   cJSON *steady = strut_json_object(json, to, "steady");
   strut_json_text(json, steady, "kind", kinds[s->kind]);
@@ -17,6 +18,14 @@ static void add_steady(strut_json *json, cJSON *to, const strut_steady_summary *
   strut_json_integer(json, steady, "periods", s->periods);
   strut_json_number(json, steady, "velocity_interval", s->interval);
   strut_json_number(json, steady, "residual", s->residual);
+  if (!s->shot && !s->reason[0]) return;
+  strut_json_bool(json, steady, "shot", s->shot);
+  strut_json_text(json, steady, "reason", s->reason[0] ? s->reason : NULL);
+  strut_json_integer(json, steady, "iterations", s->iterations);
+  for (size_t i = 0; i < s->multiplier_count; i++)
+    sizes[i] = hypot(s->multiplier[i][0], s->multiplier[i][1]);
+  strut_json_numbers(json, steady, "multipliers", &s->multiplier[0][0], 2 * s->multiplier_count);
+  strut_json_numbers(json, steady, "multiplier_sizes", sizes, s->multiplier_count);
 }
 
 static void add_accuracy(strut_json *json, cJSON *to, const strut_accuracy_summary *a) {

@@ -37,6 +37,19 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
     strut_buffer_add(table, "  irregular   mean velocity known within %s\n",
                      in(m->interval, "m/s").text);
   }
+  if (m->shot) {
+    double most = 0.0;
+    for (size_t i = 0; i < m->multiplier_count; i++)
+      most = fmax(most, hypot(m->multiplier[i][0], m->multiplier[i][1]));
+    const char *kind = most < 1.0 - 1e-6 ? "stable" : most > 1.0 + 1e-6 ? "unstable" : "neutral";
+    strut_buffer_add(table, "  orbit       closed within %.2g of the size; %s, multipliers of size",
+                     m->residual, kind);
+    for (size_t i = 0; i < m->multiplier_count; i++)
+      strut_buffer_add(table, " %.4g", hypot(m->multiplier[i][0], m->multiplier[i][1]));
+    strut_buffer_add(table, "\n");
+  } else if (m->reason[0]) {
+    strut_buffer_add(table, "  orbit       not shot: %s\n", m->reason);
+  }
   if (!(a->wanted > 0.0)) return;
   strut_buffer_add(table, "  accuracy    %.2g %% %s, %.3g %% expected; checked with %" PRId64
                           " forces more\n              %s\n",

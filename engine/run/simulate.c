@@ -11,6 +11,7 @@
 #include "engine/run/measure.h"
 #include "engine/run/recording.h"
 #include "engine/run/settle.h"
+#include "engine/run/shooting.h"
 #include "engine/run/steady.h"
 
 /* Beyond this many times the scene's size a run counts as diverged. */
@@ -36,6 +37,7 @@ typedef struct run {
   int64_t first, steps;   /* the step number it begins with, and the one it is to end with */
   int64_t period_steps;   /* of a drive period, where steady motion is watched for */
   int64_t more_periods;   /* to run, and record, once it is steady */
+  int64_t shot_periods;   /* drive periods that shooting took */
 } run;
 
 static double now(void) {
@@ -131,7 +133,7 @@ static strut_status prepare(run *r) {
   double begin = (double)r->first * r->dt;
   if (!r->workspace ||
       strut_measure_create(r->model, r->dt, begin, (size_t)r->more_periods + 1, &r->measure) ||
-      (r->watching && strut_watch_create(r->model, span.period, &r->watch)))
+      (r->watching && strut_watch_create(r->model, span.period, begin, &r->watch)))
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   if ((status = place_state(r))) return status;
   r->state->ledger = true;
@@ -195,22 +197,70 @@ static int64_t next_stop(const run *r, int64_t chunk) {
   return stop > end ? end : stop;
 }
 
+/* The state becomes the orbit's; what the change does to the stored energies is no error of the run. */
+static void take_orbit(run *r, const double *y) {
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  double t = (double)r->state->step * r->dt;
+  strut_stored before = strut_energy_stored(r->model, r->state, t);
+  memcpy(r->state->q, y, bytes);
+  memcpy(r->state->v, y + r->model->length, bytes);
+  r->state->refined_until = t + y[2 * r->model->length];
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  strut_stored after = strut_energy_stored(r->model, r->state, t);
+  r->initial.kinetic += after.kinetic - before.kinetic;
+  r->initial.elastic += after.elastic - before.elastic;
+  r->initial.gravity += after.gravity - before.gravity;
+  r->initial.contact += after.contact - before.contact;
+}
+
+/* Finishes the motion that was found to be periodic; it goes on as it is where that fails. */
+static strut_status shoot(run *r) {
+  size_t length = (size_t)r->model->length;
+  strut_steady_summary *found = &r->watch.result;
+  strut_period_map map = {.model = NULL};
+  double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
+  if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = strut_period_map_create(
+      r->model->scene, &r->model->scene->experiment, found->repeats, &map, r->error);
+  if (!status) {
+    map.time = (double)r->state->step * r->dt;
+    memcpy(y, r->state->q, length * sizeof *y);
+    memcpy(y + length, r->state->v, length * sizeof *y);
+    y[2 * length] = fmax(0.0, r->state->refined_until - map.time);
+    status = strut_shoot(&map, y, &travel, found);
+    if (status) strut_fail(r->error, status, "out of memory");
+  }
+  if (!status && found->shot) {
+    take_orbit(r, y);
+    r->watch.velocity = travel / (map.period * found->repeats);
+  }
+  r->shot_periods = map.applied;
+  found->periods += map.applied;
+  r->state->evaluations += map.evaluations;
+  strut_period_map_free(&map);
+  strut_release(y);
+  return status;
+}
+
 /*
  * At the ends of periods, and once within each. When the motion has become steady the run goes on
  * for the periods that are recorded, at least one, over which contacts are measured.
  */
-static void watch_motion(run *r) {
+static strut_status watch_motion(run *r) {
   int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
   if (past == middle_of(r->period_steps)) strut_watch_middle(r->state, &r->watch);
-  if (past != 0) return;
+  if (past != 0) return STRUT_OK;
   double x, v;
   bool before = r->watch.known;
   strut_measure_track(r->model, r->state, &r->measure, &x, &v);
-  if (!strut_watch_period(r->state, x, &r->watch) || before) return;
+  if (!strut_watch_period(r->state, x, &r->watch) || before) return STRUT_OK;
+  strut_status status = r->model->scene->experiment.steady.shooting ? shoot(r) : STRUT_OK;
+  if (status) return status;
   double now = (double)n * r->dt, period = r->watch.period;
   r->steps = n + r->more_periods * r->period_steps;
   strut_measure_window(r->model, r->state, now, period, (size_t)r->more_periods, &r->measure);
   if (r->model->scene->experiment.output_last > 0.0) r->recording.start = now;
+  return STRUT_OK;
 }
 
 static void step_to(run *r, int64_t stop) {
@@ -242,7 +292,8 @@ static strut_status step_all(run *r) {
     int64_t n = r->state->step;
     int32_t lost = lost_node(r->model, r->state);
     if (lost >= 0) return diverged(r, lost);
-    if (r->watching) watch_motion(r);
+    strut_status watched = r->watching ? watch_motion(r) : STRUT_OK;
+    if (watched) return watched;
     if (n == strut_measure_first_step(&r->measure))
       strut_measure_begin(r->model, r->state, &r->measure);
     if (n == strut_recording_next_step(&r->recording)) {
@@ -277,7 +328,7 @@ static void fill_summary(run *r, strut_status status) {
   strut_summary *s = r->summary;
   s->status = status;
   s->steps = r->state->step - r->first;
-  s->duration = (double)s->steps * r->dt;
+  s->duration = (double)(s->steps + r->shot_periods * r->period_steps) * r->dt;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
   strut_measure_finish(r->model, &r->measure, s);

@@ -13,14 +13,45 @@ static const double ROUNDING = 1e-11;
 
 /* Nothing but one period alike is believed before: oscillating transients look so. */
 enum { SLOW = 24 };
+/* Batches of an irregular motion's mean; the least periods that may be called irregular. */
+enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
+static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
 static const double TURN = 6.28318530717958647692;
 
-strut_status strut_watch_create(const strut_model *model, double period, strut_watch *w) {
+/* When the last signal has begun, ended or run through: before that nothing can be called steady. */
+static double last_change(const strut_scene *scene) {
+  double last = 0.0;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    last = fmax(last, s->start);
+    if (isfinite(s->stop)) last = fmax(last, s->stop);
+    if (s->kind == STRUT_HALF_SINE) last = fmax(last, s->start + 0.5 / s->frequency);
+    if (s->kind == STRUT_TABLE) last = fmax(last, s->start + s->time[s->point_count - 1]);
+  }
+  return last;
+}
+
+/* Do all signals that go on for ever repeat themselves after n drive periods? */
+static bool drives_repeat(const strut_watch *w, int32_t n) {
+  const strut_scene *scene = w->model->scene;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    if ((s->kind != STRUT_SINE && s->kind != STRUT_SQUARE) || isfinite(s->stop)) continue;
+    double turns = n * w->period * s->frequency;
+    if (fabs(turns - round(turns)) > 1e-9 * fmax(1.0, turns)) return false;
+  }
+  return true;
+}
+
+strut_status strut_watch_create(const strut_model *model, double period, double begin,
+                                strut_watch *w) {
   const strut_steady *wanted = &model->scene->experiment.steady;
   size_t both = 2 * (size_t)model->length;
   *w = (strut_watch){.model = model, .period = period, .tolerance = wanted->tolerance,
-                     .floor = wanted->floor, .successive = wanted->successive};
+                     .floor = wanted->floor, .successive = wanted->successive,
+                     .stride = 1};
+  w->not_before = (last_change(model->scene) - begin) / period;
   if (w->successive < 2) w->successive = 2;
   if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
   if (!(w->floor > 0.0)) w->floor = STANDING * model->size / period * w->tolerance;
@@ -95,7 +126,8 @@ static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
 /* Does the motion repeat itself every n periods? */
 static bool repeats_itself(strut_watch *w, int64_t now, int k) {
   int32_t n = repeats[k], over = w->successive;
-  if (now < 2 * n + over) return false;
+  if (now < 2 * n + over || (double)now < w->not_before + n + over) return false;
+  if (!drives_repeat(w, n)) return false;
   if (n > 1 && (now < SLOW + 4 * n || still_decays(w, now, n))) return false;
   int32_t rounds = n * ((over + n - 1) / n);
   double velocity = mean_velocity(w, now, rounds), change = 0.0;
@@ -106,14 +138,74 @@ static bool repeats_itself(strut_watch *w, int64_t now, int k) {
   double residual = w->residual[k][now % STRUT_RING];
   double still = w->floor * w->period / w->model->size;
   if (!(change <= allowed && change * rest <= allowed)) return false;
-  if (!(residual * fmax(rest, 1.0) <= 4.0 * fmax(w->tolerance * w->amplitude, still)))
-    return false;
+  double alike = 4.0 * fmax(w->tolerance * w->amplitude, still);
+  if (!(residual * fmax(rest, 1.0) <= alike)) return false;
+  /* irregular motion comes back by chance, but not again and again */
+  int32_t often = n > 1 && 2 * n > over ? 2 * n : over;
+  for (int64_t j = now - often + 1; j <= now; j++)
+    if (w->residual[k][j % STRUT_RING] > (n > 1 ? alike : 4.0 * alike)) return false;
   w->result.kind = STRUT_MOTION_PERIODIC;
   w->result.repeats = n;
   w->result.periods = now;
   w->result.interval = change * (1.0 + rest);
   w->result.residual = w->amplitude > 0.0 ? residual / w->amplitude : 0.0;
   return true;
+}
+
+/* Of the whole run, in stretches of equal length that double when there is no more room. */
+static void mark(strut_watch *w, int64_t now, double x) {
+  w->wander += now > 0 ? w->residual[0][now % STRUT_RING] : 0.0;
+  if (now % w->stride != 0) return;
+  if (w->marks == STRUT_MARKS) {
+    for (int32_t i = 0; 2 * i < STRUT_MARKS; i++)
+      w->mark[i] = w->mark[2 * i], w->wandered[i] = w->wandered[2 * i];
+    w->marks = (STRUT_MARKS + 1) / 2;
+    w->stride *= 2;
+    if (now % w->stride != 0) return;
+  }
+  w->mark[w->marks] = x;
+  w->wandered[w->marks++] = w->wander;
+}
+
+/* Mean velocity over the latest 8 batches of `each` stretches, and its interval by Student's t. */
+static double batch_mean(const strut_watch *w, int32_t each, double *interval, double *trend) {
+  double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
+  double time = each * (double)w->stride * w->period;
+  for (int i = 0; i < BATCHES; i++) {
+    int32_t to = w->marks - 1 - i * each;
+    speed[i] = (w->mark[to] - w->mark[to - each]) / time;
+    mean += speed[i] / BATCHES;
+  }
+  for (int i = 0; i < BATCHES; i++) {
+    square += (speed[i] - mean) * (speed[i] - mean);
+    slope += speed[i] * (0.5 * (BATCHES - 1) - i) / 42.0;
+  }
+  double rest = fmax(square - 42.0 * slope * slope, 0.0) / (BATCHES - 2);
+  *trend = rest > 0.0 ? fabs(slope) / sqrt(rest / 42.0) : slope != 0.0 ? HUGE_VAL : 0.0;
+  *interval = STUDENT_7 * sqrt(square / (BATCHES - 1) / BATCHES);
+  return mean;
+}
+
+/*
+ * A motion that never agreed, but whose mean is known: over the last half and the last quarter of
+ * the run alike, without trend, while periods differ from their neighbours as much as before.
+ */
+static void judge_irregular(strut_watch *w) {
+  int32_t stretches = w->marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
+  int64_t seen = w->seen - 1;
+  if (quarter < 1 || seen < LEAST_IRREGULAR || (double)seen < 2.0 * w->not_before) return;
+  double wide, narrow, trend, other;
+  double mean = batch_mean(w, half, &wide, &trend), late = batch_mean(w, quarter, &narrow, &other);
+  double allowed = fmax(w->tolerance * fabs(mean), w->floor);
+  if (wide > allowed || narrow > 2.0 * allowed || trend > STUDENT_6) return;
+  if (fabs(mean - late) > wide + narrow) return;
+  int32_t last = w->marks - 1, back = BATCHES * quarter;
+  double now = w->wandered[last] - w->wandered[last - back];
+  double before = w->wandered[last - back] - w->wandered[last - 2 * back];
+  if (!(fabs(now - before) <= 0.02 * before) || !(before > 0.0)) return;
+  w->result.kind = STRUT_MOTION_IRREGULAR;
+  w->result.interval = wide + fabs(mean - late);
+  w->velocity = mean;
 }
 
 bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
@@ -129,17 +221,20 @@ bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
     w->change[k][now % STRUT_RING] =
         fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
   }
+  if (!w->known) mark(w, now, x);
   for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);
   int32_t n = w->known ? w->result.repeats : 1;
   int32_t rounds = n * ((w->successive + n - 1) / n);
-  if (now >= rounds) w->velocity = mean_velocity(w, now, rounds);
+  if (now >= rounds && !w->result.shot) w->velocity = mean_velocity(w, now, rounds);
   return w->known;
 }
 
-void strut_watch_finish(const strut_watch *w, strut_summary *summary) {
+void strut_watch_finish(strut_watch *w, strut_summary *summary) {
+  if (!w->known) judge_irregular(w);
   summary->steady = w->result;
   if (!w->known) {
     summary->steady.periods = w->seen > 0 ? w->seen - 1 : 0;
+    if (w->result.kind == STRUT_MOTION_IRREGULAR) summary->velocity = w->velocity;
     return;
   }
   int64_t now = w->seen - 1;

@@ -166,6 +166,7 @@ static void same_scene(const strut_scene *a, const strut_scene *b) {
   SAME(experiment.steady.tolerance);
   SAME(experiment.steady.floor);
   SAME(experiment.steady.successive);
+  SAME(experiment.steady.shooting);
   SAME(experiment.measure_node);
   SAME(experiment.output_every);
   SAME(experiment.output_last);

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Runs that stop when they are steady: what they call so, and what they must not. */
+#include <math.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double PI = 3.14159265358979323846;
+
+static void watch(strut_scene *scene, double step, double periods, double tolerance) {
+  strut_experiment *e = &scene->experiment;
+  e->step = step;
+  e->periods = periods;
+  e->period_signal = 0;
+  e->measure_last = 1;
+  e->steady.wanted = true;
+  e->steady.tolerance = tolerance;
+}
+
+/* A mass of 1 kg on a spring of natural frequency w with a damping ratio, pushed at 1 Hz. */
+static void oscillator(strut_scene *scene, double w, double zeta) {
+  strut_scene_init(scene);
+  build_support(scene, 0, 0);
+  build_mass(scene, 1, 0, 1);
+  build_member(scene, STRUT_SPRING, 0, 1, w * w, 2 * zeta * w, 0);
+  build_load(scene, 1, 1, 0, build_sine(scene, 1, 1));
+  scene->nodes[1].fixed[1] = true;
+}
+
+/*
+ * The transient is as large as the motion, at w = sqrt(1.5) 2 pi: its beat with the drive is not
+ * commensurable. When a run calls it steady the transient must have died to what the tolerance says.
+ */
+static void slow(double zeta, double tolerance, double periods) {
+  strut_scene scene;
+  double w = 2 * PI * sqrt(1.5);
+  oscillator(&scene, w, zeta);
+  watch(&scene, 0.005, periods, tolerance);
+  strut_summary s = motion_simulate(&scene);
+  double left = exp(-zeta * w * s.duration);
+  if (s.steady.kind == STRUT_MOTION_PERIODIC)
+    assert_within(left, 0, 10 * tolerance);
+  else
+    assert_int_equal(s.steady.kind, STRUT_MOTION_TRANSIENT);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_slow_transients_are_not_steady(void **unused) {
+  (void)unused;
+  const double zeta[] = {1e-4, 1e-3, 1e-2, 0.1, 0.9};
+  for (int i = 0; i < 5; i++) {
+    slow(zeta[i], 0.005, 300);
+    slow(zeta[i], 0.05, 300);
+    slow(zeta[i], 0.005, 2000);
+  }
+}
+
+static void test_a_damped_oscillator_becomes_steady(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  oscillator(&scene, 2 * PI * sqrt(1.5), 0.05);
+  watch(&scene, 0.005, 400, 0.005);
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  assert_int_equal(s.steady.repeats, 1);
+  assert_true(s.steady.periods < 60);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* x'' + 2 zeta w x' + w^2 x = sin(2 pi t): the orbit at t = 0 and the multipliers, exactly. */
+static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  double w = 2 * PI * sqrt(1.5), zeta = 0.05, drive = 2 * PI;
+  oscillator(&scene, w, zeta);
+  watch(&scene, 0.0005, 400, 0.02);
+  scene.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  assert_true(s.steady.shot);
+  assert_within(s.steady.residual, 0, 1e-11);
+  double re = w * w - drive * drive, im = 2 * zeta * w * drive;
+  assert_near(s.positions[2], 1 - im / (re * re + im * im), 1e-10);
+  assert_int_equal(s.steady.multiplier_count, 2);
+  double size = exp(-zeta * w), angle = w * sqrt(1 - zeta * zeta);
+  for (int k = 0; k < 2; k++) {
+    assert_near(s.steady.multiplier[k][0], size * cos(angle), 1e-8);
+    assert_near(fabs(s.steady.multiplier[k][1]), fabs(size * sin(angle)), 1e-8);
+  }
+  assert_near(s.steady.multiplier[0][1], -s.steady.multiplier[1][1], 1e-12);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* The drive's phase matters only every other period: forced at 1 Hz and 0.5 Hz. */
+static void test_a_motion_that_repeats_every_second_period(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
+  build_load(&scene, 1, 1, 0, build_sine(&scene, 1, 0.5));
+  watch(&scene, 0.005, 400, 0.001);
+  scene.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  assert_int_equal(s.steady.repeats, 2);
+  assert_true(s.steady.shot);
+  assert_near(s.velocity, 0, 1e-9);
+  assert_near(hypot(s.steady.multiplier[0][0], s.steady.multiplier[0][1]),
+              exp(-2 * 0.1 * 2 * PI * sqrt(1.5)), 1e-7);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* A shallow truss pushed through its flat shape, regularly or not: what is claimed holds later. */
+static void claim_holds(double amplitude, double frequency) {
+  strut_scene scene;
+  strut_scene_init(&scene);
+  build_support(&scene, -1, 0);
+  build_support(&scene, 1, 0);
+  build_mass(&scene, 0, 0.3, 1);
+  for (int32_t k = 0; k < 2; k++) build_member(&scene, STRUT_SPRING, k, 2, 500, 0.4, 0);
+  scene.nodes[2].fixed[0] = true;
+  build_load(&scene, 2, 0, 1, build_sine(&scene, amplitude, frequency));
+  watch(&scene, 0.002 / frequency, 1500, 0.005);
+  scene.experiment.measure_node = 2;
+  strut_summary s = motion_simulate(&scene);
+  if (s.steady.kind == STRUT_MOTION_PERIODIC) { /* 480 is a multiple of all n */
+    scene.experiment.steady.wanted = false;
+    double y[2], at = s.duration * frequency;
+    for (int k = 0; k < 2; k++) {
+      scene.experiment.periods = round(at) + 480.0 * k;
+      strut_summary later = motion_simulate(&scene);
+      y[k] = later.positions[5];
+      strut_summary_free(&later);
+    }
+    assert_near(y[1], y[0], 0.02);
+  }
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_what_a_snapping_truss_is_said_to_do_it_does(void **unused) {
+  (void)unused;
+  const double amplitude[] = {2, 12.5, 14, 15.5}; /* at 14 it comes near where it was by chance */
+  for (int k = 0; k < 4; k++) claim_holds(amplitude[k], 1.1);
+}
+
+/* A second load begins at t = 100 s, or has a period that never meets the drive's. */
+static void test_late_loads_and_beats_are_not_steady(void **unused) {
+  (void)unused;
+  for (int k = 0; k < 3; k++) {
+    strut_scene scene;
+    oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
+    int32_t signal = build_sine(&scene, 0.3, k == 0 ? 1 : k == 1 ? 1.001 : 1.37);
+    if (k == 0) scene.signals[signal].start = 100;
+    build_load(&scene, 1, 1, 0, signal);
+    watch(&scene, 0.005, 250, 0.005);
+    strut_summary s = motion_simulate(&scene);
+    if (k == 0) {
+      assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+      assert_true(s.steady.periods > 105 && s.steady.periods < 200);
+    } else {
+      assert_int_equal(s.steady.kind, STRUT_MOTION_TRANSIENT);
+    }
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+}
+
+/* A driven block that friction holds: it stands still, and the run stops. */
+static void test_standing_still_is_steady(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 0, 1);
+  scene.gravity[1] = -9.81;
+  build_rough_contact(&scene, 0, 1e5, 300, 0.5, 0.5, 1e-3);
+  build_load(&scene, 0, 1, 0, build_sine(&scene, 1, 5));
+  watch(&scene, 1e-4, 1000, 0.005);
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  assert_int_equal(s.steady.repeats, 1);
+  assert_true(s.steady.periods <= 60);
+  assert_within(s.velocity, 0, 1e-4);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_slow_transients_are_not_steady),
+      cmocka_unit_test(test_a_damped_oscillator_becomes_steady),
+      cmocka_unit_test(test_shooting_finds_the_orbit_and_its_multipliers),
+      cmocka_unit_test(test_a_motion_that_repeats_every_second_period),
+      cmocka_unit_test(test_what_a_snapping_truss_is_said_to_do_it_does),
+      cmocka_unit_test(test_late_loads_and_beats_are_not_steady),
+      cmocka_unit_test(test_standing_still_is_steady),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
