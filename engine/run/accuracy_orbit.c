@@ -324,7 +324,8 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   if (status || !isfinite(w->error)) return status;
   status = run_orbit(w, orbit);
   double away = fabs(orbit->velocity - w->orbit.velocity);
-  if (status || *cheap_does || w->finished || away <= 0.6 * a->wanted * size) return status;
+  if (status || w->finished || away <= 0.6 * a->wanted * size) return status;
+  *cheap_does = false;
   strut_summary_free(orbit); /* its own velocity does not confirm the orbit */
   status = run_accurate(w, &w->last);
   return status ? status : run_orbit(w, orbit);
