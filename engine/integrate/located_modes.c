@@ -4,8 +4,8 @@
 
 #include "engine/integrate/located_kernel.h"
 
-/* Slower than this counts as at rest on the ground [m/s]. */
-static const double TIE = 1e-9;
+/* At rest on the ground is what is slower than this part of size times the contact's frequency. */
+static const double TIE = 1e-12;
 
 STRUT_CLONES
 static void derive(const strut_model *model, strut_state *state, strut_located *l, double t) {
@@ -66,7 +66,8 @@ static void close_contact(const strut_model *model, strut_located *l, int32_t i)
     l->mode[i] = STRUT_MODE_SLIDE;
   } else if (e->law == STRUT_FRICTION_KARNOPP) {
     l->mode[i] = fabs(o.slip) < e->stick_velocity ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
-  } else if (fabs(o.slip) > TIE) {
+  } else if (fabs(o.slip) >
+             TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) {
     l->mode[i] = STRUT_MODE_SLIP;
   } else {
     l->mode[i] = STRUT_MODE_STICK;
@@ -84,7 +85,8 @@ static int32_t overloaded(const strut_model *model, const strut_located *l) {
     const strut_touch *o = &l->now.touch[i];
     double most = model->contacts.entry[i].mu_static * o->normal;
     double over = fabs(o->friction) - most;
-    if (!(over > worst * fabs(o->friction)) || !(o->friction != 0.0)) continue;
+    /* Without any normal force yet nothing can be said: the end of the step will tell. */
+    if (!(over > worst * fabs(o->friction)) || !(o->normal > 0.0)) continue;
     worst = over / fabs(o->friction);
     found = i;
   }

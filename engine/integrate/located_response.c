@@ -9,6 +9,8 @@
 static const double NEGLIGIBLE = 1e-18;
 /* Sets of stuck contacts above this size are solved for by sweeps, without a matrix. */
 enum { LARGEST_FACTOR = 512 };
+/* Steps are not made shorter than by this on a contact's account: its damper is implicit anyway. */
+static const double MOST_REFINED = 64.0;
 
 /* The column of M^-1 for one coordinate of a node, into `column` (length). */
 static void solve_column(const strut_model *model, strut_state *state, uint32_t at,
@@ -71,7 +73,8 @@ strut_status strut_located_prepare(const strut_model *model, strut_state *state,
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
   }
   const strut_experiment *e = &model->scene->experiment;
-  l->refine = e->refine > 0.0 ? e->refine : fmax(1.0, ceil(fastest * e->step / e->refine_rate));
+  double wanted = ceil(fastest * e->step / e->refine_rate);
+  l->refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
   l->refine_time = e->refine_time;
   l->refine_memory = e->refine_memory;
   l->passes = c->normal[0] != 0.0 && !model->mass->shared ? 8 : 1;
