@@ -23,8 +23,11 @@ double strut_energy_kinetic(const strut_model *model, const double *v) {
 
 static double elastic(const strut_model *model, const strut_state *state) {
   const strut_member_table *t = &model->members;
+  const strut_member *member = model->scene->members;
+  bool rigid = model->plan & STRUT_TERM_RIGID; /* rigid bars store nothing */
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
+    if (rigid && member[j].kind == STRUT_BAR) continue;
     const double *a = state->q + t->from[j], *b = state->q + t->to[j];
     double dx = b[0] - a[0], dy = b[1] - a[1];
     double stretch = sqrt(dx * dx + dy * dy) - state->rest[j];

@@ -4,6 +4,8 @@
 
 #include <assert.h>
 
+#include "engine/forces/rigid.h"
+
 void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
                            const double *restrict q, const double *restrict v) {
   for (int32_t i = 0; i < model->contacts.count; i++)
@@ -12,6 +14,7 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
     forces_sum(model, state, t, q, v, true);
   else
     forces_sum(model, state, t, q, v, false);
+  if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
 void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: the ground's reaction (8) and friction (9), exactly as the paper prints them.
+ * Hot: the ground's reaction (8) and friction (9), exactly as the paper prints them, or by the other
+ * laws that a scene may name, in a loop of their own.
  *
- * The damper acts only while the node moves into the ground. Friction comes last of all forces,
+ * The damper of (8) acts only while the node moves into the ground. Friction comes last of all forces,
  * since Karnopp's band needs the sum of the others on the node.
  */
 #ifndef STRUT_ENGINE_FORCES_GROUND_KERNEL_H
@@ -23,20 +24,40 @@ STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double da
   state->power[STRUT_POWER_MOVED] += damped + fabs(rubbed) + fabs(belt);
 }
 
+/* Beyond the spring c d: k d' while going in, or of the Hunt-Crossley law c d chi d', never pulling. */
+STRUT_INLINE double ground_damper(const strut_contact_entry *e, double spring, double into) {
+  if (!(e->dissipation > 0.0)) return into < 0.0 ? -e->damping * into : 0.0;
+  double damper = -spring * e->dissipation * into;
+  return damper > -spring ? damper : -spring;
+}
+
+/* Within Karnopp's band at the ends of rigid bars friction is found with their forces: 0 here. */
+STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal, double slip,
+                                    double applied, bool bars_rigid) {
+  if (e->law == STRUT_FRICTION_NONE) return 0.0;
+  if (e->law == STRUT_FRICTION_SMOOTH)
+    return strut_friction_smooth(normal, slip, e->mu_kinetic, e->width);
+  if (bars_rigid && fabs(slip) < e->stick_velocity) return 0.0;
+  return strut_friction_force(normal, slip, applied, e->mu_static, e->mu_kinetic,
+                              e->stick_velocity);
+}
+
 /* One node in contact; f, v: its force and velocity; gap < 0. */
 STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state, int32_t i,
                                double gap, double *restrict f, const double *restrict v,
-                               bool sloped, bool rough, bool ledger) {
+                               bool sloped, bool rough, bool laws, bool ledger) {
   const strut_contact_entry *e = &c->entry[i];
   strut_pair sum = strut_pair_load(f), reaction;
   double into = sloped ? v[0] * c->normal[0] + v[1] * c->normal[1] : v[1];
   double along = sloped ? v[0] * c->tangent[0] + v[1] * c->tangent[1] : v[0];
   double damper = into < 0.0 ? -e->damping * into : 0.0, slip = along - c->belt_speed;
+  if (laws) damper = ground_damper(e, -e->stiffness * gap, into);
   double normal = -e->stiffness * gap + damper, friction = 0.0;
   if (rough) {
     double applied = sloped ? sum[0] * c->tangent[0] + sum[1] * c->tangent[1] : sum[0];
-    friction = strut_friction_force(normal, slip, applied, e->mu_static, e->mu_kinetic,
-                                    e->stick_velocity);
+    friction = laws ? ground_friction(e, normal, slip, applied, state->rigid)
+                    : strut_friction_force(normal, slip, applied, e->mu_static, e->mu_kinetic,
+                                           e->stick_velocity);
   }
   if (sloped)
     reaction = (strut_pair){friction * c->tangent[0] + normal * c->normal[0],
@@ -51,7 +72,8 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
 
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
                              const double *restrict q, const double *restrict v,
-                             double *restrict force, bool sloped, bool rough, bool ledger) {
+                             double *restrict force, bool sloped, bool rough, bool laws,
+                             bool ledger) {
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;
@@ -59,7 +81,7 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
     double gap = q[at[i] + 1] - height;
     if (sloped) gap = q[at[i]] * c->normal[0] + gap * c->normal[1];
     if (gap < 0.0)
-      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, ledger);
+      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, ledger);
   }
 }
 
@@ -67,11 +89,13 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
 STRUT_INLINE void ground_kernel(const strut_model *model, strut_state *state,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict force, bool ledger) {
-  switch (model->plan & (STRUT_TERM_SLOPE | STRUT_TERM_FRICTION)) {
-    case 0: ground_all(model, state, q, v, force, false, false, ledger); break;
-    case STRUT_TERM_FRICTION: ground_all(model, state, q, v, force, false, true, ledger); break;
-    case STRUT_TERM_SLOPE: ground_all(model, state, q, v, force, true, false, ledger); break;
-    default: ground_all(model, state, q, v, force, true, true, ledger); break;
+  enum { F = STRUT_TERM_FRICTION, S = STRUT_TERM_SLOPE };
+  switch (model->plan & (S | F | STRUT_TERM_LAWS)) {
+    case 0: ground_all(model, state, q, v, force, false, false, false, ledger); break;
+    case F: ground_all(model, state, q, v, force, false, true, false, ledger); break;
+    case S: ground_all(model, state, q, v, force, true, false, false, ledger); break;
+    case S | F: ground_all(model, state, q, v, force, true, true, false, ledger); break;
+    default: ground_all(model, state, q, v, force, true, true, true, ledger); break;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "engine/forces/forces.h"
+#include "engine/forces/rigid.h"
 
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,
                            double *force) {
@@ -18,4 +19,5 @@ void strut_members_measure(const strut_model *model, const strut_state *state, d
     length[j] = l;
     force[j] = stretch > t->slack[j] && f > t->slack[j] ? f : t->slack[j];
   }
+  if (state->rigid) strut_rigid_add_tensions(state->rigid, force);
 }

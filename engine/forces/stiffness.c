@@ -37,11 +37,25 @@ static void add_members(const strut_model *model, const double *q, const double 
   }
 }
 
+/* Normal force of a contact at rest, for the largest step: a body rests on two of them. */
+static double resting_force(const strut_model *model) {
+  const strut_contact_table *c = &model->contacts;
+  const double *g = model->scene->gravity;
+  double mass = 0.0, down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
+  for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
+  return down > 0.0 ? mass * down / (c->count > 1 ? 2.0 : 1.0) : 0.0;
+}
+
 static void add_contacts(const strut_model *model, const double *q, strut_closed closed,
                          const int32_t *row_of, strut_triplets *stiffness,
                          strut_triplets *damping) {
   const strut_contact_table *c = &model->contacts;
+  bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
+  double weight = resting && (model->plan & STRUT_TERM_LAWS) ? resting_force(model) : 0.0;
   for (int32_t i = 0; i < c->count && closed != STRUT_CLOSED_NONE; i++) {
+    const strut_contact_entry *e = &c->entry[i];
+    double damper = e->damping + weight * e->dissipation;
+    double slide = e->law == STRUT_FRICTION_SMOOTH ? weight * e->mu_kinetic / e->width : 0.0;
     uint32_t at = c->at[i];
     int32_t row[2] = {row_of[at], row_of[at + 1]};
     double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
@@ -52,7 +66,10 @@ static void add_contacts(const strut_model *model, const double *q, strut_closed
         double nn = c->normal[a] * c->normal[b];
         strut_triplets_add(stiffness, row[a], row[b], c->entry[i].stiffness * nn);
         if (closed != STRUT_CLOSED_UNDAMPED)
-          strut_triplets_add(damping, row[a], row[b], c->entry[i].damping * nn);
+          strut_triplets_add(damping, row[a], row[b],
+                             damper * nn + slide * c->tangent[a] * c->tangent[b]);
+        else if (slide > 0.0)
+          strut_triplets_add(damping, row[a], row[b], slide * c->tangent[a] * c->tangent[b]);
       }
   }
 }
@@ -66,6 +83,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   size_t most = 10 * (size_t)model->members.count + 3 * (size_t)model->contacts.count;
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   tangent->coordinate = strut_arena_allocate(arena, both, sizeof *tangent->coordinate);
+  tangent->rigid = NULL;
   strut_status status = STRUT_NO_MEMORY;
   if (row_of && tangent->coordinate && strut_triplets_reserve(&stiffness, most, &scratch) &&
       strut_triplets_reserve(&damping, most, &scratch)) {

@@ -13,14 +13,18 @@ typedef struct strut_tangent {
   int32_t *coordinate; /* (n) index into coordinate arrays */
   strut_sparse *stiffness; /* K = sum c u u' + (t/L)(1 - u u') + ground [N/m] */
   strut_sparse *damping;   /* D = sum k u u' + ground [N s/m] */
+  struct strut_rigid *rigid; /* NULL; for who wants the motions that rigid bars leave, rigid.h */
 } strut_tangent;
 
-/** Which contacts count as closed. */
+/**
+ * Which contacts count as closed. With those two that close all of them, Hunt-Crossley dampers and
+ * smooth friction are taken as where half the weight rests on each contact: N chi and mu N / width.
+ */
 typedef enum strut_closed {
   STRUT_CLOSED_NONE,
   STRUT_CLOSED_TOUCHING, /* those below the ground in q */
   STRUT_CLOSED_ALL,      /* every node that may touch: the stiffest case */
-  STRUT_CLOSED_UNDAMPED  /* the same without the ground's dampers */
+  STRUT_CLOSED_UNDAMPED  /* the same without the ground's dampers, but with smooth friction */
 } strut_closed;
 
 /**

@@ -25,6 +25,7 @@ typedef struct strut_integrator {
   strut_region region;
   bool implicit_damper;    /* the ground's dampers do not limit the step */
   bool events;             /* locates events: modes of contacts are frozen within a step */
+  bool rigid;              /* keeps the lengths of rigid bars */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
   void *(*create)(const strut_model *model, strut_state *state);
   /** Must be called whenever someone else has changed q or v; NULL where nothing depends on it. */
@@ -41,6 +42,12 @@ typedef struct strut_integrator {
 STRUT_API const strut_integrator *strut_integrator_at(size_t i);
 /** The method of that name, or NULL. */
 STRUT_API const strut_integrator *strut_integrator_find(const char *name);
+/**
+ * Can the scene's method run the model? STRUT_USAGE, with what to change, where there is no such
+ * method, exact Coulomb friction has none with events, or rigid bars have none that keeps them;
+ * STRUT_SINGULAR with the bar where rigid bars hold each other.
+ */
+STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_error *error);
 
 /* The rows of the table. */
 extern const strut_integrator strut_integrator_rk4, strut_integrator_euler,

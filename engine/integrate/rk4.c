@@ -4,6 +4,7 @@
  * force law, contact and friction included, is evaluated at every stage.
  */
 #include "engine/forces/forces_kernel.h"
+#include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
 
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
@@ -14,6 +15,7 @@ typedef struct rk4_workspace {
 static void *rk4_create(const strut_model *model, strut_state *state) {
   rk4_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
   if (!w) return NULL;
+  if ((model->plan & STRUT_TERM_RIGID) && !strut_rigid_create(model, state)) return NULL;
   double **all[] = {&w->q, &w->v[1], &w->v[2], &w->v[3], &w->a[0], &w->a[1], &w->a[2], &w->a[3]};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     *all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
@@ -49,7 +51,7 @@ STRUT_INLINE void combine(int32_t n, double h, double *restrict z, const double 
  * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight.
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
-                            double dt, int64_t count, bool ledger) {
+                            double dt, int64_t count, bool ledger, bool rigid) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
   double *restrict q = state->q, *restrict v = state->v;
   const double *const at[4] = {q, w->q, w->q, w->q};
@@ -59,33 +61,49 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
     for (int k = 0; k < 4; k++) {
       double t = ((double)state->step + ahead[k]) * dt;
       forces_kernel(model, state, t, at[k], speed[k], w->a[k], ledger);
+      if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->power[p];
       if (k < 3) stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
     }
     combine(n, dt, q, v, w->v[1], w->v[2], w->v[3]);
     combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
+    if (rigid) strut_rigid_project(model, state, q, v);
   }
 }
 
 STRUT_CLONES
 static void advance_plain(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
                           int64_t count) {
-  run_steps(model, state, w, dt, count, false);
+  run_steps(model, state, w, dt, count, false, false);
 }
 
 STRUT_CLONES
 static void advance_with_ledger(const strut_model *model, strut_state *state, rk4_workspace *w,
                                 double dt, int64_t count) {
-  run_steps(model, state, w, dt, count, true);
+  run_steps(model, state, w, dt, count, true, false);
+}
+
+STRUT_CLONES
+static void advance_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
+                          int64_t count) {
+  run_steps(model, state, w, dt, count, state->ledger, true);
 }
 
 static void rk4_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                         int64_t count) {
-  if (state->ledger)
+  if (state->rigid)
+    advance_rigid(model, state, workspace, dt, count);
+  else if (state->ledger)
     advance_with_ledger(model, state, workspace, dt, count);
   else
     advance_plain(model, state, workspace, dt, count);
+}
+
+/* Rigid bars keep the lengths they have here. */
+static void rk4_restart(const strut_model *model, strut_state *state, void *workspace, double dt) {
+  (void)workspace, (void)dt;
+  if (state->rigid) strut_rigid_begin(model, state);
 }
 
 const strut_integrator strut_integrator_rk4 = {
@@ -94,6 +112,8 @@ const strut_integrator strut_integrator_rk4 = {
     .order = 4,
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
+    .rigid = true,
     .create = rk4_create,
+    .restart = rk4_restart,
     .advance = rk4_advance,
 };

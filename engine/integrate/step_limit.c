@@ -5,9 +5,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/rigid.h"
 #include "engine/forces/stiffness.h"
 
-/* A free-coordinate vector to node arrays, through M^-1, and back. */
+/* A free-coordinate vector to node arrays, through M^-1 and what rigid bars allow, and back. */
 static void divide_by_mass(const strut_model *model, const strut_tangent *tangent, double *x,
                            double *work) {
   size_t both = (size_t)model->length;
@@ -15,6 +16,7 @@ static void divide_by_mass(const strut_model *model, const strut_tangent *tangen
   memset(force, 0, both * sizeof *force);
   for (int32_t i = 0; i < tangent->n; i++) force[tangent->coordinate[i]] = x[i];
   strut_mass_solve(model, force, acceleration, scratch);
+  if (tangent->rigid) strut_rigid_filter(model, tangent->rigid, acceleration, scratch);
   for (int32_t i = 0; i < tangent->n; i++) x[i] = acceleration[tangent->coordinate[i]];
 }
 
@@ -232,6 +234,9 @@ static strut_status limits(const strut_model *model, bool dampers, strut_arena *
                                                dampers ? STRUT_CLOSED_ALL : STRUT_CLOSED_UNDAMPED,
                                                arena, &tangent);
   if (status || tangent.n == 0) return status;
+  if ((model->plan & STRUT_TERM_RIGID) &&
+      !(tangent.rigid = strut_rigid_standing(model, model->start, arena)))
+    return STRUT_NO_MEMORY;
   return tangent.n <= STRUT_EXACT_LIMIT ? solve_exactly(model, &tangent, arena, limit)
                                         : estimate(model, &tangent, arena, limit);
 }
@@ -242,7 +247,8 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
   strut_step_limit implicit;
   bool damped = false;
   for (int32_t i = 0; i < model->contacts.count; i++)
-    damped = damped || model->contacts.entry[i].damping > 0.0;
+    damped = damped || model->contacts.entry[i].damping > 0.0 ||
+             model->contacts.entry[i].dissipation > 0.0;
   strut_status status = limits(model, true, &arena, limit);
   implicit = *limit;
   if (!status && damped) status = limits(model, false, &arena, &implicit);

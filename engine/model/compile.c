@@ -81,6 +81,8 @@ static void compile_members(strut_model *model, bool *failed) {
     stiffness[j] = r.stiffness, rest[j] = r.length;
     damping[j] = member->damping, mass[j] = member->mass;
     unsigned needs = STRUT_TERM_MEMBERS;
+    if (member->kind == STRUT_BAR && scene->bar_model == STRUT_BARS_RIGID)
+      model->plan |= STRUT_TERM_RIGID | STRUT_TERM_LAWS;
     if (member->damping > 0) needs |= STRUT_TERM_DAMPING;
     if (member->kind == STRUT_CABLE) slack[j] = 0.0, needs |= STRUT_TERM_SLACK;
     terms[j / STRUT_BLOCK] = (uint16_t)(terms[j / STRUT_BLOCK] | needs);
@@ -175,6 +177,7 @@ static void compile_contacts(strut_model *model, bool *failed) {
     if (scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
       entry[i].damping = 0.0;
       entry[i].dissipation = contact->dissipation;
+      model->plan |= STRUT_TERM_LAWS;
     }
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].mu_static = contact->friction.mu_static;
@@ -182,6 +185,7 @@ static void compile_contacts(strut_model *model, bool *failed) {
     entry[i].stick_velocity = contact->friction.stick_velocity;
     entry[i].width = contact->friction.width;
     model->plan |= STRUT_TERM_FRICTION;
+    if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->plan |= STRUT_TERM_LAWS;
   }
   *t = (strut_contact_table){(int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height,
                              scene->ground.belt_speed};

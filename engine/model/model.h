@@ -31,7 +31,9 @@ typedef enum strut_term {
   STRUT_TERM_CONTACT = 1 << 6,  /* ground reaction (8) */
   STRUT_TERM_FRICTION = 1 << 7, /* Coulomb with Karnopp's band (9) */
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
-  STRUT_TERM_SOLVE = 1 << 9     /* the mass matrix is not diagonal */
+  STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
+  STRUT_TERM_LAWS = 1 << 10,    /* some contact has another law of damping or friction than (8), (9) */
+  STRUT_TERM_RIGID = 1 << 11    /* bars keep their lengths */
 } strut_term;
 
 /**

@@ -12,6 +12,7 @@ static strut_status quiet_scene(const strut_scene *scene, strut_scene *quiet, st
   *quiet = *scene;
   quiet->actuator_count = 0;
   quiet->ground.belt_speed = 0.0;
+  quiet->bar_model = STRUT_BARS_ELASTIC; /* rigid from where they have come to rest under load */
   quiet->loads = strut_arena_allocate(arena, scene->load_count, sizeof *quiet->loads);
   quiet->contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *quiet->contacts);
   if (!quiet->loads || !quiet->contacts) return STRUT_NO_MEMORY;

@@ -110,10 +110,9 @@ static strut_status prepare(run *r) {
   strut_step_limit limit;
   r->watching = scene->experiment.steady.wanted && span.period > 0.0;
   choose_steps(r, &span);
+  strut_status status = strut_integrator_check(r->model, r->error);
+  if (status) return status;
   r->method = strut_integrator_find(scene->experiment.integrator);
-  if (!r->method)
-    return strut_fail(r->error, STRUT_USAGE, "there is no integrator '%s'",
-                      scene->experiment.integrator);
   for (size_t i = 0; i + 1 < sizeof r->summary->method && r->method->name[i]; i++)
     r->summary->method[i] = r->method->name[i];
   if (scene->start_equilibrium >= 0)
@@ -123,7 +122,7 @@ static strut_status prepare(run *r) {
                       scene->configurations[scene->start_equilibrium].name);
   if (!r->model->mass)
     return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
-  strut_status status = strut_step_limit_estimate(r->model, &limit, r->error);
+  status = strut_step_limit_estimate(r->model, &limit, r->error);
   if (status) return status;
   r->summary->step_limit = strut_step_limit_of(&limit, r->method);
   if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||

@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/rigid.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lengths are put right until they are so near, relative to themselves and to the coordinates. */
+static const double NEAR = 1e-13, ROUNDING = 4.5e-16;
+/* What a step may leave at worst. */
+static const double FAR = 1e-9;
+
+static bool is_rigid(const strut_model *model, int32_t j) {
+  return model->scene->members[j].kind == STRUT_BAR;
+}
+
+/* Numbers the nodes of bars and contacts; index: (node_count) scratch of zeros. */
+static void number_nodes(const strut_model *model, strut_rigid *g, int32_t *index) {
+  const strut_member_table *t = &model->members;
+  g->bars = g->nodes = 0;
+  for (int32_t j = 0; j < t->count; j++) {
+    if (!is_rigid(model, j)) continue;
+    uint32_t at[2] = {t->from[j], t->to[j]};
+    for (int e = 0; e < 2; e++) {
+      if (!index[at[e] / 2]) g->at[g->nodes] = at[e], index[at[e] / 2] = ++g->nodes;
+      g->end[g->bars][e] = index[at[e] / 2] - 1;
+    }
+    g->member[g->bars++] = j;
+  }
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    uint32_t at = model->contacts.at[i];
+    if (!index[at / 2]) g->at[g->nodes] = at, index[at / 2] = ++g->nodes;
+    g->foot[i] = index[at / 2] - 1;
+  }
+}
+
+/* M^-1 between the nodes, a column at a time. */
+static void invert_mass(const strut_model *model, strut_rigid *g, double *scratch) {
+  size_t bytes = (size_t)model->length * sizeof(double), n = (size_t)g->nodes;
+  for (int c = 0; c < 2; c++)
+    for (size_t j = 0; j < n; j++) {
+      memset(g->free, 0, bytes);
+      memset(g->push, 0, bytes);
+      g->push[g->at[j] + (uint32_t)c] = 1.0;
+      strut_mass_solve(model, g->push, g->free, scratch);
+      for (size_t i = 0; i < n; i++) g->inverse[c][i * n + j] = g->free[g->at[i] + (uint32_t)c];
+    }
+  memset(g->free, 0, bytes);
+}
+
+static strut_rigid *create(const strut_model *model, strut_arena *arena, double *scratch) {
+  size_t feet = (size_t)model->contacts.count, bars = 0;
+  for (int32_t j = 0; j < model->members.count; j++) bars += is_rigid(model, j);
+  size_t nodes = 2 * bars + feet, most = bars + feet;
+  strut_rigid *g = strut_arena_allocate(arena, 1, sizeof *g);
+  int32_t *index = strut_arena_allocate(arena, (size_t)model->node_count, sizeof *index);
+  if (!g || !index) return NULL;
+  g->most = (int32_t)most;
+  g->member = strut_arena_allocate(arena, bars, sizeof *g->member);
+  g->length = strut_arena_allocate(arena, bars, sizeof(double));
+  g->tension = strut_arena_allocate(arena, bars, sizeof(double));
+  g->at = strut_arena_allocate(arena, nodes, sizeof *g->at);
+  g->end = strut_arena_allocate(arena, bars, sizeof *g->end);
+  g->foot = strut_arena_allocate(arena, feet, sizeof *g->foot);
+  g->row = strut_arena_allocate(arena, most, sizeof *g->row);
+  g->way = strut_arena_allocate(arena, most, sizeof *g->way);
+  g->matrix = strut_arena_allocate(arena, most * most, sizeof(double));
+  g->right = strut_arena_allocate(arena, most, sizeof(double));
+  g->stuck = strut_arena_allocate(arena, feet, sizeof *g->stuck);
+  g->free = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  g->push = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  if (!g->member || !g->length || !g->tension || !g->at || !g->end || !g->foot || !g->row ||
+      !g->way || !g->matrix || !g->right || !g->stuck || !g->free || !g->push)
+    return NULL;
+  number_nodes(model, g, index);
+  for (int c = 0; c < 2; c++) {
+    size_t n = (size_t)g->nodes;
+    g->inverse[c] = strut_arena_allocate(arena, n * n, sizeof(double));
+    if (!g->inverse[c]) return NULL;
+  }
+  invert_mass(model, g, scratch);
+  return g;
+}
+
+bool strut_rigid_create(const strut_model *model, strut_state *state) {
+  state->rigid = create(model, &state->arena, state->scratch);
+  if (state->rigid) strut_rigid_begin(model, state);
+  return state->rigid;
+}
+
+static double distance(const strut_rigid *g, int32_t r, const double *q) {
+  const double *a = q + g->at[g->end[r][0]], *b = q + g->at[g->end[r][1]];
+  double dx = b[0] - a[0], dy = b[1] - a[1];
+  return sqrt(dx * dx + dy * dy);
+}
+
+/* x += M^-1 J' right. */
+static void move(const strut_model *model, double *scratch, strut_rigid *g, double *x) {
+  size_t bytes = (size_t)model->length * sizeof(double);
+  memset(g->push, 0, bytes);
+  memset(g->free, 0, bytes);
+  strut_rigid_spread(g, g->push);
+  strut_mass_solve(model, g->push, g->free, scratch);
+  for (int32_t i = 0; i < 2 * model->node_count; i++) x[i] += g->free[i];
+}
+
+void strut_rigid_filter(const strut_model *model, strut_rigid *g, double *v, double *scratch) {
+  for (int32_t r = 0; r < g->rows; r++) g->right[r] = -strut_rigid_along(g, r, v);
+  strut_rigid_solve(g);
+  move(model, scratch, g, v);
+}
+
+strut_rigid *strut_rigid_standing(const strut_model *model, const double *q, strut_arena *arena) {
+  double *scratch = strut_arena_allocate(arena, (size_t)model->length, sizeof *scratch);
+  strut_rigid *g = scratch ? create(model, arena, scratch) : NULL;
+  if (!g) return NULL;
+  strut_rigid_rows(g, q);
+  strut_rigid_factorise(g);
+  return g;
+}
+
+void strut_rigid_begin(const strut_model *model, strut_state *state) {
+  strut_rigid *g = state->rigid;
+  for (int32_t r = 0; r < g->bars; r++) g->length[r] = distance(g, r, state->q);
+  memset(g->tension, 0, (size_t)g->bars * sizeof(double));
+  strut_rigid_rows(g, state->q);
+  if (strut_rigid_factorise(g) >= 0)
+    state->trouble = STRUT_TROUBLE_RIGID;
+  else
+    strut_rigid_filter(model, g, state->v, state->scratch);
+}
+
+strut_status strut_rigid_check(const strut_model *model, strut_error *error) {
+  strut_arena arena = {0};
+  int32_t bars = 0, bad = -1;
+  for (int32_t j = 0; j < model->members.count; j++) bars += is_rigid(model, j);
+  if (bars > STRUT_MOST_RIGID)
+    return strut_fail(error, STRUT_USAGE,
+                      "%d rigid bars are more than the %d that their dense matrix is made for; use "
+                      "bars: elastic",
+                      (int)bars, (int)STRUT_MOST_RIGID);
+  double *scratch = strut_arena_allocate(&arena, (size_t)model->length, sizeof *scratch);
+  strut_rigid *g = scratch ? create(model, &arena, scratch) : NULL;
+  strut_status status = g ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (g) {
+    strut_rigid_rows(g, model->start);
+    bad = strut_rigid_factorise(g);
+  }
+  if (bad >= 0)
+    status = strut_fail(error, STRUT_SINGULAR,
+                        "bar '%s' cannot be rigid: supports or other rigid bars hold its ends "
+                        "already; make it a spring, or use bars: elastic",
+                        model->scene->members[g->member[bad]].name);
+  strut_arena_free(&arena);
+  return status;
+}
+
+/* Contacts within Karnopp's band. Returns how many. */
+static int32_t find_stuck(const strut_model *model, strut_rigid *g, const double *q,
+                          const double *v) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t count = 0;
+  for (int32_t i = 0; i < c->count; i++) {
+    const double *x = q + c->at[i], *u = v + c->at[i];
+    double gap = x[0] * c->normal[0] + (x[1] - c->height) * c->normal[1];
+    double slip = u[0] * c->tangent[0] + u[1] * c->tangent[1] - c->belt_speed;
+    if (gap < 0.0 && c->entry[i].law == STRUT_FRICTION_KARNOPP &&
+        fabs(slip) < c->entry[i].stick_velocity)
+      g->stuck[count++] = i;
+  }
+  return count;
+}
+
+/* Multipliers of bars and of `stuck` for the acceleration a; false: bars depend on each other. */
+static bool hold(const strut_model *model, strut_rigid *g, const double *q, const double *v,
+                 const double *a, int32_t stuck) {
+  strut_rigid_rows(g, q);
+  for (int32_t r = 0; r < g->bars; r++) {
+    const double *va = v + g->at[g->end[r][0]], *vb = v + g->at[g->end[r][1]];
+    double wx = vb[0] - va[0], wy = vb[1] - va[1];
+    double turn = g->way[r][0] * wy - g->way[r][1] * wx, length = distance(g, r, q);
+    g->right[r] = -strut_rigid_along(g, r, a) - (length > 0.0 ? turn * turn / length : 0.0);
+  }
+  for (int32_t k = 0; k < stuck; k++) {
+    strut_rigid_add_foot(model, g, g->stuck[k]);
+    g->right[g->bars + k] = -strut_rigid_along(g, g->bars + k, a);
+  }
+  if (strut_rigid_factorise(g) >= 0) return false;
+  strut_rigid_solve(g);
+  return true;
+}
+
+/* The contact whose stick is overtaxed most slides instead, pushed by what held it. */
+static bool release(const strut_model *model, strut_state *state, strut_rigid *g, int32_t *stuck) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t worst = -1;
+  double most = 0.0;
+  for (int32_t k = 0; k < *stuck; k++) {
+    int32_t i = g->stuck[k];
+    double excess = fabs(g->right[g->bars + k]) - c->entry[i].mu_static * state->normal[i];
+    if (excess >= 0.0 && (worst < 0 || excess > most)) worst = k, most = excess;
+  }
+  if (worst < 0) return false;
+  int32_t i = g->stuck[worst];
+  double hold = g->right[g->bars + worst], slide = c->entry[i].mu_kinetic * state->normal[i];
+  double friction = hold > 0.0 ? slide : hold < 0.0 ? -slide : 0.0;
+  state->friction[i] = friction;
+  for (int k = 0; k < 2; k++) state->force[c->at[i] + (uint32_t)k] += friction * c->tangent[k];
+  g->stuck[worst] = g->stuck[--*stuck];
+  return true;
+}
+
+/* Friction's powers of the contacts within the band, which the kernel has left out. */
+static void book(const strut_model *model, strut_state *state, const double *q, const double *v) {
+  const strut_contact_table *c = &model->contacts;
+  strut_rigid *g = state->rigid;
+  int32_t count = find_stuck(model, g, q, v);
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = g->stuck[k];
+    const double *u = v + c->at[i];
+    double slip = u[0] * c->tangent[0] + u[1] * c->tangent[1] - c->belt_speed;
+    double rubbed = -state->friction[i] * slip, belt = state->friction[i] * c->belt_speed;
+    state->power[STRUT_POWER_FRICTION] += rubbed;
+    state->power[STRUT_POWER_BELT] += belt;
+    state->power[STRUT_POWER_MOVED] += fabs(rubbed) + fabs(belt);
+  }
+}
+
+void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
+                            const double *v, double *a) {
+  strut_rigid *g = state->rigid;
+  int32_t stuck = find_stuck(model, g, q, v), before = stuck;
+  for (;;) {
+    if (!hold(model, g, q, v, a, stuck)) {
+      state->trouble = STRUT_TROUBLE_RIGID;
+      return;
+    }
+    if (!release(model, state, g, &stuck)) break;
+    strut_mass_solve(model, state->force, a, state->scratch);
+  }
+  for (int32_t r = 0; r < g->bars; r++) g->tension[r] = -g->right[r];
+  for (int32_t k = 0; k < stuck; k++) state->friction[g->stuck[k]] = g->right[g->bars + k];
+  strut_rigid_spread(g, state->force);
+  strut_mass_solve(model, state->force, a, state->scratch);
+  if (state->ledger && before) book(model, state, q, v);
+}
+
+void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,
+                           const double *v) {
+  memset(state->rigid->free, 0, (size_t)model->length * sizeof(double));
+  strut_mass_solve(model, state->force, state->rigid->free, state->scratch);
+  strut_rigid_accelerate(model, state, q, v, state->rigid->free);
+}
+
+/* The largest departure of a length, relative, beyond rounding of the coordinates; fills right. */
+static double departure(strut_rigid *g, const double *q) {
+  double most = 0.0;
+  for (int32_t r = 0; r < g->bars; r++) {
+    const double *a = q + g->at[g->end[r][0]], *b = q + g->at[g->end[r][1]];
+    double noise = ROUNDING * (fabs(a[0]) + fabs(a[1]) + fabs(b[0]) + fabs(b[1]));
+    g->right[r] = g->length[r] - distance(g, r, q);
+    double left = fabs(g->right[r]) - noise;
+    if (!(left <= most * g->length[r])) most = left / g->length[r];
+  }
+  return most;
+}
+
+bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *v) {
+  enum { MOST_ROUNDS = 8 };
+  strut_rigid *g = state->rigid;
+  double left = departure(g, q);
+  for (int round = 0; left > NEAR && round < MOST_ROUNDS; round++) {
+    strut_rigid_rows(g, q);
+    if (strut_rigid_factorise(g) >= 0) break;
+    departure(g, q);
+    strut_rigid_solve(g);
+    move(model, state->scratch, g, q);
+    left = departure(g, q);
+  }
+  strut_rigid_rows(g, q);
+  if (!(left <= FAR) || strut_rigid_factorise(g) >= 0) {
+    state->trouble = STRUT_TROUBLE_RIGID;
+    return false;
+  }
+  strut_rigid_filter(model, g, v, state->scratch);
+  return true;
+}
+
+void strut_rigid_add_tensions(const strut_rigid *rigid, double *force) {
+  for (int32_t r = 0; r < rigid->bars; r++) force[rigid->member[r]] += rigid->tension[r];
+}

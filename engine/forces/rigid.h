@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Rigid bars: members of kind bar as constraints at the length they have at the start.
+ *
+ * Index-1 form: a += M^-1 J' lambda with (J M^-1 J') lambda = -(J a + Jdot v), the rows of J being
+ * the bars' directions; then positions and velocities are projected onto the constraints along
+ * M^-1 J' after every step. What the bar's own spring and damper would give acts along the same line,
+ * so that the multiplier takes it up: both together are the bar's force. A contact within Karnopp's
+ * stick band adds the row of its tangent while its friction lasts: bar forces and stick are solved
+ * together. The matrix is dense, with the inverse mass between the nodes of bars and contacts.
+ */
+#ifndef STRUT_ENGINE_FORCES_RIGID_H
+#define STRUT_ENGINE_FORCES_RIGID_H
+
+#include "engine/model/state.h"
+
+/** Rigid bars at most: 600 take 12 MB and 40 million operations for an evaluation. */
+enum { STRUT_MOST_RIGID = 600 };
+
+typedef struct strut_rigid {
+  int32_t bars, nodes, most; /* nodes of bars and contacts; rows at most: bars, then contacts */
+  int32_t *member;           /* (bars) */
+  double *length;            /* (bars) kept [m] */
+  double *tension;           /* (bars) multipliers, tension positive [N] */
+  uint32_t *at;              /* (nodes) where their x stands in coordinate arrays */
+  int32_t (*end)[2];         /* (bars) index of a bar's ends among the nodes */
+  int32_t *foot;             /* (contacts) index of a contact's node among the nodes */
+  double *inverse[2];        /* (nodes, nodes) M^-1 of x and of y [1/kg] */
+  int32_t rows;              /* in use now */
+  int32_t (*row)[2];         /* (most) ends of a row; the first -1 for a contact */
+  double (*way)[2];          /* (most) its direction */
+  double *matrix;            /* (most, most) J M^-1 J', then its Cholesky factor */
+  double *right;             /* (most) right-hand side, then the multipliers */
+  int32_t *stuck;            /* (contacts) those within the band */
+  double *free, *push;       /* (length) scratch */
+} strut_rigid;
+
+/** Into the state's arena, with the lengths of the state's q. False: out of memory. */
+bool strut_rigid_create(const strut_model *model, strut_state *state);
+/** Takes the lengths from the state's q, and stretching out of its v. */
+void strut_rigid_begin(const strut_model *model, strut_state *state);
+/**
+ * STRUT_SINGULAR where bars at the start hold each other or supported nodes only, by name;
+ * STRUT_USAGE where there are more than STRUT_MOST_RIGID.
+ */
+STRUT_API strut_status strut_rigid_check(const strut_model *model, strut_error *error);
+
+/**
+ * a (length): the acceleration without bars and stick in, with them out. Adds their forces to
+ * state->force, sets friction of contacts in the band and tensions, and with the ledger books them.
+ * state->trouble where it cannot be done.
+ */
+void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
+                            const double *v, double *a);
+/** The same from state->force, for who wants forces only. */
+void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,
+                           const double *v);
+/** Bars with their rows factorised at q, for the filter; NULL: out of memory. */
+strut_rigid *strut_rigid_standing(const strut_model *model, const double *q, strut_arena *arena);
+/** Takes out of accelerations a (length) what would stretch bars; scratch: (length). */
+void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *a, double *scratch);
+/** Puts q back onto the lengths, to 1e-12 of them, and takes stretching out of v. False: trouble. */
+bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *v);
+/** Adds the bars' tensions to `force`, (members). */
+void strut_rigid_add_tensions(const strut_rigid *rigid, double *force);
+
+/* rigid_rows.c: the linear algebra. */
+
+/** Rows of all bars at q. */
+void strut_rigid_rows(strut_rigid *rigid, const double *q);
+/** Appends the tangent of a contact. */
+void strut_rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t contact);
+/** J x of row r. */
+double strut_rigid_along(const strut_rigid *rigid, int32_t r, const double *x);
+/** Builds and factorises J M^-1 J'. -1, or the bar whose row depends on the ones before it. */
+int32_t strut_rigid_factorise(strut_rigid *rigid);
+/** right becomes (J M^-1 J')^-1 right. */
+void strut_rigid_solve(strut_rigid *rigid);
+/** force += J' right. */
+void strut_rigid_spread(const strut_rigid *rigid, double *force);
+
+#endif

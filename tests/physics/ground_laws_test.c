@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The Hunt-Crossley ground and smooth friction against their closed forms; who may use Coulomb's. */
+#include <math.h>
+#include <string.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double K = 1e4, MASS = 0.5, G = 9.81;
+
+/*
+ * m u du/dd = -c d (1 + chi u): F(u) = u/chi - ln(1 + chi u)/chi^2 falls by c d^2 / (2 m), so that
+ * F(approach) = F(-departure).
+ */
+static double potential(double u, double chi) {
+  return u / chi - log1p(chi * u) / (chi * chi);
+}
+
+static double departure_after(double approach, double chi) {
+  double low = 0, high = fmin(approach, (1 - 1e-15) / chi), wanted = potential(approach, chi);
+  for (int i = 0; i < 200; i++) {
+    double middle = 0.5 * (low + high);
+    *(potential(-middle, chi) < wanted ? &low : &high) = middle;
+  }
+  return low;
+}
+
+static void test_hunt_crossley_restitution_and_depth(void **unused) {
+  (void)unused;
+  static const double chis[] = {0.05, 0.5, 3};
+  for (int k = 0; k < 3; k++) {
+    strut_scene scene;
+    motion m;
+    double chi = chis[k], speed = 1.5, deepest = 0, before;
+    strut_scene_init(&scene);
+    int32_t node = build_mass(&scene, 0, 1e-3, MASS);
+    scene.nodes[node].velocity[1] = -speed;
+    int32_t c = build_contact(&scene, node, K, 7); /* not used by this law */
+    scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
+    scene.contacts[c].dissipation = chi;
+    motion_begin(&m, &scene, 1e-6);
+    m.state->ledger = true;
+    before = 0.5 * MASS * speed * speed;
+    do {
+      motion_steps(&m, 1);
+      deepest = fmax(deepest, -m.state->q[1]);
+    } while (m.state->q[1] < 0 || m.state->v[1] < 0);
+    assert_relative(m.state->v[1], departure_after(speed, chi), 1e-5);
+    assert_relative(deepest, sqrt(2 * MASS / K * potential(speed, chi)), 1e-5);
+    double after = 0.5 * MASS * m.state->v[1] * m.state->v[1];
+    assert_near(m.state->work[STRUT_POWER_CONTACT], before - after, 1e-5 * before);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* A block on its static depth, so that N = m g. */
+static void block(strut_scene *scene, double slope, double mu, double width) {
+  strut_scene_init(scene);
+  scene->ground.slope = slope;
+  scene->gravity[0] = G * sin(slope), scene->gravity[1] = -G * cos(slope); /* N along the normal */
+  double depth = MASS * G / K;
+  int32_t node = build_mass(scene, depth * sin(slope), -depth * cos(slope), MASS);
+  int32_t c = build_contact(scene, node, K, 0);
+  scene->contacts[c].friction =
+      (strut_friction){.law = STRUT_FRICTION_SMOOTH, .mu_kinetic = mu, .width = width};
+}
+
+/* sqrt(u^2 + w^2) - w asinh(w/u) falls by mu g t. */
+static double slid(double u, double w) { return sqrt(u * u + w * w) - w * asinh(w / u); }
+
+static void test_smooth_friction_slows_a_block_by_its_closed_form(void **unused) {
+  (void)unused;
+  static const double slopes[] = {0, 0.3};
+  for (int k = 0; k < 2; k++) {
+    strut_scene scene;
+    motion m;
+    const double mu = 0.3, width = 0.2, start = 1.0, time = 0.4;
+    block(&scene, slopes[k], mu, width);
+    scene.nodes[0].velocity[0] = start * cos(slopes[k]);
+    scene.nodes[0].velocity[1] = start * sin(slopes[k]);
+    motion_begin(&m, &scene, 1e-4);
+    m.state->ledger = true;
+    motion_steps(&m, 4000);
+    double u = hypot(m.state->v[0], m.state->v[1]);
+    assert_near(slid(u, width), slid(start, width) - mu * G * time, 1e-8);
+    assert_relative(m.state->work[STRUT_POWER_FRICTION], 0.5 * MASS * (start * start - u * u), 1e-8);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Under a load below mu N it creeps at w F / sqrt((mu N)^2 - F^2). */
+static void test_smooth_friction_creeps(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  motion m;
+  const double mu = 0.4, width = 0.01, full = mu * MASS * G, push = 0.6 * full;
+  block(&scene, 0, mu, width);
+  build_load(&scene, 0, push, 0, -1);
+  motion_begin(&m, &scene, 1e-4);
+  motion_steps(&m, 10000);
+  assert_relative(m.state->v[0], width * push / sqrt(full * full - push * push), 1e-9);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+/* Friction's slope at rest, mu N / width, is a rate of decay that the step must follow. */
+static void test_the_step_limit_counts_smooth_friction(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  const double mu = 0.4, width = 1e-4;
+  block(&scene, 0, mu, width);
+  motion_experiment(&scene, 1e-6, 1e-4);
+  strut_summary s = motion_simulate(&scene);
+  assert_relative(s.step_limit, 2.785293563405 / (mu * G / width), 1e-6);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_exact_friction_needs_a_method_with_events(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error = {0};
+  strut_summary summary;
+  strut_run_options options = {0};
+  block(&scene, 0, 0.4, 0);
+  scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  motion_experiment(&scene, 1e-4, 1e-2);
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_USAGE);
+  assert_non_null(strstr(error.message, "rk4-events"));
+  strut_summary_free(&summary);
+  scene.experiment.integrator = "rk4-events";
+  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_OK);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_hunt_crossley_restitution_and_depth),
+      cmocka_unit_test(test_smooth_friction_slows_a_block_by_its_closed_form),
+      cmocka_unit_test(test_smooth_friction_creeps),
+      cmocka_unit_test(test_the_step_limit_counts_smooth_friction),
+      cmocka_unit_test(test_exact_friction_needs_a_method_with_events),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

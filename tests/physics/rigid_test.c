@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rigid bars: pendulums with closed forms, lengths over long runs, energy, stick, and refusals. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/rigid.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double G = 9.81, L = 0.7;
+
+static void begin(strut_scene *scene) {
+  strut_scene_init(scene);
+  scene->bar_model = STRUT_BARS_RIGID;
+  scene->gravity[1] = -G;
+}
+
+/* From the horizontal, after a quarter of the elliptic integral's period it hangs straight down. */
+static void test_pendulum_has_the_period_of_the_elliptic_integral(void **unused) {
+  (void)unused;
+  double a = 1.0, b = cos(acos(-1) / 4), error[3];
+  for (int i = 0; i < 8; i++) {
+    double mean = 0.5 * (a + b);
+    b = sqrt(a * b), a = mean;
+  }
+  double period = 2 * acos(-1) / a * sqrt(L / G);
+  for (int k = 0; k < 3; k++) {
+    strut_scene scene;
+    motion m;
+    int steps = 60 << k;
+    begin(&scene);
+    int32_t hook = build_support(&scene, 0, 0), bob = build_mass(&scene, L, 0, 2);
+    build_member(&scene, STRUT_BAR, hook, bob, 1e5, 1, 0);
+    motion_begin(&m, &scene, period / 4 / steps);
+    motion_steps(&m, steps);
+    error[k] = fabs(m.state->q[2]) / L;
+    double length[1], force[1];
+    strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
+    strut_members_measure(m.model, m.state, length, force);
+    assert_relative(length[0], L, 1e-12);
+    assert_relative(force[0], 3 * 2 * G, 1e-6); /* weight and centrifugal force */
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+  assert_true(error[0] < 1e-6);
+  assert_within(observed_order(error, 3), 3.7, 4.6);
+}
+
+/* Two uniform rods in a row: omega^2 = (3 -+ 6/sqrt 7) g/L; a quarter period ends in a straight line. */
+static void test_double_pendulum_of_rods_has_its_two_frequencies(void **unused) {
+  (void)unused;
+  for (int mode = -1; mode <= 1; mode += 2) {
+    strut_scene scene;
+    motion m;
+    const double small = 1e-4, x = 3 + mode * 6 / sqrt(7), other = (1.5 - 4 * x / 3) / (x / 2);
+    double swing[2] = {small, small * other}, omega = sqrt(x * G / L);
+    begin(&scene);
+    int32_t top = build_support(&scene, 0, 0);
+    double x1 = L * sin(swing[0]), y1 = -L * cos(swing[0]);
+    int32_t knee = build_node(&scene, x1, y1);
+    int32_t end = build_node(&scene, x1 + L * sin(swing[1]), y1 - L * cos(swing[1]));
+    build_member(&scene, STRUT_BAR, top, knee, 1e5, 0, 3);
+    build_member(&scene, STRUT_BAR, knee, end, 1e5, 0, 3);
+    motion_begin(&m, &scene, acos(-1) / 2 / omega / 200);
+    motion_steps(&m, 200);
+    assert_near(m.state->q[2] / L, 0, 1e-6 * small);
+    assert_near((m.state->q[4] - m.state->q[2]) / L, 0, 1e-6 * small);
+    assert_relative(m.state->v[2], -omega * L * small, 1e-6);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Thrown up so that it tumbles; the supported end of the first bar drags on it. */
+static void chain(strut_scene *scene) {
+  begin(scene);
+  int32_t last = build_support(scene, 0, 0);
+  for (int i = 1; i <= 4; i++) {
+    int32_t next = build_node(scene, i * 0.3, i % 2 * 0.1);
+    build_member(scene, STRUT_BAR, last, next, 1e5, 2, 0.5);
+    last = next;
+  }
+  scene->nodes[last].mass = 0.2;
+}
+
+static void test_lengths_hold_over_a_long_tumble(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  motion m;
+  double kept[4];
+  chain(&scene);
+  motion_begin(&m, &scene, 5e-4);
+  memcpy(kept, m.state->rigid->length, sizeof kept);
+  for (int i = 0; i < 200; i++) {
+    motion_steps(&m, 500);
+    assert_int_equal(m.state->trouble, STRUT_TROUBLE_NONE);
+    for (int b = 0; b < 4; b++) {
+      const double *p = m.state->q + 2 * b, *v = m.state->v + 2 * b;
+      double d[2] = {p[2] - p[0], p[3] - p[1]};
+      assert_relative(hypot(d[0], d[1]), kept[b], 1e-12);
+      assert_near((d[0] * (v[2] - v[0]) + d[1] * (v[3] - v[1])) / kept[b], 0, 1e-11);
+    }
+  }
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void test_energy_is_kept_at_fourth_order(void **unused) {
+  (void)unused;
+  double error[3];
+  for (int k = 0; k < 3; k++) {
+    strut_scene scene;
+    chain(&scene);
+    motion_experiment(&scene, ldexp(2e-3, -k), 0.4);
+    strut_summary s = motion_simulate(&scene);
+    error[k] = fabs(s.energy.residual) / s.energy.moved;
+    assert_true(s.energy.elastic == 0);
+    assert_true(s.energy.dissipated_members < 1e-4 * s.energy.moved);
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+  assert_true(error[2] < 1e-6);
+  assert_true(observed_order(error, 3) > 3.5);
+}
+
+/* A sled of two feet and a bar, pushed at one foot: it holds as one body, and slides as one. */
+static double pushed_sled(double share) {
+  strut_scene scene;
+  motion m;
+  const double mass = 0.4, mu_static = 0.5, mu_kinetic = 0.3, stiffness = 1e5;
+  double depth = mass * G / stiffness;
+  begin(&scene);
+  int32_t a = build_mass(&scene, 0, -depth, mass), b = build_mass(&scene, 1, -depth, mass);
+  build_member(&scene, STRUT_BAR, a, b, 1e4, 0, 0);
+  build_rough_contact(&scene, a, stiffness, 0, mu_static, mu_kinetic, 1e-4);
+  build_rough_contact(&scene, b, stiffness, 0, mu_static, mu_kinetic, 1e-4);
+  build_load(&scene, a, share * mu_static * 2 * mass * G, 0, -1);
+  motion_begin(&m, &scene, 1e-4);
+  motion_steps(&m, 2000);
+  double speed = m.state->v[2];
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return speed;
+}
+
+static void test_bars_and_stick_are_solved_together(void **unused) {
+  (void)unused;
+  assert_near(pushed_sled(0.95), 0, 1e-7); /* more than one foot alone could hold */
+  assert_relative(pushed_sled(1.2), 0.2 * (1.2 * 0.5 - 0.3) * G, 1e-2);
+}
+
+/* What strut_simulate says of a scene that it must refuse. */
+static strut_status refusal(const strut_scene *scene, strut_error *error) {
+  strut_model *model = motion_compile(scene);
+  strut_summary summary;
+  strut_run_options options = {0};
+  strut_status status = strut_simulate(model, &options, &summary, error);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  return status;
+}
+
+static void test_what_cannot_be_rigid_is_refused_by_name(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error = {0};
+  begin(&scene);
+  int32_t n[4] = {build_support(&scene, 0, 0), build_support(&scene, 1, 0),
+                  build_mass(&scene, 0, 1, 1), build_mass(&scene, 1, 1, 1)};
+  build_member(&scene, STRUT_BAR, n[0], n[2], 1e4, 0, 0);
+  build_member(&scene, STRUT_BAR, n[1], n[3], 1e4, 0, 0);
+  build_member(&scene, STRUT_BAR, n[2], n[3], 1e4, 0, 0);
+  build_member(&scene, STRUT_BAR, n[0], n[3], 1e4, 0, 0);
+  int32_t extra = build_member(&scene, STRUT_BAR, n[1], n[2], 1e4, 0, 0);
+  motion_experiment(&scene, 1e-3, 0.1);
+  assert_int_equal(refusal(&scene, &error), STRUT_SINGULAR);
+  assert_non_null(strstr(error.message, scene.members[extra].name));
+  scene.members[extra].kind = STRUT_SPRING;
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.status, STRUT_OK);
+  strut_summary_free(&s);
+  scene.experiment.integrator = "verlet-events";
+  assert_int_equal(refusal(&scene, &error), STRUT_USAGE);
+  assert_non_null(strstr(error.message, "rk4"));
+  strut_scene_free(&scene);
+}
+
+/* Stiff bars no longer limit the step: what is left is a mass on a spring between rigid walls. */
+static void test_step_limit_is_that_of_the_motions_left(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  begin(&scene);
+  scene.gravity[1] = 0;
+  int32_t wall = build_support(&scene, -1, 0), a = build_mass(&scene, 0, 0, 1.5);
+  int32_t b = build_mass(&scene, 1, 0, 0.5);
+  build_member(&scene, STRUT_SPRING, wall, a, 800, 0, 0);
+  build_member(&scene, STRUT_BAR, a, b, 1e9, 0, 0);
+  motion_experiment(&scene, 1e-3, 0.1);
+  strut_summary s = motion_simulate(&scene);
+  assert_relative(s.step_limit, 2 * sqrt(2) / sqrt(800 / 2.0), 1e-6);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_pendulum_has_the_period_of_the_elliptic_integral),
+      cmocka_unit_test(test_double_pendulum_of_rods_has_its_two_frequencies),
+      cmocka_unit_test(test_lengths_hold_over_a_long_tumble),
+      cmocka_unit_test(test_energy_is_kept_at_fourth_order),
+      cmocka_unit_test(test_bars_and_stick_are_solved_together),
+      cmocka_unit_test(test_what_cannot_be_rigid_is_refused_by_name),
+      cmocka_unit_test(test_step_limit_is_that_of_the_motions_left),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
