@@ -84,7 +84,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void trial(const strut_model *model, strut_state *state, strut_located *l, double t,
+static void adaptive_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
                   double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -93,7 +93,7 @@ static void trial(const strut_model *model, strut_state *state, strut_located *l
 }
 
 static const strut_stepper stepper = {
-    .trial = trial, .stages = STAGES, .exact = true, .adaptive = true};
+    .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_located_create(model, state, &stepper);

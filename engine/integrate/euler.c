@@ -27,13 +27,13 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
 }
 
 STRUT_CLONES
-static void advance_plain(const strut_model *model, strut_state *state, double *a, double dt,
+static void euler_plain(const strut_model *model, strut_state *state, double *a, double dt,
                           int64_t count) {
   run_steps(model, state, a, dt, count, false);
 }
 
 STRUT_CLONES
-static void advance_with_ledger(const strut_model *model, strut_state *state, double *a, double dt,
+static void euler_with_ledger(const strut_model *model, strut_state *state, double *a, double dt,
                                 int64_t count) {
   run_steps(model, state, a, dt, count, true);
 }
@@ -41,9 +41,9 @@ static void advance_with_ledger(const strut_model *model, strut_state *state, do
 static void euler_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                           int64_t count) {
   if (state->ledger)
-    advance_with_ledger(model, state, workspace, dt, count);
+    euler_with_ledger(model, state, workspace, dt, count);
   else
-    advance_plain(model, state, workspace, dt, count);
+    euler_plain(model, state, workspace, dt, count);
 }
 
 const strut_integrator strut_integrator_euler = {

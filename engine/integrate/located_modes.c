@@ -8,7 +8,7 @@
 static const double TIE = 1e-12;
 
 STRUT_CLONES
-static void derive(const strut_model *model, strut_state *state, strut_located *l, double t) {
+static void located_derive(const strut_model *model, strut_state *state, strut_located *l, double t) {
   strut_step_end *now = &l->now;
   if (!l->fresh) {
     located_finish(model, state, l, t, now, state->ledger);
@@ -24,7 +24,7 @@ static void derive(const strut_model *model, strut_state *state, strut_located *
 
 void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
                           double t) {
-  derive(model, state, l, t);
+  located_derive(model, state, l, t);
   strut_event_measure(model, state, l, &l->now);
 }
 

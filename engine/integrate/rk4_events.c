@@ -53,7 +53,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void trial(const strut_model *model, strut_state *state, strut_located *l, double t,
+static void rk4_events_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
                   double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -61,7 +61,7 @@ static void trial(const strut_model *model, strut_state *state, strut_located *l
     take(model, state, l, t, h, false);
 }
 
-static const strut_stepper stepper = {.trial = trial, .stages = STAGES, .exact = true};
+static const strut_stepper stepper = {.trial = rk4_events_trial, .stages = STAGES, .exact = true};
 
 static void *create(const strut_model *model, strut_state *state) {
   strut_located *l = strut_located_create(model, state, &stepper);

@@ -56,13 +56,13 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
 }
 
 STRUT_CLONES
-static void advance_plain(const strut_model *model, strut_state *state, verlet_workspace *w,
+static void verlet_plain(const strut_model *model, strut_state *state, verlet_workspace *w,
                           double dt, int64_t count) {
   run_steps(model, state, w, dt, count, false);
 }
 
 STRUT_CLONES
-static void advance_with_ledger(const strut_model *model, strut_state *state, verlet_workspace *w,
+static void verlet_with_ledger(const strut_model *model, strut_state *state, verlet_workspace *w,
                                 double dt, int64_t count) {
   run_steps(model, state, w, dt, count, true);
 }
@@ -72,9 +72,9 @@ static void verlet_advance(const strut_model *model, strut_state *state, void *w
   verlet_workspace *w = workspace;
   if (!w->started) verlet_restart(model, state, workspace, dt);
   if (state->ledger)
-    advance_with_ledger(model, state, w, dt, count);
+    verlet_with_ledger(model, state, w, dt, count);
   else
-    advance_plain(model, state, w, dt, count);
+    verlet_plain(model, state, w, dt, count);
 }
 
 const strut_integrator strut_integrator_verlet = {

@@ -125,7 +125,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void trial(const strut_model *model, strut_state *state, strut_located *l, double t,
+static void verlet_events_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
                   double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -134,7 +134,7 @@ static void trial(const strut_model *model, strut_state *state, strut_located *l
 }
 
 static const strut_stepper stepper = {
-    .trial = trial, .stages = STAGES, .predict = true, .implicit_damper = true};
+    .trial = verlet_events_trial, .stages = STAGES, .predict = true, .implicit_damper = true};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_located_create(model, state, &stepper);

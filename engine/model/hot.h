@@ -4,7 +4,8 @@
  *
  * STRUT_CLONES compiles a function for wider vector registers too and picks at run time. Products
  * and sums are never fused (-ffp-contract=off), so every clone gives the same bits. Give it to local
- * functions only: clang names the clones of a public one otherwise than gcc.
+ * functions only, each with a name of its own: clang names the clones of a public one otherwise than
+ * gcc, and makes those of equal names in two files collide.
  */
 #ifndef STRUT_ENGINE_MODEL_HOT_H
 #define STRUT_ENGINE_MODEL_HOT_H
