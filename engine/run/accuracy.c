@@ -57,9 +57,11 @@ strut_status strut_simulate_accurately(const strut_scene *scene, const strut_run
                       .summary = summary,
                       .error = error ? error : &own};
   bool done = false;
+  double begin = strut_run_clock();
   strut_status status = choose_cheap(&a);
   if (!status && scene->experiment.periods > 0.0) status = strut_accuracy_by_orbit(&a, &done);
   if (!status && !done) status = strut_accuracy_by_repetition(&a);
+  summary->wall_time = strut_run_clock() - begin;
   summary->status = status;
   return status;
 }

@@ -245,6 +245,10 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
   s->velocity_spread = w->run.velocity_spread;
   s->settle_time = w->run.settle_time;
   s->steady = w->run.steady;
+  if (w->finished && !cheap_does) {
+    s->steady = w->last.steady;
+    s->steady.periods += w->run.steady.periods;
+  }
   s->steady.interval = error;
   s->steps = w->run.steps;
   s->step = w->cheap.dt;
@@ -305,6 +309,22 @@ static double part_of_wanted(const way *w) {
   return w->error / (w->a->wanted * size);
 }
 
+/*
+ * Where the cheap method never repeats itself the accurate one may: its steps meet no grid. Goes on
+ * from where the cheap one ended.
+ */
+static strut_status find_without_cheap(way *w, strut_summary *orbit) {
+  w->run.steady.repeats = 1;
+  strut_status status = make_maps(w);
+  w->error = HUGE_VAL;
+  if (!status) status = run_accurate(w, &w->last);
+  if (status || !w->finished || w->last.steady.repeats > 1) {
+    w->error = HUGE_VAL;
+    return status;
+  }
+  return run_orbit(w, orbit);
+}
+
 /* The orbit, as accurately as is wanted, and the motion on it. */
 static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   strut_accuracy *a = w->a;
@@ -313,11 +333,11 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   if (!status) status = settle_cheap(w, &steady);
   double size = size_of_velocity(a, w->run.velocity);
   w->error = HUGE_VAL;
-  if (status || !steady) return status;
-  w->settled = (way_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
-  status = correct(w, 0.3 * a->wanted * size, a->wanted < COARSE ? 2 : 1);
   if (status) return status;
-  double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
+  w->settled = (way_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
+  if (steady) status = correct(w, 0.3 * a->wanted * size, a->wanted < COARSE ? 2 : 1);
+  if (status) return status;
+  double moved = steady ? fabs(w->orbit.velocity - w->run.velocity) + w->error : HUGE_VAL;
   *cheap_does = a->wanted >= COARSE && moved <= 0.8 * a->wanted * size;
   if (!*cheap_does && (a->wanted < FINE || !(part_of_wanted(w) <= 0.8)))
     status = run_accurate(w, &w->last);
@@ -338,8 +358,12 @@ strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
   a->cheap.refine_memory = 3.0;
   strut_status status = run_cheap(&w, &steady);
-  if (!status && steady) status = find_orbit(&w, &orbit, &cheap_does);
-  *done = !status && steady && isfinite(w.error);
+  bool ran = !status && w.run.status == STRUT_OK && !changes_after(a->scene, w.end.time);
+  if (!status && steady)
+    status = find_orbit(&w, &orbit, &cheap_does);
+  else if (ran)
+    status = find_without_cheap(&w, &orbit);
+  *done = !status && ran && isfinite(w.error);
   if (*done)
     tell(&w, &orbit, cheap_does);
   else

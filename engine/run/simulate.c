@@ -40,7 +40,7 @@ typedef struct run {
   int64_t shot_periods;   /* drive periods that shooting took */
 } run;
 
-static double now(void) {
+double strut_run_clock(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
@@ -286,7 +286,7 @@ static strut_status step_all(run *r) {
   int64_t size = r->model->members.count + r->model->node_count;
   int64_t chunk = CHUNK_WORK / (size + 1);
   chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
-  double told = now();
+  double told = strut_run_clock();
   for (;;) {
     int64_t n = r->state->step;
     int32_t lost = lost_node(r->model, r->state);
@@ -304,9 +304,9 @@ static strut_status step_all(run *r) {
     if (o->interrupt && *o->interrupt)
       return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
                         (double)n * r->dt);
-    if (o->progress && now() - told > 0.1) {
+    if (o->progress && strut_run_clock() - told > 0.1) {
       o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
-      told = now();
+      told = strut_run_clock();
     }
     advance_to(r, next_stop(r, chunk));
   }
@@ -345,9 +345,9 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
   run r = {.model = model, .options = options, .summary = summary, .error = error};
   strut_status status = prepare(&r);
   if (!status) {
-    double begin = now();
+    double begin = strut_run_clock();
     status = step_all(&r);
-    summary->wall_time = now() - begin;
+    summary->wall_time = strut_run_clock() - begin;
     fill_summary(&r, status);
     strut_error first = *error;
     strut_status written = strut_recording_finish(&r.recording, status, error);

@@ -41,4 +41,7 @@ typedef struct strut_run_options {
 STRUT_API strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
                                       strut_summary *summary, strut_error *error);
 
+/** A clock that never goes back [s]; for how long things take, never for results. */
+double strut_run_clock(void);
+
 #endif
