@@ -21,14 +21,12 @@ static const double table[PAIR][PAIR - 1] = {
     {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
     {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
 /* Weights of order 5 less those of order 4. */
-static const double difference[PAIR] = {71.0 / 57600,      0.0,          -71.0 / 16695,
-                                        71.0 / 1920,       -17253.0 / 339200, 22.0 / 525,
-                                        -1.0 / 40};
+static const double difference[PAIR] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
+                                        -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
 /* out = z + h sum_j weight[j] k[j] over `count` stages */
-STRUT_INLINE void add_stages(int32_t n, double h, const double *z,
-                             double *const *k, const double *weight, int count,
-                             double *out) {
+STRUT_INLINE void add_stages(int32_t n, double h, const double *z, double *const *k,
+                             const double *weight, int count, double *out) {
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes sum = weight[0] * strut_lanes_load_pairs(k[0] + i);
     for (int j = 1; j < count; j++)
@@ -85,7 +83,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 
 STRUT_CLONES
 static void adaptive_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
-                  double h) {
+                           double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
   else

@@ -16,8 +16,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
   double *restrict q = state->q, *restrict v = state->v;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     forces_kernel(model, state, (double)state->step * dt, q, v, a, ledger);
-    for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
-      state->work[p] += dt * state->power[p];
+    for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->work[p] += dt * state->power[p];
     for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
       strut_lanes next = strut_lanes_load(v + i) + dt * strut_lanes_load_pairs(a + i);
       strut_lanes_store(v + i, next);
@@ -28,13 +27,13 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
 
 STRUT_CLONES
 static void euler_plain(const strut_model *model, strut_state *state, double *a, double dt,
-                          int64_t count) {
+                        int64_t count) {
   run_steps(model, state, a, dt, count, false);
 }
 
 STRUT_CLONES
 static void euler_with_ledger(const strut_model *model, strut_state *state, double *a, double dt,
-                                int64_t count) {
+                              int64_t count) {
   run_steps(model, state, a, dt, count, true);
 }
 

@@ -16,8 +16,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void euler_events_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
-                  double h) {
+static void euler_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+                               double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
   else

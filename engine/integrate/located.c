@@ -84,7 +84,7 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
   double t = (double)state->step * dt;
   memcpy(l->next.q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
   memcpy(l->next.v, state->v, (size_t)model->length * sizeof(double));
-    l->h = 0.0;
+  l->h = 0.0;
   l->fastest = 0.0;
   strut_modes_start(model, state, l, t);
   l->started = true;
@@ -114,7 +114,9 @@ typedef struct search {
 } search;
 
 static search begin_search(double before, double fraction, double after, double first) {
-  return (search){.high = fraction, .x = first, .last_x = before > 0.0 ? 0.0 : fraction,
+  return (search){.high = fraction,
+                  .x = first,
+                  .last_x = before > 0.0 ? 0.0 : fraction,
                   .last_value = before > 0.0 ? before : after};
 }
 
@@ -166,7 +168,8 @@ static double retake(const strut_model *model, strut_state *state, strut_located
 }
 
 /* Size of the next step within what is left to the grid point. */
-static double step_size(const strut_state *state, const strut_located *l, double t, double rest, double dt) {
+static double step_size(const strut_state *state, const strut_located *l, double t, double rest,
+                        double dt) {
   double h = rest;
   if (l->stepper->adaptive) {
     h = l->h > 0.0 ? l->h : dt * 1e-3;
@@ -204,8 +207,8 @@ static double step(const strut_model *model, strut_state *state, strut_located *
         return 0.0;
       }
     }
-    strut_event inside = force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0}
-                               : strut_event_first(model, state, l, h);
+    strut_event inside =
+        force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0} : strut_event_first(model, state, l, h);
     if (inside.kind) {
       event = inside;
       double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
@@ -255,8 +258,8 @@ static void show_contacts(const strut_model *model, strut_state *state, const st
   }
 }
 
-void strut_located_advance(const strut_model *model, strut_state *state, void *workspace,
-                           double dt, int64_t count) {
+void strut_located_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
+                           int64_t count) {
   strut_located *l = workspace;
   if (!l->started) strut_located_restart(model, state, workspace, dt);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;)

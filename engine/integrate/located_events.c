@@ -33,19 +33,28 @@ double strut_event_value(const strut_model *model, const strut_located *l,
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
   switch (kind) {
-    case STRUT_EVENT_TOUCH: return gap_of(&model->contacts, i, end->q);
-    case STRUT_EVENT_OPEN: return -gap_of(&model->contacts, i, end->q);
-    case STRUT_EVENT_SLOW: return s * o->slip - edge(e);
-    case STRUT_EVENT_LEAVE: return edge(e) - fabs(o->slip);
-    case STRUT_EVENT_RELEASE: return e->mu_static * o->normal - fabs(o->friction);
-    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->mu_kinetic * o->normal;
-    case STRUT_EVENT_CREEP_IN: return s * (band_force(e, o) - o->friction);
+    case STRUT_EVENT_TOUCH:
+      return gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_OPEN:
+      return -gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_SLOW:
+      return s * o->slip - edge(e);
+    case STRUT_EVENT_LEAVE:
+      return edge(e) - fabs(o->slip);
+    case STRUT_EVENT_RELEASE:
+      return e->mu_static * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT:
+      return s * o->friction + e->mu_kinetic * o->normal;
+    case STRUT_EVENT_CREEP_IN:
+      return s * (band_force(e, o) - o->friction);
     case STRUT_EVENT_PUSH: {
       double room = e->mu_static * o->normal - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
     }
-    case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
-    default: return 1.0;
+    case STRUT_EVENT_DAMPER:
+      return l->damper[i] > 0 ? -o->into : o->into;
+    default:
+      return 1.0;
   }
 }
 
@@ -54,11 +63,20 @@ bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_e
   if (kind == STRUT_EVENT_CABLE) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
-    case STRUT_EVENT_OPEN: *rate = -o->into; return true;
-    case STRUT_EVENT_SLOW: *rate = l->side[i] * o->slip_rate; return true;
-    case STRUT_EVENT_LEAVE: *rate = o->slip < 0.0 ? o->slip_rate : -o->slip_rate; return true;
-    case STRUT_EVENT_DAMPER: *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate; return true;
-    default: return false;
+    case STRUT_EVENT_OPEN:
+      *rate = -o->into;
+      return true;
+    case STRUT_EVENT_SLOW:
+      *rate = l->side[i] * o->slip_rate;
+      return true;
+    case STRUT_EVENT_LEAVE:
+      *rate = o->slip < 0.0 ? o->slip_rate : -o->slip_rate;
+      return true;
+    case STRUT_EVENT_DAMPER:
+      *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate;
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -102,10 +120,11 @@ static double fraction_of(const strut_model *model, const strut_located *l, stru
 static strut_event_kind contradiction(const strut_contact_entry *e, const strut_touch *o,
                                       uint8_t mode, double s) {
   switch (mode) {
-    case STRUT_MODE_SLIP: return s * o->slip < edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
+    case STRUT_MODE_SLIP:
+      return s * o->slip < edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
       return fabs(o->friction) > e->mu_static * o->normal && o->gap < 0.0 ? STRUT_EVENT_RELEASE
-                                                                         : STRUT_EVENT_NONE;
+                                                                          : STRUT_EVENT_NONE;
     case STRUT_MODE_CREEP:
       if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
       return s * (band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
@@ -116,7 +135,8 @@ static strut_event_kind contradiction(const strut_contact_entry *e, const strut_
       return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
-    default: return STRUT_EVENT_NONE;
+    default:
+      return STRUT_EVENT_NONE;
   }
 }
 
@@ -139,13 +159,13 @@ static void measure_cables(const strut_model *model, const strut_state *state,
     double inverse = length > 0.0 ? 1.0 / length : 0.0;
     double rate = ((vb[0] - va[0]) * dx + (vb[1] - va[1]) * dy) * inverse;
     end->stretch[k] = length - state->rest[j];
-    end->tension[k] = t->stiffness[j] * end->stretch[k] +
-                      t->damping[j] * (rate - state->rest_rate[j]);
+    end->tension[k] =
+        t->stiffness[j] * end->stretch[k] + t->damping[j] * (rate - state->rest_rate[j]);
   }
 }
 
-void strut_event_measure(const strut_model *model, const strut_state *state,
-                         const strut_located *l, const strut_step_end *end) {
+void strut_event_measure(const strut_model *model, const strut_state *state, const strut_located *l,
+                         const strut_step_end *end) {
   if (l->cable_count) measure_cables(model, state, l, end);
 }
 

@@ -8,7 +8,8 @@
 static const double TIE = 1e-12;
 
 STRUT_CLONES
-static void located_derive(const strut_model *model, strut_state *state, strut_located *l, double t) {
+static void located_derive(const strut_model *model, strut_state *state, strut_located *l,
+                           double t) {
   strut_step_end *now = &l->now;
   if (!l->fresh) {
     located_finish(model, state, l, t, now, state->ledger);
@@ -66,8 +67,7 @@ static void close_contact(const strut_model *model, strut_located *l, int32_t i)
     l->mode[i] = STRUT_MODE_SLIDE;
   } else if (e->law == STRUT_FRICTION_KARNOPP) {
     l->mode[i] = fabs(o.slip) < e->stick_velocity ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
-  } else if (fabs(o.slip) >
-             TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) {
+  } else if (fabs(o.slip) > TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) {
     l->mode[i] = STRUT_MODE_SLIP;
   } else {
     l->mode[i] = STRUT_MODE_STICK;
@@ -164,7 +164,9 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
       close_contact(model, l, i);
       begin_refinement(l, i, t, &state->refined_until);
       break;
-    case STRUT_EVENT_OPEN: l->mode[i] = STRUT_MODE_OPEN; break;
+    case STRUT_EVENT_OPEN:
+      l->mode[i] = STRUT_MODE_OPEN;
+      break;
     case STRUT_EVENT_SLOW:
       if (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP) {
         decide_at_edge(model, state, l, i, false, t);
@@ -181,15 +183,24 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
       l->side[i] = l->now.touch[i].friction > 0.0 ? -1 : 1;
       l->mode[i] = STRUT_MODE_SLIP;
       break;
-    case STRUT_EVENT_CREEP_OUT: l->mode[i] = STRUT_MODE_SLIP; break;
-    case STRUT_EVENT_CREEP_IN: l->mode[i] = STRUT_MODE_BAND; break;
+    case STRUT_EVENT_CREEP_OUT:
+      l->mode[i] = STRUT_MODE_SLIP;
+      break;
+    case STRUT_EVENT_CREEP_IN:
+      l->mode[i] = STRUT_MODE_BAND;
+      break;
     case STRUT_EVENT_PUSH:
       l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
       l->side[i] = l->now.touch[i].applied < 0.0 ? -1 : 1;
       break;
-    case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
-    case STRUT_EVENT_CABLE: cable_mode(model, state, l, i, !l->pulling[i]); break;
-    default: break;
+    case STRUT_EVENT_DAMPER:
+      l->damper[i] = (int8_t)-l->damper[i];
+      break;
+    case STRUT_EVENT_CABLE:
+      cable_mode(model, state, l, i, !l->pulling[i]);
+      break;
+    default:
+      break;
   }
   derive_consistently(model, state, l, t);
 }

@@ -58,8 +58,7 @@ static double settling_time(const strut_contact_entry *e, double inverse_mass) {
   return rate * longest > 1.0 ? 1.0 / rate : longest;
 }
 
-strut_status strut_located_prepare(const strut_model *model, strut_state *state,
-                                   strut_located *l) {
+strut_status strut_located_prepare(const strut_model *model, strut_state *state, strut_located *l) {
   const strut_contact_table *c = &model->contacts;
   double *x = l->next.q, *y = l->next.v;
   double fastest = 0.0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The classical Runge-Kutta method between events: each step within one smooth set of modes, so that
- * the fourth order holds through contact, friction and slack cables.
+ * The classical Runge-Kutta method between events: each step within one smooth set of modes, so
+ * that the fourth order holds through contact, friction and slack cables.
  */
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/located_kernel.h"
@@ -40,8 +40,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   const double *const v[4] = {l->now.v, w[V], w[V + 1], w[V + 2]};
   double *const a[4] = {l->now.a, w[A], w[A + 1], w[A + 2]};
   int32_t n = model->length;
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
-    l->gained[p] = h / 6.0 * l->now.power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now.power[p];
   for (int k = 1; k < 4; k++) {
     stage(n, ahead[k] * h, l->now.q, l->now.v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
     located_acceleration(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], &l->next, ledger);
@@ -53,8 +52,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void rk4_events_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
-                  double h) {
+static void rk4_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+                             double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
   else

@@ -125,8 +125,8 @@ static strut_status estimate(const strut_model *model, const strut_tangent *tang
     double decay = strut_region_limit((strut_region)region, -rate, 0.0, 0.0, rate);
     /* with both at once less than each alone bears; a mode's d is not above the largest */
     bool both = region != STRUT_REGION_RK4 && rate > 0.0 && omega > 0.0;
-    double mixed = both ? strut_region_limit((strut_region)region, 0.0, 0.0, omega * omega, rate)
-                        : HUGE_VAL;
+    double mixed =
+        both ? strut_region_limit((strut_region)region, 0.0, 0.0, omega * omega, rate) : HUGE_VAL;
     limit->of[region] = fmin(fmin(swing, decay), mixed);
   }
   double oscillating = rate <= 0.55 * omega ? strut_rk4_limit(0.0, omega) : 2.6 / omega;
@@ -155,8 +155,8 @@ static void fill_block(const strut_model *model, const strut_tangent *tangent,
  * k and d of the mode with eigenvalue z and vector x: d from the damping block, k from z^2 + d z + k
  * = 0. Both are exact where modes are not coupled by damping.
  */
-static void mode_of(const gsl_matrix *system, gsl_complex z, const gsl_vector_complex *x,
-                    double *k, double *d) {
+static void mode_of(const gsl_matrix *system, gsl_complex z, const gsl_vector_complex *x, double *k,
+                    double *d) {
   size_t n = system->size1 / 2;
   double re = GSL_REAL(z), im = GSL_IMAG(z), size = 0.0, product = 0.0;
   *d = -2.0 * re, *k = re * re + im * im;
@@ -181,8 +181,9 @@ static void read_spectrum(const gsl_matrix *system, const gsl_vector_complex *va
     double k, d;
     mode_of(system, z, &x.vector, &k, &d);
     for (int region = 0; region < STRUT_REGIONS; region++)
-      limit->of[region] = fmin(limit->of[region],
-                               strut_region_limit((strut_region)region, GSL_REAL(z), GSL_IMAG(z), k, d));
+      limit->of[region] =
+          fmin(limit->of[region],
+               strut_region_limit((strut_region)region, GSL_REAL(z), GSL_IMAG(z), k, d));
   }
   limit->limit = limit->of[STRUT_REGION_RK4];
 }
@@ -230,9 +231,9 @@ static strut_status limits(const strut_model *model, bool dampers, strut_arena *
   *limit = (strut_step_limit){.limit = HUGE_VAL, .exact = true};
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of[region] = limit->of_implicit[region] = HUGE_VAL;
-  strut_status status = strut_tangent_assemble(model, model->start, model->members.rest,
-                                               dampers ? STRUT_CLOSED_ALL : STRUT_CLOSED_UNDAMPED,
-                                               arena, &tangent);
+  strut_status status =
+      strut_tangent_assemble(model, model->start, model->members.rest,
+                             dampers ? STRUT_CLOSED_ALL : STRUT_CLOSED_UNDAMPED, arena, &tangent);
   if (status || tangent.n == 0) return status;
   if ((model->plan & STRUT_TERM_RIGID) &&
       !(tangent.rigid = strut_rigid_standing(model, model->start, arena)))

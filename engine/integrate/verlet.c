@@ -46,7 +46,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
     forces_kernel(model, state, ((double)state->step + 1.0) * dt, q, predicted, next, ledger);
     for (int32_t i = 0; i < n; i += STRUT_LANES)
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +
-                                                               strut_lanes_load_pairs(next + i)));
+                                                                 strut_lanes_load_pairs(next + i)));
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
       state->work[p] += half * (w->power[p] + state->power[p]);
       w->power[p] = state->power[p];
@@ -57,18 +57,18 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
 
 STRUT_CLONES
 static void verlet_plain(const strut_model *model, strut_state *state, verlet_workspace *w,
-                          double dt, int64_t count) {
+                         double dt, int64_t count) {
   run_steps(model, state, w, dt, count, false);
 }
 
 STRUT_CLONES
 static void verlet_with_ledger(const strut_model *model, strut_state *state, verlet_workspace *w,
-                                double dt, int64_t count) {
+                               double dt, int64_t count) {
   run_steps(model, state, w, dt, count, true);
 }
 
-static void verlet_advance(const strut_model *model, strut_state *state, void *workspace,
-                           double dt, int64_t count) {
+static void verlet_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
+                           int64_t count) {
   verlet_workspace *w = workspace;
   if (!w->started) verlet_restart(model, state, workspace, dt);
   if (state->ledger)

@@ -81,8 +81,8 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_located *l, dou
     int32_t i = l->closed[k];
     strut_touch *o = &touch[i];
     o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
-    double friction = located_friction(&model->contacts.entry[i], l->mode[i], l->side[i],
-                                       o->normal, o->slip, o->applied);
+    double friction = located_friction(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
+                                       o->slip, o->applied);
     bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
     strut_located_respond(model, l, i, 0.0, friction - o->friction, a1);
@@ -125,8 +125,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void verlet_events_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
-                  double h) {
+static void verlet_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+                                double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
   else
@@ -142,8 +142,9 @@ static void *create(const strut_model *model, strut_state *state) {
 
 const strut_integrator strut_integrator_verlet_events = {
     .name = "verlet-events",
-    .description = "velocity Verlet from event to event, implicit ground dampers, shorter steps "
-                   "after a touchdown",
+    .description =
+        "velocity Verlet from event to event, implicit ground dampers, shorter steps "
+        "after a touchdown",
     .order = 2,
     .evaluations = 1,
     .region = STRUT_REGION_VERLET,

@@ -26,12 +26,12 @@ typedef struct way {
   strut_period_map cheap, fine;
   strut_summary run; /* of the cheap method, to its steady state */
   strut_snapshot end;
-  double *base;      /* (2 length + 1) fixed point of the cheap map */
-  double travel;     /* over one application of it [m] */
+  double *base;  /* (2 length + 1) fixed point of the cheap map */
+  double travel; /* over one application of it [m] */
   strut_orbit orbit;
-  double error;      /* of orbit.velocity, estimated [m/s] */
+  double error; /* of orbit.velocity, estimated [m/s] */
   way_cost settled;
-  bool finished;     /* the accurate method ran until it was steady */
+  bool finished;      /* the accurate method ran until it was steady */
   strut_summary last; /* of that */
   strut_arena arena;
 } way;
@@ -49,7 +49,9 @@ static bool changes_after(const strut_scene *scene, double t) {
   return false;
 }
 
-static double size_of_velocity(const strut_accuracy *a, double v) { return fmax(fabs(v), a->scale); }
+static double size_of_velocity(const strut_accuracy *a, double v) {
+  return fmax(fabs(v), a->scale);
+}
 
 static strut_status allocate(way *w, const strut_model *model) {
   size_t length = (size_t)model->length;
@@ -199,9 +201,8 @@ static strut_status run_accurate(way *w, strut_summary *last) {
   memcpy(w->end.q, w->orbit.y, length * sizeof(double));
   memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
   w->end.refined = w->orbit.y[2 * length];
-  strut_status status =
-      run_until_steady(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
-                       fmax(20.0, a->scene->experiment.periods), true, last);
+  strut_status status = run_until_steady(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
+                                         fmax(20.0, a->scene->experiment.periods), true, last);
   if (status || last->steady.kind != STRUT_MOTION_PERIODIC) return status;
   memcpy(w->orbit.y, w->end.q, length * sizeof(double));
   memcpy(w->orbit.y + length, w->end.v, length * sizeof(double));
@@ -220,12 +221,13 @@ static void say_why(const way *w, bool cheap_does, strut_accuracy_summary *told)
              "m/s",
              step, w->accurate.tolerance, fabs(w->orbit.velocity - w->run.velocity));
   else
-    snprintf(told->why, sizeof told->why,
-             "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "
-             "corrected by periods of adaptive (tolerance %.1g), which changed the velocity by %.2g "
-             "m/s%s",
-             step, w->accurate.tolerance, fabs(w->orbit.velocity - w->run.velocity),
-             w->finished ? "; adaptive went on until it was steady itself" : "");
+    snprintf(
+        told->why, sizeof told->why,
+        "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "
+        "corrected by periods of adaptive (tolerance %.1g), which changed the velocity by %.2g "
+        "m/s%s",
+        step, w->accurate.tolerance, fabs(w->orbit.velocity - w->run.velocity),
+        w->finished ? "; adaptive went on until it was steady itself" : "");
 }
 
 /* Puts together what the parts found and cost. */
@@ -233,8 +235,9 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
   strut_accuracy *a = w->a;
   strut_summary *s = a->summary;
   double velocity = cheap_does ? w->run.velocity : w->orbit.velocity;
-  double error = fmax(w->error, fabs(orbit->velocity - w->orbit.velocity)) + w->accurate.tolerance / TOLERANCE_PER_ERROR / 3.0 *
-                                size_of_velocity(a, w->orbit.velocity);
+  double error =
+      fmax(w->error, fabs(orbit->velocity - w->orbit.velocity)) +
+      w->accurate.tolerance / TOLERANCE_PER_ERROR / 3.0 * size_of_velocity(a, w->orbit.velocity);
   if (cheap_does) error += fabs(w->orbit.velocity - w->run.velocity);
   const way_cost *settled = &w->settled;
   int64_t corrections = w->cheap.evaluations - settled->evaluations + w->fine.evaluations;
@@ -256,12 +259,14 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
   s->steady.periods += settled->applied;
   s->duration = w->run.duration + (double)settled->applied * w->cheap.period +
                 (cheap_does ? 0.0 : corrected + w->last.duration);
-  s->force_evaluations =
-      w->run.force_evaluations + settled->evaluations + (cheap_does ? 0 : corrections + w->last.force_evaluations);
-  s->events = w->run.events + settled->events +
-              (cheap_does ? 0 : w->cheap.events - settled->events + w->fine.events + w->last.events);
+  s->force_evaluations = w->run.force_evaluations + settled->evaluations +
+                         (cheap_does ? 0 : corrections + w->last.force_evaluations);
+  s->events =
+      w->run.events + settled->events +
+      (cheap_does ? 0 : w->cheap.events - settled->events + w->fine.events + w->last.events);
   s->wall_time = w->run.wall_time;
-  snprintf(s->method, sizeof s->method, "%s", cheap_does ? "verlet-events" : "verlet-events+adaptive");
+  snprintf(s->method, sizeof s->method, "%s",
+           cheap_does ? "verlet-events" : "verlet-events+adaptive");
   s->accuracy = (strut_accuracy_summary){
       .wanted = a->wanted,
       .expected = error / size_of_velocity(a, velocity),
@@ -287,8 +292,8 @@ static strut_status settle_cheap(way *w, bool *steady) {
   strut_accuracy *a = w->a;
   bool found = false;
   double enough = 0.1 * a->wanted * size_of_velocity(a, w->run.velocity) * w->cheap.period;
-  strut_status status = strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel,
-                                          &found);
+  strut_status status =
+      strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel, &found);
   if (status) return strut_fail(a->error, status, "out of memory");
   if (!found) {
     strut_summary more = {0};

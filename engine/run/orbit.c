@@ -16,7 +16,8 @@ enum { MOST_PERIODS = 60 };
 static double follow(strut_period_map *cheap, const double *base, double travel, double enough,
                      double *d, double *sum, double *work) {
   int32_t both = 2 * cheap->model->length + 1;
-  double first = strut_period_map_size(cheap, d), last = first, gone = 0.0, farthest = 0.0, last_step = 0.0;
+  double first = strut_period_map_size(cheap, d), last = first, gone = 0.0, farthest = 0.0,
+         last_step = 0.0;
   for (int32_t i = 0; i < both; i++) sum[i] = d[i];
   for (int k = 0; k < MOST_PERIODS; k++) {
     for (int32_t i = 0; i < both; i++) work[i] = base[i] + d[i];

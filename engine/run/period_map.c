@@ -17,7 +17,8 @@ strut_status strut_period_map_create(const strut_scene *scene, const strut_exper
   strut_status status = strut_model_compile(&map->scene, &map->model, error);
   if (!status) status = strut_state_create(map->model, &map->state, error);
   if (!status) map->workspace = map->method->create(map->model, map->state);
-  if (!status && (!map->workspace || strut_measure_create(map->model, map->dt, 0, 0, &map->measure)))
+  if (!status &&
+      (!map->workspace || strut_measure_create(map->model, map->dt, 0, 0, &map->measure)))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (status) {
     strut_period_map_free(map);

@@ -47,6 +47,7 @@ strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, str
   strut_status status = strut_step_limit_estimate(model, &limit, error);
   plan->largest_frequency = limit.largest_frequency;
   plan->step_limit = limit.limit;
+  plan->limits = limit;
   plan->step_limit_exact = limit.exact;
   return status;
 }

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_RUN_PLAN_H
 #define STRUT_ENGINE_RUN_PLAN_H
 
-#include "engine/model/model.h"
+#include "engine/integrate/step_limit.h"
 
 /** A term, whether the model evaluates it, and what it is. */
 typedef struct strut_plan_term {
@@ -26,6 +26,7 @@ typedef struct strut_plan {
   bool runnable;          /* every free coordinate has mass; else the figures below are 0 */
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
+  strut_step_limit limits;  /* of every method: strut_step_limit_of */
   bool step_limit_exact;    /* from all eigenvalues; else an estimate */
   strut_plan_term terms[STRUT_PLAN_TERMS];
 } strut_plan;

@@ -48,8 +48,11 @@ strut_status strut_watch_create(const strut_model *model, double period, double 
                                 strut_watch *w) {
   const strut_steady *wanted = &model->scene->experiment.steady;
   size_t both = 2 * (size_t)model->length;
-  *w = (strut_watch){.model = model, .period = period, .tolerance = wanted->tolerance,
-                     .floor = wanted->floor, .successive = wanted->successive,
+  *w = (strut_watch){.model = model,
+                     .period = period,
+                     .tolerance = wanted->tolerance,
+                     .floor = wanted->floor,
+                     .successive = wanted->successive,
                      .stride = 1};
   w->not_before = (last_change(model->scene) - begin) / period;
   if (w->successive < 2) w->successive = 2;
@@ -115,7 +118,8 @@ static double mean_velocity(const strut_watch *w, int64_t now, int32_t periods) 
 static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
   int32_t over = 2 * n > w->successive ? 2 * n : w->successive;
   if (now <= over + n) return true;
-  double last = 0.0, first = 0.0; /* means over n periods, so that the order within them is no matter */
+  double last = 0.0,
+         first = 0.0; /* means over n periods, so that the order within them is no matter */
   for (int32_t j = 0; j < n; j++) {
     last += w->residual[0][(now - j) % STRUT_RING];
     first += w->residual[0][(now - over - j) % STRUT_RING];
@@ -218,8 +222,7 @@ bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
     int32_t n = repeats[k];
     w->residual[k][now % STRUT_RING] = distance(w, w->state[(now - n) % STRUT_RING], latest);
     if (now < 2 * n) continue;
-    w->change[k][now % STRUT_RING] =
-        fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
+    w->change[k][now % STRUT_RING] = fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
   }
   if (!w->known) mark(w, now, x);
   for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);

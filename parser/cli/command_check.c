@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/integrate/integrator.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
 #include "engine/output/sketch.h"
@@ -44,6 +45,19 @@ static void print_things(const strut_plan *plan) {
   printf("  memory             %s\n", in((double)plan->bytes, "B").text);
 }
 
+/* Those of the other methods, on one line. */
+static void print_limits(const strut_plan *plan) {
+  const char *between = "  of other methods   ";
+  for (size_t i = 0; strut_integrator_at(i); i++) {
+    const strut_integrator *method = strut_integrator_at(i);
+    double limit = strut_step_limit_of(&plan->limits, method);
+    if (method->region == STRUT_REGION_RK4 || !isfinite(limit)) continue;
+    printf("%s%s %s", between, method->name, in(limit, "s").text);
+    between = ", ";
+  }
+  if (*between == ',') printf("\n");
+}
+
 static void print_run(const strut_plan *plan, const strut_scene *scene) {
   if (!plan->runnable) {
     printf("  no run             some node that can move has no mass: statics only\n");
@@ -56,7 +70,10 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
   printf("  largest step       %s for rk4, contacts and damping counted (%s)\n",
          in(plan->step_limit, "s").text,
          plan->step_limit_exact ? "from all eigenvalues" : "estimated");
-  if (step > plan->step_limit) {
+  print_limits(plan);
+  const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
+  double limit = method ? strut_step_limit_of(&plan->limits, method) : plan->step_limit;
+  if (step > limit) {
     printf("  step               %s: too large, strut run will refuse it\n", in(step, "s").text);
   } else if (step > 0) {
     printf("  step               %s\n", in(step, "s").text);
@@ -146,6 +163,10 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene
   strut_json_number(json, root, "step", scene->experiment.step);
   strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
   strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);
+  struct cJSON *limits = strut_json_object(json, root, "step_limits");
+  for (size_t i = 0; strut_integrator_at(i) && plan->runnable; i++)
+    strut_json_number(json, limits, strut_integrator_at(i)->name,
+                      strut_step_limit_of(&plan->limits, strut_integrator_at(i)));
 }
 
 static void add_terms(strut_json *json, const strut_plan *plan) {
