@@ -53,7 +53,7 @@ static double error_of(const strut_model *model, strut_located *l, double h, dou
   for (int32_t i = 0; i < n; i++) scratch[i] = 0.0;
   add_stages(n, h, scratch, a, difference, PAIR, scratch);
   double velocity = largest(n, scratch);
-  l->fastest = fmax(l->fastest, fmax(largest(n, l->now.v), largest(n, l->next.v)));
+  l->fastest = fmax(l->fastest, fmax(largest(n, l->now->v), largest(n, l->next->v)));
   double error = position / (0.01 * model->size * l->tolerance);
   if (velocity > 0.0) error = fmax(error, velocity / (l->fastest * l->tolerance));
   return error;
@@ -63,21 +63,21 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
                        double h, bool ledger) {
   double *v[PAIR], *a[PAIR];
   for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
-  v[0] = l->now.v, a[0] = l->now.a;
-  v[PAIR - 1] = l->next.v, a[PAIR - 1] = l->next.a;
+  v[0] = l->now->v, a[0] = l->now->a;
+  v[PAIR - 1] = l->next->v, a[PAIR - 1] = l->next->a;
   int32_t n = model->length;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
-    l->gained[p] = table[PAIR - 1][0] * h * l->now.power[p];
+    l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
   for (int k = 1; k < PAIR; k++) {
-    double *q = k == PAIR - 1 ? l->next.q : l->stage[0];
-    add_stages(n, h, l->now.q, v, table[k], k, q);
-    add_stages(n, h, l->now.v, a, table[k], k, v[k]);
+    double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
+    add_stages(n, h, l->now->q, v, table[k], k, q);
+    add_stages(n, h, l->now->v, a, table[k], k, v[k]);
     if (k == PAIR - 1) break;
-    located_acceleration(model, state, l, t + ahead[k] * h, q, v[k], a[k], &l->next, ledger);
+    located_acceleration(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
       l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
   }
-  located_finish(model, state, l, t + h, &l->next, ledger);
+  located_finish(model, state, l, t + h, l->next, ledger);
   l->error = error_of(model, l, h, v, a, l->stage[0]);
 }
 

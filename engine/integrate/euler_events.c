@@ -6,13 +6,13 @@
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
                        double h, bool ledger) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
-    strut_lanes v = strut_lanes_load(l->now.v + i) + h * strut_lanes_load_pairs(l->now.a + i);
-    strut_lanes_store(l->next.v + i, v);
-    strut_lanes_store(l->next.q + i, strut_lanes_load(l->now.q + i) + h * v);
+    strut_lanes v = strut_lanes_load(l->now->v + i) + h * strut_lanes_load_pairs(l->now->a + i);
+    strut_lanes_store(l->next->v + i, v);
+    strut_lanes_store(l->next->q + i, strut_lanes_load(l->now->q + i) + h * v);
   }
-  located_finish(model, state, l, t + h, &l->next, ledger);
+  located_finish(model, state, l, t + h, l->next, ledger);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
-    l->gained[p] = 0.5 * h * (l->now.power[p] + l->next.power[p]);
+    l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
 }
 
 STRUT_CLONES

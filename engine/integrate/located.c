@@ -68,10 +68,11 @@ void *strut_located_create(const strut_model *model, strut_state *state,
   strut_located *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
   if (!l) return NULL;
   l->stepper = stepper;
-  l->now.q = state->q, l->now.v = state->v;
+  l->now = &l->end[0], l->next = &l->end[1];
+  l->now->q = state->q, l->now->v = state->v;
   l->tolerance = model->scene->experiment.tolerance;
-  if (!make_end(model, &state->arena, &l->now, true) ||
-      !make_end(model, &state->arena, &l->next, false) || !make_arrays(model, state, l) ||
+  if (!make_end(model, &state->arena, l->now, true) ||
+      !make_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
       !list_cables(model, state, l) || !make_held(model, state) ||
       strut_located_prepare(model, state, l))
     return NULL;
@@ -82,8 +83,8 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
                            double dt) {
   strut_located *l = workspace;
   double t = (double)state->step * dt;
-  memcpy(l->next.q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
-  memcpy(l->next.v, state->v, (size_t)model->length * sizeof(double));
+  memcpy(l->next->q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
+  memcpy(l->next->v, state->v, (size_t)model->length * sizeof(double));
   l->h = 0.0;
   l->fastest = 0.0;
   strut_modes_start(model, state, l, t);
@@ -96,13 +97,13 @@ static void copy(int32_t n, const double *restrict from, double *restrict to) {
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
 static void accept(const strut_model *model, strut_state *state, strut_located *l) {
-  strut_step_end next = l->next, now = l->now;
-  copy(model->length, next.q, now.q);
-  copy(model->length, next.v, now.v);
-  l->now = next;
-  l->now.q = now.q, l->now.v = now.v;
-  l->next = now;
-  l->next.q = next.q, l->next.v = next.v;
+  strut_step_end *now = l->next, *next = l->now;
+  double *q = now->q, *v = now->v;
+  copy(model->length, q, next->q);
+  copy(model->length, v, next->v);
+  now->q = next->q, now->v = next->v;
+  next->q = q, next->v = v;
+  l->now = now, l->next = next;
   l->fresh = true;
   for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) state->work[p] += l->gained[p];
 }
@@ -140,8 +141,8 @@ static bool stagnant(const search *s) {
  */
 static double retake(const strut_model *model, strut_state *state, strut_located *l, double t,
                      double h, strut_event *event) {
-  double before = strut_event_value(model, l, &l->now, event->kind, event->index);
-  double after = strut_event_value(model, l, &l->next, event->kind, event->index);
+  double before = strut_event_value(model, l, l->now, event->kind, event->index);
+  double after = strut_event_value(model, l, l->next, event->kind, event->index);
   search s = begin_search(before, 1.0, after, event->fraction);
   for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
     l->stepper->trial(model, state, l, t, s.x * h);
@@ -150,14 +151,14 @@ static double retake(const strut_model *model, strut_state *state, strut_located
     bool same = other.kind == event->kind && other.index == event->index;
     if (other.kind && !same) { /* another one comes first */
       *event = other;
-      before = strut_event_value(model, l, &l->now, other.kind, other.index);
-      after = strut_event_value(model, l, &l->next, other.kind, other.index);
+      before = strut_event_value(model, l, l->now, other.kind, other.index);
+      after = strut_event_value(model, l, l->next, other.kind, other.index);
       s = begin_search(before, s.x, after, s.x * other.fraction);
       continue;
     }
-    s.value = strut_event_value(model, l, &l->next, event->kind, event->index);
+    s.value = strut_event_value(model, l, l->next, event->kind, event->index);
     double rate = 0.0;
-    if (strut_event_rate(l, &l->next, event->kind, event->index, &rate)) rate *= h;
+    if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
     if (s.value == 0.0 || (k > 0 && stagnant(&s))) break;
     double x = next_point(&s, rate);
@@ -253,8 +254,8 @@ static void show_contacts(const strut_model *model, strut_state *state, const st
   double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     bool open = l->mode[i] == STRUT_MODE_OPEN;
-    normal[i] = open ? 0.0 : l->now.touch[i].normal;
-    friction[i] = open ? 0.0 : l->now.touch[i].friction;
+    normal[i] = open ? 0.0 : l->now->touch[i].normal;
+    friction[i] = open ? 0.0 : l->now->touch[i].friction;
   }
 }
 

@@ -67,7 +67,7 @@ typedef struct strut_stepper {
 /** Workspace of a method with events; in the state's arena. */
 struct strut_located {
   const strut_stepper *stepper;
-  strut_step_end now, next; /* now.q and now.v are the state's own */
+  strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
   double **stage;           /* (stepper->stages) arrays (length) */
   double gained[STRUT_POWER_COUNT];
   uint8_t *mode;            /* (contacts) strut_contact_mode */

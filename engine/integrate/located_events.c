@@ -100,18 +100,18 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
 /* Where between now and next the event's value passes 0. */
 static double fraction_of(const strut_model *model, const strut_located *l, strut_event_kind kind,
                           int32_t i, double h) {
-  double g0 = strut_event_value(model, l, &l->now, kind, i), d0, d1;
-  double g1 = strut_event_value(model, l, &l->next, kind, i);
+  double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
+  double g1 = strut_event_value(model, l, l->next, kind, i);
   if (!(g0 > 0.0)) return 0.0;
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
     strut_touch a, b;
-    located_place(c, i, l->now.q, l->now.v, &a);
-    located_place(c, i, l->next.q, l->next.v, &b);
+    located_place(c, i, l->now->q, l->now->v, &a);
+    located_place(c, i, l->next->q, l->next->v, &b);
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
-  if (kind != STRUT_EVENT_CABLE && strut_event_rate(l, &l->now, kind, i, &d0) &&
-      strut_event_rate(l, &l->next, kind, i, &d1))
+  if (kind != STRUT_EVENT_CABLE && strut_event_rate(l, l->now, kind, i, &d0) &&
+      strut_event_rate(l, l->next, kind, i, &d1))
     return cubic_root(g0, h * d0, g1, h * d1);
   return g0 / (g0 - g1);
 }
@@ -176,7 +176,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
   int32_t k = 0;
   for (int32_t i = 0; i < c->count; i++) {
     if (k < l->closed_count && l->closed[k] == i) {
-      const strut_touch *o = &l->next.touch[i];
+      const strut_touch *o = &l->next->touch[i];
       strut_event_kind kind = contradiction(&c->entry[i], o, l->mode[i], l->side[i]);
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
@@ -185,13 +185,13 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
           c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
         keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (gap_of(c, i, l->next.q) < 0.0) {
+    } else if (gap_of(c, i, l->next->q) < 0.0) {
       keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
     }
   }
-  strut_event_measure(model, state, l, &l->next);
+  strut_event_measure(model, state, l, l->next);
   for (int32_t j = 0; j < l->cable_count; j++)
-    if (strut_event_value(model, l, &l->next, STRUT_EVENT_CABLE, j) < 0.0)
+    if (strut_event_value(model, l, l->next, STRUT_EVENT_CABLE, j) < 0.0)
       keep_first(model, l, STRUT_EVENT_CABLE, j, h, &first);
   return first;
 }
@@ -208,7 +208,7 @@ static double parabola_root(double gap, double speed, double bend) {
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_located *l, double h) {
   const strut_contact_table *c = &model->contacts;
-  const double *q = state->q, *v = state->v, *a = l->now.a, *n = c->normal;
+  const double *q = state->q, *v = state->v, *a = l->now->a, *n = c->normal;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t i = 0, k = 0; i < c->count; i++) {
     bool closed = k < l->closed_count && l->closed[k] == i;

@@ -10,7 +10,7 @@ static const double TIE = 1e-12;
 STRUT_CLONES
 static void located_derive(const strut_model *model, strut_state *state, strut_located *l,
                            double t) {
-  strut_step_end *now = &l->now;
+  strut_step_end *now = l->now;
   if (!l->fresh) {
     located_finish(model, state, l, t, now, state->ledger);
   } else {
@@ -26,16 +26,16 @@ static void located_derive(const strut_model *model, strut_state *state, strut_l
 void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
                           double t) {
   located_derive(model, state, l, t);
-  strut_event_measure(model, state, l, &l->now);
+  strut_event_measure(model, state, l, l->now);
 }
 
 /* Sets the speed along the ground exactly. */
 static void snap(const strut_model *model, strut_located *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
   strut_touch place;
-  located_place(c, i, l->now.q, l->now.v, &place);
+  located_place(c, i, l->now->q, l->now->v, &place);
   double more = slip - place.slip;
-  double *v = l->now.v + c->at[i];
+  double *v = l->now->v + c->at[i];
   if (c->normal[0] == 0.0) {
     v[0] = slip + c->belt_speed;
     return;
@@ -58,7 +58,7 @@ static void cable_mode(const strut_model *model, strut_state *state, strut_locat
 static void close_contact(const strut_model *model, strut_located *l, int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
-  located_place(&model->contacts, i, l->now.q, l->now.v, &o);
+  located_place(&model->contacts, i, l->now->q, l->now->v, &o);
   l->damper[i] = 0;
   if (l->stepper->exact && e->damping > 0.0) l->damper[i] = o.into < 0.0 ? 1 : -1;
   l->side[i] = o.slip < 0.0 ? -1 : 1;
@@ -82,7 +82,7 @@ static int32_t overloaded(const strut_model *model, const strut_located *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     if (l->mode[i] != STRUT_MODE_STICK) continue;
-    const strut_touch *o = &l->now.touch[i];
+    const strut_touch *o = &l->now->touch[i];
     double most = model->contacts.entry[i].mu_static * o->normal;
     double over = fabs(o->friction) - most;
     /* Without any normal force yet nothing can be said: the end of the step will tell. */
@@ -102,7 +102,7 @@ static void derive_consistently(const strut_model *model, strut_state *state, st
     int32_t i = overloaded(model, l);
     if (i < 0) return;
     l->mode[i] = STRUT_MODE_SLIP;
-    l->side[i] = l->now.touch[i].friction > 0.0 ? -1 : 1;
+    l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
   }
 }
 
@@ -110,7 +110,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_locat
   l->fresh = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
-    located_place(&model->contacts, i, l->now.q, l->now.v, &o);
+    located_place(&model->contacts, i, l->now->q, l->now->v, &o);
     l->mode[i] = STRUT_MODE_OPEN;
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
   }
@@ -118,7 +118,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_locat
   derive_consistently(model, state, l, t);
   bool changed = false;
   for (int32_t k = 0; k < l->cable_count; k++)
-    if (!(l->now.stretch[k] > 0.0 && l->now.tension[k] > 0.0)) {
+    if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
       cable_mode(model, state, l, k, false);
       changed = true;
     }
@@ -137,7 +137,7 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_l
   l->mode[i] = STRUT_MODE_SLIP;
   strut_located_relist(model, l);
   strut_located_derive(model, state, l, t);
-  const strut_touch *o = &l->now.touch[i];
+  const strut_touch *o = &l->now->touch[i];
   double outside = s * o->slip_rate;
   double most = e->mu_static * o->normal;
   bool pushed = fabs(o->applied) >= most;
@@ -145,7 +145,7 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_l
   l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
   strut_located_relist(model, l);
   strut_located_derive(model, state, l, t);
-  double inside = s * l->now.touch[i].slip_rate;
+  double inside = s * l->now->touch[i].slip_rate;
   if (inside < 0.0 && (outside < 0.0 || !from_inside)) return;
   l->side[i] = (int8_t)s;
   l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
@@ -176,11 +176,11 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
       }
       break;
     case STRUT_EVENT_LEAVE:
-      l->side[i] = l->now.touch[i].slip < 0.0 ? -1 : 1;
+      l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
       decide_at_edge(model, state, l, i, true, t);
       break;
     case STRUT_EVENT_RELEASE:
-      l->side[i] = l->now.touch[i].friction > 0.0 ? -1 : 1;
+      l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
       l->mode[i] = STRUT_MODE_SLIP;
       break;
     case STRUT_EVENT_CREEP_OUT:
@@ -191,7 +191,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
       break;
     case STRUT_EVENT_PUSH:
       l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-      l->side[i] = l->now.touch[i].applied < 0.0 ? -1 : 1;
+      l->side[i] = l->now->touch[i].applied < 0.0 ? -1 : 1;
       break;
     case STRUT_EVENT_DAMPER:
       l->damper[i] = (int8_t)-l->damper[i];
@@ -209,7 +209,7 @@ bool strut_modes_after_step(const strut_model *model, strut_located *l) {
   bool changed = false;
   for (int32_t k = 0; k < l->closed_count && !l->stepper->exact; k++) {
     int32_t i = l->closed[k];
-    if (!(l->now.touch[i].gap > 0.0)) continue;
+    if (!(l->now->touch[i].gap > 0.0)) continue;
     l->mode[i] = STRUT_MODE_OPEN;
     changed = true;
   }

@@ -60,7 +60,7 @@ static double settling_time(const strut_contact_entry *e, double inverse_mass) {
 
 strut_status strut_located_prepare(const strut_model *model, strut_state *state, strut_located *l) {
   const strut_contact_table *c = &model->contacts;
-  double *x = l->next.q, *y = l->next.v;
+  double *x = l->next->q, *y = l->next->v;
   double fastest = 0.0;
   memset(x, 0, (size_t)model->length * sizeof *x);
   memset(y, 0, (size_t)model->length * sizeof *y);

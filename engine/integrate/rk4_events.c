@@ -37,18 +37,18 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
                        double h, bool ledger) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
   double **w = l->stage;
-  const double *const v[4] = {l->now.v, w[V], w[V + 1], w[V + 2]};
-  double *const a[4] = {l->now.a, w[A], w[A + 1], w[A + 2]};
+  const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
+  double *const a[4] = {l->now->a, w[A], w[A + 1], w[A + 2]};
   int32_t n = model->length;
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now.power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now->power[p];
   for (int k = 1; k < 4; k++) {
-    stage(n, ahead[k] * h, l->now.q, l->now.v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
-    located_acceleration(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], &l->next, ledger);
+    stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
+    located_acceleration(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, ledger);
     if (ledger) gain(state, l, weight[k] * h / 6.0);
   }
-  combine(n, h, l->now.q, v[0], v[1], v[2], v[3], l->next.q);
-  combine(n, h, l->now.v, a[0], a[1], a[2], a[3], l->next.v);
-  located_finish(model, state, l, t + h, &l->next, ledger);
+  combine(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
+  combine(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
+  located_finish(model, state, l, t + h, l->next, ledger);
 }
 
 STRUT_CLONES

@@ -34,7 +34,7 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
 STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_located *l, int32_t i,
                                 double h, const double *a1) {
   uint32_t at = c->at[i];
-  const double *v = l->now.v + at, *a0 = l->now.a + at, *a = a1 + at;
+  const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
   return (v[0] + 0.5 * h * (a0[0] + a[0])) * c->normal[0] +
          (v[1] + 0.5 * h * (a0[1] + a[1])) * c->normal[1];
 }
@@ -88,39 +88,39 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_located *l, dou
     strut_located_respond(model, l, i, 0.0, friction - o->friction, a1);
     o->friction = friction;
   }
-  if (l->stuck_count) strut_located_hold(model, l, l->now.v, a1, &l->next);
+  if (l->stuck_count) strut_located_hold(model, l, l->now->v, a1, l->next);
 }
 
 STRUT_INLINE void place_again(const strut_model *model, strut_located *l) {
   for (int32_t k = 0; k < l->closed_count; k++)
-    located_place(&model->contacts, l->closed[k], l->next.q, l->next.v,
-                  &l->next.touch[l->closed[k]]);
+    located_place(&model->contacts, l->closed[k], l->next->q, l->next->v,
+                  &l->next->touch[l->closed[k]]);
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
                        double h, bool ledger) {
   int32_t n = model->length;
-  double *predicted = l->stage[PREDICTED], *a1 = l->next.a;
-  predict(n, h, l->now.q, l->now.v, l->now.a, l->next.q, predicted);
-  forces_of_structure(model, state, t + h, l->next.q, predicted, ledger);
-  located_keep(model, state, &l->next, ledger);
+  double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
+  predict(n, h, l->now->q, l->now->v, l->now->a, l->next->q, predicted);
+  forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
+  located_keep(model, state, l->next, ledger);
   if (l->closed_count)
-    located_ground(model, l, l->next.q, predicted, state->force, false, l->next.touch);
+    located_ground(model, l, l->next->q, predicted, state->force, false, l->next->touch);
   mass_kernel(model, state->force, a1, state->scratch);
   for (int32_t k = 0; k < l->closed_count; k++) l->damped[l->closed[k]] = 0.0;
   for (int pass = 0; pass < l->passes && l->closed_count; pass++) {
-    solve_dampers(model, l, h, a1, l->next.touch);
-    solve_friction(model, l, a1, l->next.touch);
+    solve_dampers(model, l, h, a1, l->next->touch);
+    solve_friction(model, l, a1, l->next->touch);
   }
-  correct(n, h, l->now.v, l->now.a, a1, l->next.v);
+  correct(n, h, l->now->v, l->now->a, a1, l->next->v);
   if (l->closed_count) {
     place_again(model, l);
-    located_rates(model, l, a1, l->next.touch);
-    if (ledger) located_powers(model, state, l, l->next.touch);
+    located_rates(model, l, a1, l->next->touch);
+    if (ledger) located_powers(model, state, l, l->next->touch);
   }
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
-    l->next.power[p] = state->power[p];
-    l->gained[p] = 0.5 * h * (l->now.power[p] + l->next.power[p]);
+    l->next->power[p] = state->power[p];
+    l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
   }
 }
 
