@@ -145,6 +145,7 @@ static double retake(const strut_model *model, strut_state *state, strut_located
   double after = strut_event_value(model, l, l->next, event->kind, event->index);
   search s = begin_search(before, 1.0, after, event->fraction);
   for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
+    if (l->stepper->predict) l->stepper->predict(model, l, s.x * h);
     l->stepper->trial(model, state, l, t, s.x * h);
     if (!l->stepper->exact) break;
     strut_event other = strut_event_first(model, state, l, s.x * h);
@@ -194,9 +195,10 @@ static double step(const strut_model *model, strut_state *state, strut_located *
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
   bool force = *at_once >= MOST_AT_ONCE;
   double whole = h;
-  if (l->stepper->predict && !force) {
-    event = strut_event_predict(model, state, l, h);
-    if (event.kind) h *= event.fraction;
+  if (l->stepper->predict) {
+    l->stepper->predict(model, l, h);
+    if (!force) event = strut_event_predict(model, state, l, h);
+    if (event.kind) l->stepper->predict(model, l, h *= event.fraction);
   }
   if (h > AT_ONCE * dt || !event.kind) {
     l->stepper->trial(model, state, l, t, h);

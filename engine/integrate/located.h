@@ -59,7 +59,9 @@ typedef struct strut_stepper {
   void (*trial)(const strut_model *model, strut_state *state, strut_located *l, double t, double h);
   int stages;   /* (length) arrays it needs in l->stage */
   bool exact;   /* iterate roots to rounding, and locate kinks as well as jumps */
-  bool predict; /* q + h v + h^2/2 a is the position at any fraction of a step */
+  /** Fills l->next->q alone, where positions are known before forces are: q + h v + h^2/2 a at any
+      fraction of a step. trial expects it done. NULL: positions are not known beforehand. */
+  void (*predict)(const strut_model *model, strut_located *l, double h);
   bool implicit_damper; /* next->touch is filled with the contact dampers solved for */
   bool adaptive; /* l->error is the local error over what is allowed; l->h is the step to try */
 } strut_stepper;

@@ -205,21 +205,27 @@ static double parabola_root(double gap, double speed, double bend) {
   return below > 2.0 * gap ? 2.0 * gap / below : below == 2.0 * gap ? 1.0 : 2.0;
 }
 
+/* Where within the step contact i passes the ground, by the parabola that positions follow. */
+static double crossing(const strut_model *model, const strut_state *state, const strut_located *l,
+                       int32_t i, double sign, double h) {
+  const strut_contact_table *c = &model->contacts;
+  const double *v = state->v + c->at[i], *a = l->now->a + c->at[i], *n = c->normal;
+  double speed = h * (v[0] * n[0] + v[1] * n[1]);
+  double bend = 0.5 * h * h * (a[0] * n[0] + a[1] * n[1]);
+  return parabola_root(sign * gap_of(c, i, state->q), sign * speed, sign * bend);
+}
+
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_located *l, double h) {
   const strut_contact_table *c = &model->contacts;
-  const double *q = state->q, *v = state->v, *a = l->now->a, *n = c->normal;
+  const double *q = l->next->q;
+  bool level = c->normal[0] == 0.0;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  for (int32_t i = 0, k = 0; i < c->count; i++) {
-    bool closed = k < l->closed_count && l->closed[k] == i;
-    double sign = closed ? -1.0 : 1.0;
-    k += closed;
-    uint32_t at = c->at[i];
-    double gap = sign * gap_of(c, i, q);
-    double speed = sign * h * (v[at] * n[0] + v[at + 1] * n[1]);
-    double bend = sign * 0.5 * h * h * (a[at] * n[0] + a[at + 1] * n[1]);
-    if (gap + (speed < 0.0 ? speed : 0.0) + (bend < 0.0 ? bend : 0.0) >= 0.0) continue;
-    double fraction = parabola_root(gap, speed, bend);
+  for (int32_t i = 0; i < c->count; i++) {
+    bool closed = l->mode[i] != STRUT_MODE_OPEN;
+    double gap = level ? q[c->at[i] + 1] - c->height : gap_of(c, i, q);
+    if (closed ? gap <= 0.0 : gap >= 0.0) continue;
+    double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))
       first = (strut_event){closed ? STRUT_EVENT_OPEN : STRUT_EVENT_TOUCH, i, fraction};
   }

@@ -12,11 +12,11 @@
 
 enum { PREDICTED, STAGES };
 
-STRUT_INLINE void predict(int32_t n, double h, const double *restrict q, const double *restrict v,
-                          const double *restrict a, double *restrict next, double *restrict speed) {
-  double half = 0.5 * h;
-  for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes rate = strut_lanes_load(v + i), bend = strut_lanes_load_pairs(a + i);
+static void predict(const strut_model *model, strut_located *l, double h) {
+  const double *restrict q = l->now->q, *restrict v = l->now->v, *restrict a = l->now->a;
+  double *restrict next = l->next->q, *restrict speed = l->stage[PREDICTED], half = 0.5 * h;
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    strut_lanes rate = strut_lanes_load(v + i), bend = strut_lanes_load(a + i);
     strut_lanes_store(next + i, strut_lanes_load(q + i) + h * (rate + half * bend));
     strut_lanes_store(speed + i, rate + h * bend);
   }
@@ -101,7 +101,6 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
                        double h, bool ledger) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
-  predict(n, h, l->now->q, l->now->v, l->now->a, l->next->q, predicted);
   forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
   located_keep(model, state, l->next, ledger);
   if (l->closed_count)
@@ -134,7 +133,7 @@ static void verlet_events_trial(const strut_model *model, strut_state *state, st
 }
 
 static const strut_stepper stepper = {
-    .trial = verlet_events_trial, .stages = STAGES, .predict = true, .implicit_damper = true};
+    .trial = verlet_events_trial, .stages = STAGES, .predict = predict, .implicit_damper = true};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_located_create(model, state, &stepper);
