@@ -45,13 +45,13 @@ STRUT_INLINE double solve_damper(const strut_model *model, strut_located *l, int
   const strut_contact_entry *e = &model->contacts.entry[i];
   double spring = -e->stiffness * o->gap, now = l->damped[i];
   bool smooth = e->dissipation > 0.0;
-  double rate = smooth ? e->dissipation * fmax(spring, 0.0) : e->damping;
+  double rate = !smooth ? e->damping : spring > 0.0 ? e->dissipation * spring : 0.0;
   if (!(rate > 0.0)) return 0.0;
   double half = 0.5 * h * l->response[i].normal;
   double free = final_speed(&model->contacts, l, i, h, a1) - half * now;
   double into = free / (1.0 + half * rate), force = -rate * into;
   if (smooth) {
-    if (force < -spring) force = -fmax(spring, 0.0);
+    if (force < -spring) force = spring > 0.0 ? -spring : 0.0;
   } else if (into > 0.0) {
     force = 0.0;
   }
@@ -67,8 +67,8 @@ STRUT_INLINE void solve_dampers(const strut_model *model, strut_located *l, doub
       int32_t i = l->closed[k];
       double more = solve_damper(model, l, i, h, a1, &touch[i]);
       if (more != 0.0) strut_located_respond(model, l, i, more, 0.0, a1);
-      changed = fmax(changed, fabs(more));
-      largest = fmax(largest, fabs(touch[i].normal));
+      if (fabs(more) > changed) changed = fabs(more);
+      if (fabs(touch[i].normal) > largest) largest = fabs(touch[i].normal);
     }
     if (changed <= 1e-15 * largest || l->closed_count == 1) break;
   }
