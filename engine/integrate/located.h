@@ -59,10 +59,9 @@ typedef struct strut_stepper {
   void (*trial)(const strut_model *model, strut_state *state, strut_located *l, double t, double h);
   int stages;   /* (length) arrays it needs in l->stage */
   bool exact;   /* iterate roots to rounding, and locate kinks as well as jumps */
-  /** Fills l->next->q alone, where positions are known before forces are: q + h v + h^2/2 a at any
-      fraction of a step. trial expects it done. NULL: positions are not known beforehand. */
+  /** Fills l->next->q and what trial needs beside it, where positions are known before forces are:
+      q + h v + h^2/2 a at any fraction of a step. trial expects it done. NULL: they are not. */
   void (*predict)(const strut_model *model, strut_located *l, double h);
-  bool implicit_damper; /* next->touch is filled with the contact dampers solved for */
   bool adaptive; /* l->error is the local error over what is allowed; l->h is the step to try */
 } strut_stepper;
 
@@ -109,7 +108,7 @@ strut_status strut_located_prepare(const strut_model *model, strut_state *state,
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
 void strut_located_relist(const strut_model *model, strut_located *l);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
-void strut_located_hold(const strut_model *model, strut_located *l, const double *v, double *a,
+void strut_located_hold(const strut_model *model, strut_located *l, double *a,
                         strut_step_end *end);
 /** a += response of contact i to the force (normal, tangential) on its node. */
 void strut_located_respond(const strut_model *model, const strut_located *l, int32_t i,
@@ -151,7 +150,7 @@ void strut_event_measure(const strut_model *model, const strut_state *state,
 /** Time derivative of that value where it is known; false where a secant must do. */
 bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
                       int32_t index, double *rate);
-/** Before a step of a stepper that predicts: the first touchdown. */
+/** Before a step of a stepper that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_located *l, double h);
 /** Changes the mode at l->now, time t, and leaves it fresh. */

@@ -112,7 +112,7 @@ STRUT_INLINE void located_close(const strut_model *model, strut_state *state, st
                                 double *restrict a, strut_step_end *end, bool ledger) {
   if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
   mass_kernel(model, state->force, a, state->scratch);
-  if (l->stuck_count) strut_located_hold(model, l, v, a, end);
+  if (l->stuck_count) strut_located_hold(model, l, a, end);
   if (ledger && l->closed_count) located_powers(model, state, l, end->touch);
 }
 

@@ -44,10 +44,8 @@ static void snap(const strut_model *model, strut_located *l, int32_t i, double s
   v[1] += more * c->tangent[1];
 }
 
-static void cable_mode(const strut_model *model, strut_state *state, strut_located *l, int32_t k,
-                       bool pulls) {
+static void cable_mode(strut_state *state, strut_located *l, int32_t k, bool pulls) {
   int32_t j = l->cable[k];
-  (void)model;
   l->pulling[k] = pulls;
   l->fresh = false;
   state->taut_stretch[j] = pulls ? -HUGE_VAL : 0.0;
@@ -114,12 +112,12 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_locat
     l->mode[i] = STRUT_MODE_OPEN;
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
   }
-  for (int32_t k = 0; k < l->cable_count; k++) cable_mode(model, state, l, k, true);
+  for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
   derive_consistently(model, state, l, t);
   bool changed = false;
   for (int32_t k = 0; k < l->cable_count; k++)
     if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
-      cable_mode(model, state, l, k, false);
+      cable_mode(state, l, k, false);
       changed = true;
     }
   if (changed) derive_consistently(model, state, l, t);
@@ -197,7 +195,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
       l->damper[i] = (int8_t)-l->damper[i];
       break;
     case STRUT_EVENT_CABLE:
-      cable_mode(model, state, l, i, !l->pulling[i]);
+      cable_mode(state, l, i, !l->pulling[i]);
       break;
     default:
       break;

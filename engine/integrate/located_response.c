@@ -172,12 +172,11 @@ static void hold_by_sweeps(const strut_model *model, const strut_located *l, dou
   }
 }
 
-void strut_located_hold(const strut_model *model, strut_located *l, const double *v, double *a,
+void strut_located_hold(const strut_model *model, strut_located *l, double *a,
                         strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;
-  (void)v;
   if (n < 0) {
     hold_by_sweeps(model, l, a, end);
     return;

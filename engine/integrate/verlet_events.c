@@ -88,7 +88,7 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_located *l, dou
     strut_located_respond(model, l, i, 0.0, friction - o->friction, a1);
     o->friction = friction;
   }
-  if (l->stuck_count) strut_located_hold(model, l, l->now->v, a1, l->next);
+  if (l->stuck_count) strut_located_hold(model, l, a1, l->next);
 }
 
 STRUT_INLINE void place_again(const strut_model *model, strut_located *l) {
@@ -133,7 +133,7 @@ static void verlet_events_trial(const strut_model *model, strut_state *state, st
 }
 
 static const strut_stepper stepper = {
-    .trial = verlet_events_trial, .stages = STAGES, .predict = predict, .implicit_damper = true};
+    .trial = verlet_events_trial, .stages = STAGES, .predict = predict};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_located_create(model, state, &stepper);

@@ -28,6 +28,7 @@ typedef struct strut_accuracy {
   const strut_run_options *options;
   strut_experiment cheap; /* the cheapest method with the largest step it should take */
   double wanted, scale;   /* [1], [m/s] */
+  int64_t spent;          /* evaluations of the forces that the answer does not rest on */
   strut_summary *summary;
   strut_error *error;
 } strut_accuracy;

@@ -36,19 +36,6 @@ typedef struct way {
   strut_arena arena;
 } way;
 
-/* Does anything but the drive's repetition still happen after t? */
-static bool changes_after(const strut_scene *scene, double t) {
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *s = &scene->signals[i];
-    double last = s->start;
-    if (isfinite(s->stop)) last = s->stop;
-    if (s->kind == STRUT_HALF_SINE) last = s->start + 0.5 / s->frequency;
-    if (s->kind == STRUT_TABLE) last = s->start + s->time[s->point_count - 1];
-    if (last > t) return true;
-  }
-  return false;
-}
-
 static double size_of_velocity(const strut_accuracy *a, double v) {
   return fmax(fabs(v), a->scale);
 }
@@ -120,8 +107,7 @@ static strut_status run_cheap(way *w, bool *steady) {
     if (!status) add_part(&w->run, &more);
     strut_summary_free(&more);
   }
-  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
-            !changes_after(a->scene, w->end.time);
+  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC;
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
@@ -271,9 +257,17 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
       .wanted = a->wanted,
       .expected = error / size_of_velocity(a, velocity),
       .scale = a->scale,
-      .check_evaluations = orbit->force_evaluations + (cheap_does ? corrections : 0)};
+      .check_evaluations =
+          a->spent + orbit->force_evaluations + (cheap_does ? corrections : 0)};
   s->accuracy.kept = s->accuracy.expected <= a->wanted;
   say_why(w, cheap_does, &s->accuracy);
+}
+
+/* What this way has cost goes to the account of the next one. */
+static void give_up(way *w, strut_summary *orbit) {
+  w->a->spent += w->run.force_evaluations + w->cheap.evaluations + w->fine.evaluations +
+                 w->last.force_evaluations + orbit->force_evaluations;
+  strut_summary_free(orbit);
 }
 
 static void release(way *w) {
@@ -351,7 +345,8 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   double away = fabs(orbit->velocity - w->orbit.velocity);
   if (status || w->finished || away <= 0.6 * a->wanted * size) return status;
   *cheap_does = false;
-  strut_summary_free(orbit); /* its own velocity does not confirm the orbit */
+  a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
+  strut_summary_free(orbit);
   status = run_accurate(w, &w->last);
   return status ? status : run_orbit(w, orbit);
 }
@@ -360,10 +355,11 @@ strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   way w = {.a = a};
   bool steady = false, cheap_does = false;
   strut_summary orbit = {0};
+  const strut_experiment given = a->cheap;
   a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
   a->cheap.refine_memory = 3.0;
   strut_status status = run_cheap(&w, &steady);
-  bool ran = !status && w.run.status == STRUT_OK && !changes_after(a->scene, w.end.time);
+  bool ran = !status && w.run.status == STRUT_OK;
   if (!status && steady)
     status = find_orbit(&w, &orbit, &cheap_does);
   else if (ran)
@@ -372,9 +368,8 @@ strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   if (*done)
     tell(&w, &orbit, cheap_does);
   else
-    strut_summary_free(&orbit);
-  a->cheap.refine_rate = 0.25;
-  a->cheap.refine_memory = 8.0;
+    give_up(&w, &orbit);
+  a->cheap = given;
   release(&w);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }

@@ -26,15 +26,14 @@ static strut_experiment rung(const strut_accuracy *a, int k) {
 
 static bool comparable(int k) { return k != 2; } /* that is the first of another method */
 
-static void tell(const strut_accuracy *a, const strut_experiment *e, double difference, bool kept,
-                 int64_t spent) {
+static void tell(const strut_accuracy *a, const strut_experiment *e, double difference, bool kept) {
   strut_summary *s = a->summary;
   double size = fmax(fabs(s->velocity), a->scale);
   s->accuracy = (strut_accuracy_summary){.wanted = a->wanted,
                                          .expected = difference / size,
                                          .scale = a->scale,
                                          .kept = kept,
-                                         .check_evaluations = spent};
+                                         .check_evaluations = a->spent};
   char how[80];
   if (strcmp(e->integrator, "adaptive") == 0)
     snprintf(how, sizeof how, "adaptive with a tolerance of %.1g", e->tolerance);
@@ -52,7 +51,6 @@ strut_status strut_accuracy_by_repetition(strut_accuracy *a) {
   strut_run_options quiet = *a->options;
   quiet.sinks = NULL, quiet.sink_count = 0, quiet.to = NULL;
   double difference = HUGE_VAL;
-  int64_t spent = 0;
   bool kept = false;
   strut_experiment e = a->cheap;
   strut_status status = STRUT_OK;
@@ -60,7 +58,7 @@ strut_status strut_accuracy_by_repetition(strut_accuracy *a) {
     e = rung(a, k);
     strut_summary_free(&before);
     before = now;
-    spent += now.force_evaluations;
+    a->spent += now.force_evaluations;
     now = (strut_summary){0};
     status = strut_accuracy_run(a, &e, &quiet, &now);
     if (status && status != STRUT_DIVERGED) break;
@@ -71,9 +69,14 @@ strut_status strut_accuracy_by_repetition(strut_accuracy *a) {
     kept = comparable(k) && difference <= AGREE * a->wanted * fmax(fabs(now.velocity), a->scale);
   }
   strut_summary_free(&before);
-  strut_summary_free(&now);
-  if (status) return status;
-  status = strut_accuracy_run(a, &e, a->options, a->summary); /* the last again, recorded */
-  if (!status) tell(a, &e, difference, kept, spent);
+  if (!status && !a->options->sink_count && !a->options->to && now.status == STRUT_OK) {
+    *a->summary = now;
+  } else {
+    a->spent += now.force_evaluations;
+    strut_summary_free(&now);
+    /* the last again, recorded */
+    if (!status) status = strut_accuracy_run(a, &e, a->options, a->summary);
+  }
+  if (!status) tell(a, &e, difference, kept);
   return status;
 }
