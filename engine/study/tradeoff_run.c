@@ -85,6 +85,16 @@ static void take_values(const study *s, const strut_summary *summary, double *va
   }
 }
 
+/*
+ * The largest step worth trying. Where nothing vibrates, as where rigid bars swing under gravity, the
+ * limit of stability may be far longer than the motion lasts: then a part of that counts.
+ */
+static double useful_limit(const strut_scene *scene, double limit) {
+  strut_span span = strut_scene_span(scene);
+  double unit = span.period > 0 ? span.period : span.duration;
+  return isfinite(limit) ? fmin(limit, unit / 20) : limit;
+}
+
 static bool hopeless(strut_status status) {
   return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
 }
@@ -101,7 +111,7 @@ static strut_status simulate(const study *s, const strut_scene *scene, double *v
   strut_status status = strut_model_compile(scene, &model, s->error);
   if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, s->error);
   outcome->evaluations = summary.force_evaluations;
-  outcome->step_limit = summary.step_limit;
+  outcome->step_limit = useful_limit(scene, summary.step_limit);
   outcome->cannot = hopeless(status);
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
   outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;

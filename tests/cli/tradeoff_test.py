@@ -244,6 +244,13 @@ with tempfile.TemporaryDirectory() as here:
         fail("a refusal changed files")
     done = run(BALL, "--steps", "1", "-o", "/dev/full/x", code=4)
 
+# ---- Rigid bars of a pendulum vibrate nowhere: no limit says how long a step makes sense, and the
+# answer is still that of the stiff ones, nearly.
+found = read("models/basics/pendulum.yaml", "--methods", "rk4", "--steps", "3", "--budget", "6 s")
+rigid = [model for model in found["models"] if model["name"] == "rigid bars"]
+if len(rigid) != 1 or not rigid[0]["model_error"]["worst"] < 1e-3:
+    fail(f"rigid bars of a pendulum change the answer: {rigid}")
+
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (
         (("--measure", "speed"), "--measure expects velocity, position or energy"),
