@@ -12,7 +12,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
-enum { FRAMES = 40 }; /* 200 members: each instruction is stepped through */
+enum { FRAMES = 12 }; /* 60 members: each instruction is stepped through */
 
 /* Nodes only: no member pulls at them. */
 static void build_nodes(strut_scene *scene) {
