@@ -12,14 +12,14 @@ typedef struct strut_step_limit {
   double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
   double of[STRUT_REGIONS];  /* largest stable step of each region, RK4's being `limit` */
   double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
-  bool exact;               /* from all eigenvalues; else from an estimate of the largest ones */
+  bool exact;               /* from all eigenvalues; else from those that bind, within 1 % */
 } strut_step_limit;
 
 /**
  * Limits at the model's start with every contact closed, its stiffness and damping counted. Up to
  * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
- * the largest frequency and damping rate are estimated (Lanczos), and the limit errs on the safe side.
- * The model must have a mass.
+ * those that bind, from a space of motions that grows until they have settled: within 1 %, whatever
+ * the damping. The model must have a mass.
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);

@@ -69,7 +69,7 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
   printf("  highest frequency  %s, undamped, all contacts closed\n", in(hertz, "Hz").text);
   printf("  largest step       %s for rk4, contacts and damping counted (%s)\n",
          in(plan->step_limit, "s").text,
-         plan->step_limit_exact ? "from all eigenvalues" : "estimated");
+         plan->step_limit_exact ? "from all eigenvalues" : "within 1 %");
   print_limits(plan);
   const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
   double limit = method ? strut_step_limit_of(&plan->limits, method) : plan->step_limit;
