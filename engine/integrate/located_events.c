@@ -25,9 +25,11 @@ static double band_force(const strut_contact_entry *e, const strut_touch *o) {
 double strut_event_value(const strut_model *model, const strut_located *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   if (kind == STRUT_EVENT_CABLE) {
-    bool loose = end->stretch[i] < end->tension[i];
     if (l->pulling[i]) return end->tension[i];
-    return loose ? -end->stretch[i] : -end->tension[i];
+    /* It pulls where stretch and tension are positive; the lesser decides, both in newtons. */
+    double k = model->members.stiffness[l->cable[i]], d = model->members.damping[l->cable[i]];
+    double elastic = (k > 0.0 ? k : d / model->scene->experiment.step) * end->stretch[i];
+    return elastic < end->tension[i] ? -elastic : -end->tension[i];
   }
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &end->touch[i];

@@ -151,6 +151,7 @@ static void check_scene(void (*change)(strut_scene *), factors f, const char *me
   change(&second);
   double step = number ? stable_step(&first) : 1e-4;
   if (strcmp(method, "rk4") != 0) step /= 16; /* the least stable of them is half as stable */
+  first.experiment.step = step, second.experiment.step = step * f.time;
   run(&a, &first, method, step, steps);
   run(&b, &second, method, step * f.time, steps);
   compare_bits(&a, &b, first.node_count, f);
@@ -202,6 +203,16 @@ static void test_other_times_scale_every_bit(void **unused) {
 static void test_events_scale_with_lengths(void **unused) {
   (void)unused;
   check_events(larger, (factors){FACTOR, FACTOR, FACTOR * FACTOR, 1});
+}
+
+static void test_events_scale_with_masses(void **unused) {
+  (void)unused;
+  check_events(heavier, (factors){1, 1, FACTOR, 1});
+}
+
+static void test_events_scale_with_times(void **unused) {
+  (void)unused;
+  check_events(slower, (factors){1, 1, 1 / (FACTOR * FACTOR), FACTOR});
 }
 
 static void test_the_mirror_image_moves_as_the_mirror_image(void **unused) {
@@ -309,6 +320,8 @@ int main(void) {
       cmocka_unit_test(test_other_masses_scale_every_bit),
       cmocka_unit_test(test_other_times_scale_every_bit),
       cmocka_unit_test(test_events_scale_with_lengths),
+      cmocka_unit_test(test_events_scale_with_masses),
+      cmocka_unit_test(test_events_scale_with_times),
       cmocka_unit_test(test_the_mirror_image_moves_as_the_mirror_image),
       cmocka_unit_test(test_another_order_agrees_to_rounding),
       cmocka_unit_test(test_a_drive_does_not_drift),
