@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The steps of methods with events: from grid point to grid point, stopping where modes end. */
-#include "engine/integrate/located.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "engine/integrate/located_kernel.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;
@@ -29,6 +29,8 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_loca
   l->mode = strut_arena_allocate(arena, contacts, 1);
   l->side = strut_arena_allocate(arena, contacts, 1);
   l->damper = strut_arena_allocate(arena, contacts, 1);
+  l->outward = strut_arena_allocate(arena, contacts, sizeof(double));
+  l->body = strut_arena_allocate(arena, contacts, sizeof *l->body);
   l->closed = strut_arena_allocate(arena, contacts, sizeof *l->closed);
   l->stuck = strut_arena_allocate(arena, contacts, sizeof *l->stuck);
   l->damped = strut_arena_allocate(arena, contacts, sizeof *l->damped);
@@ -36,7 +38,7 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_loca
   l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
   l->scatter = strut_arena_allocate(arena, length, sizeof(double));
   l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
-  bool ready = l->mode && l->side && l->damper && l->closed && l->stuck && l->damped &&
+  bool ready = l->mode && l->side && l->damper && l->outward && l->body && l->closed && l->stuck && l->damped &&
                l->response && l->settling_time && l->scatter && l->stage;
   for (int k = 0; k < l->stepper->stages && ready; k++)
     ready = (l->stage[k] = strut_arena_allocate(arena, length, sizeof(double)));
@@ -87,25 +89,11 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
   memcpy(l->next->v, state->v, (size_t)model->length * sizeof(double));
   l->h = 0.0;
   l->fastest = 0.0;
+  l->done = 0.0;
+  l->at_once = 0;
+  l->tried = false;
   strut_modes_start(model, state, l, t);
   l->started = true;
-}
-
-static void copy(int32_t n, const double *restrict from, double *restrict to) {
-  for (int32_t i = 0; i < n; i++) to[i] = from[i];
-}
-
-/* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
-static void accept(const strut_model *model, strut_state *state, strut_located *l) {
-  strut_step_end *now = l->next, *next = l->now;
-  double *q = now->q, *v = now->v;
-  copy(model->length, q, next->q);
-  copy(model->length, v, next->v);
-  now->q = next->q, now->v = next->v;
-  next->q = q, next->v = v;
-  l->now = now, l->next = next;
-  l->fresh = true;
-  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) state->work[p] += l->gained[p];
 }
 
 /* Where a value passes 0: between low and high, and the latest two points of the search. */
@@ -169,19 +157,6 @@ static double retake(const strut_model *model, strut_state *state, strut_located
   return s.x * h;
 }
 
-/* Size of the next step within what is left to the grid point. */
-static double step_size(const strut_state *state, const strut_located *l, double t, double rest,
-                        double dt) {
-  double h = rest;
-  if (l->stepper->adaptive) {
-    h = l->h > 0.0 ? l->h : dt * 1e-3;
-    if (h < rest && h > 0.5 * rest) h = 0.5 * rest;
-  } else if (l->refine > 1.0 && t < state->refined_until) {
-    h = dt / l->refine;
-  }
-  return h > rest * (1.0 - 1e-9) ? rest : h;
-}
-
 /* New step after an error of l->error in a method of fifth order. */
 static void control(strut_located *l, double h, bool whole) {
   double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
@@ -189,27 +164,31 @@ static void control(strut_located *l, double h, bool whole) {
   if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
 }
 
+/* The trial over h, and what happens in it. False: the error is too large; l->h says what to try. */
+static bool try_step(const strut_model *model, strut_state *state, strut_located *l, double t,
+                     double h, double dt) {
+  if (!l->tried) l->stepper->trial(model, state, l, t, h);
+  l->tried = false;
+  if (!l->stepper->adaptive) return true;
+  double error = l->error;
+  control(l, h, h < l->h);
+  if (error <= 1.0) return true;
+  if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_TROUBLE_STEP;
+  return false;
+}
+
 /* One trial over at most h; handles rejection and events. Returns the time gone, 0 if none. */
 static double step(const strut_model *model, strut_state *state, strut_located *l, double t,
-                   double h, double dt, int *at_once) {
+                   double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
-  bool force = *at_once >= MOST_AT_ONCE;
-  double whole = h;
-  if (l->stepper->predict) {
+  bool force = l->at_once >= MOST_AT_ONCE;
+  if (l->stepper->predict && !l->tried) {
     l->stepper->predict(model, l, h);
     if (!force) event = strut_event_predict(model, state, l, h);
     if (event.kind) l->stepper->predict(model, l, h *= event.fraction);
   }
   if (h > AT_ONCE * dt || !event.kind) {
-    l->stepper->trial(model, state, l, t, h);
-    if (l->stepper->adaptive) {
-      double error = l->error;
-      control(l, h, h < l->h);
-      if (!(error <= 1.0)) {
-        if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_TROUBLE_STEP;
-        return 0.0;
-      }
-    }
+    if (!try_step(model, state, l, t, h, dt)) return 0.0;
     strut_event inside =
         force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0} : strut_event_first(model, state, l, h);
     if (inside.kind) {
@@ -219,14 +198,14 @@ static double step(const strut_model *model, strut_state *state, strut_located *
                          : retake(model, state, l, t, h, &event);
       h = taken > AT_ONCE * dt ? taken : 0.0;
     }
-  } else if (event.kind) {
+  } else {
     h = 0.0;
   }
   if (h > 0.0) {
-    accept(model, state, l);
-    *at_once = 0;
+    located_accept(model, state, l, state->ledger);
+    l->at_once = 0;
   } else {
-    ++*at_once;
+    l->at_once++;
   }
   if (event.kind) {
     strut_event_apply(model, state, l, event, t + h);
@@ -236,20 +215,7 @@ static double step(const strut_model *model, strut_state *state, strut_located *
   } else if (strut_modes_after_step(model, l)) {
     strut_located_derive(model, state, l, t + h);
   }
-  return h == whole ? whole : h;
-}
-
-static void grid_step(const strut_model *model, strut_state *state, strut_located *l, double dt) {
-  double begin = (double)state->step * dt, done = 0.0;
-  int at_once = 0;
-  for (;;) {
-    double rest = dt - done;
-    if (rest <= 1e-12 * dt || state->trouble) break;
-    double h = step_size(state, l, begin + done, rest, dt);
-    double gone = step(model, state, l, begin + done, h, dt, &at_once);
-    done = gone == rest ? dt : done + gone;
-  }
-  state->step++;
+  return h;
 }
 
 static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
@@ -265,7 +231,11 @@ void strut_located_advance(const strut_model *model, strut_state *state, void *w
                            int64_t count) {
   strut_located *l = workspace;
   if (!l->started) strut_located_restart(model, state, workspace, dt);
-  for (int64_t end = state->step + count; state->step < end && !state->trouble;)
-    grid_step(model, state, l, dt);
+  for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
+    if (l->stepper->quiet && l->at_once == 0) l->stepper->quiet(model, state, l, dt, end);
+    if (state->step == end) break;
+    double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+    located_go_on(state, l, step(model, state, l, t, h, dt), dt);
+  }
   show_contacts(model, state, l);
 }

@@ -63,6 +63,10 @@ typedef struct strut_stepper {
       q + h v + h^2/2 a at any fraction of a step. trial expects it done. NULL: they are not. */
   void (*predict)(const strut_model *model, strut_located *l, double h);
   bool adaptive; /* l->error is the local error over what is allowed; l->h is the step to try */
+  /** Takes steps up to grid point `end` while nothing happens, with the bits that trial gives; stops
+      before the step in which something does, with l->tried if it has tried that one. May be NULL. */
+  void (*quiet)(const strut_model *model, strut_state *state, strut_located *l, double dt,
+                int64_t end);
 } strut_stepper;
 
 /** Workspace of a method with events; in the state's arena. */
@@ -75,6 +79,10 @@ struct strut_located {
   int8_t *side, *damper;    /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
   int32_t *closed;          /* (closed_count) contacts that touch, ascending */
   int32_t closed_count;
+  double *outward;          /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
+  int32_t *body;            /* (contacts) equal where a force on one accelerates the other */
+  bool *body_seen;          /* (contacts) scratch */
+  bool apart;               /* level ground, and no two closed contacts are of one body */
   double *damped;           /* (contacts) damper force while it is being solved for [N] */
   strut_response *response; /* (contacts) */
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
@@ -89,6 +97,9 @@ struct strut_located {
   int passes;               /* sweeps over normal and tangent where they are coupled by M */
   bool fresh;               /* now.structure holds for now */
   bool started;
+  double done;              /* of the grid step under way [s] */
+  int at_once;              /* switches since the latest step */
+  bool tried;               /* next is the end of the step that is due */
 };
 
 /** Workspace for a method with `stepper`; NULL: out of memory. */

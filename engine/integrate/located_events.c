@@ -11,17 +11,6 @@ static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
   return q[c->at[i]] * c->normal[0] + (q[c->at[i] + 1] - c->height) * c->normal[1];
 }
 
-/* Edge of the band, or 0 where sticking is exact. */
-static double edge(const strut_contact_entry *e) {
-  return e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
-}
-
-static double band_force(const strut_contact_entry *e, const strut_touch *o) {
-  double most = e->mu_static * o->normal;
-  if (fabs(o->applied) < most) return -o->applied;
-  return -e->mu_kinetic * o->normal * strut_sign(o->applied);
-}
-
 double strut_event_value(const strut_model *model, const strut_located *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   if (kind == STRUT_EVENT_CABLE) {
@@ -40,15 +29,15 @@ double strut_event_value(const strut_model *model, const strut_located *l,
     case STRUT_EVENT_OPEN:
       return -gap_of(&model->contacts, i, end->q);
     case STRUT_EVENT_SLOW:
-      return s * o->slip - edge(e);
+      return s * o->slip - located_edge(e);
     case STRUT_EVENT_LEAVE:
-      return edge(e) - fabs(o->slip);
+      return located_edge(e) - fabs(o->slip);
     case STRUT_EVENT_RELEASE:
       return e->mu_static * o->normal - fabs(o->friction);
     case STRUT_EVENT_CREEP_OUT:
       return s * o->friction + e->mu_kinetic * o->normal;
     case STRUT_EVENT_CREEP_IN:
-      return s * (band_force(e, o) - o->friction);
+      return s * (located_band_force(e, o) - o->friction);
     case STRUT_EVENT_PUSH: {
       double room = e->mu_static * o->normal - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
@@ -118,30 +107,6 @@ static double fraction_of(const strut_model *model, const strut_located *l, stru
   return g0 / (g0 - g1);
 }
 
-/* What a closed contact's state at the end of a step contradicts of its mode. */
-static strut_event_kind contradiction(const strut_contact_entry *e, const strut_touch *o,
-                                      uint8_t mode, double s) {
-  switch (mode) {
-    case STRUT_MODE_SLIP:
-      return s * o->slip < edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
-    case STRUT_MODE_STICK:
-      return fabs(o->friction) > e->mu_static * o->normal && o->gap < 0.0 ? STRUT_EVENT_RELEASE
-                                                                          : STRUT_EVENT_NONE;
-    case STRUT_MODE_CREEP:
-      if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
-      return s * (band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
-    case STRUT_MODE_BAND:
-    case STRUT_MODE_PUSH:
-      if (fabs(o->slip) > edge(e)) return STRUT_EVENT_LEAVE;
-      if (e->mu_static == e->mu_kinetic) return STRUT_EVENT_NONE;
-      return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
-                 ? STRUT_EVENT_NONE
-                 : STRUT_EVENT_PUSH;
-    default:
-      return STRUT_EVENT_NONE;
-  }
-}
-
 static void keep_first(const strut_model *model, const strut_located *l, strut_event_kind kind,
                        int32_t i, double h, strut_event *first) {
   double fraction = fraction_of(model, l, kind, i, h);
@@ -179,7 +144,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
   for (int32_t i = 0; i < c->count; i++) {
     if (k < l->closed_count && l->closed[k] == i) {
       const strut_touch *o = &l->next->touch[i];
-      strut_event_kind kind = contradiction(&c->entry[i], o, l->mode[i], l->side[i]);
+      strut_event_kind kind = located_contradiction(&c->entry[i], o, l->mode[i], l->side[i]);
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
       if (!l->stepper->exact) continue;

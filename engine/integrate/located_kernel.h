@@ -135,4 +135,76 @@ STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, s
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
 }
 
+/* Edge of the band, or 0 where sticking is exact. */
+STRUT_INLINE double located_edge(const strut_contact_entry *e) {
+  return e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+}
+
+STRUT_INLINE double located_band_force(const strut_contact_entry *e, const strut_touch *o) {
+  double most = e->mu_static * o->normal;
+  if (fabs(o->applied) < most) return -o->applied;
+  return -e->mu_kinetic * o->normal * strut_sign(o->applied);
+}
+
+/* What a closed contact's state at the end of a step contradicts of its mode. */
+STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e, const strut_touch *o,
+                                      uint8_t mode, double s) {
+  switch (mode) {
+    case STRUT_MODE_SLIP:
+      return s * o->slip < located_edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
+    case STRUT_MODE_STICK:
+      return fabs(o->friction) > e->mu_static * o->normal && o->gap < 0.0 ? STRUT_EVENT_RELEASE
+                                                                          : STRUT_EVENT_NONE;
+    case STRUT_MODE_CREEP:
+      if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
+      return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
+    case STRUT_MODE_BAND:
+    case STRUT_MODE_PUSH:
+      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVE;
+      if (e->mu_static == e->mu_kinetic) return STRUT_EVENT_NONE;
+      return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
+                 ? STRUT_EVENT_NONE
+                 : STRUT_EVENT_PUSH;
+    default:
+      return STRUT_EVENT_NONE;
+  }
+}
+
+/* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
+STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, strut_located *l,
+                                 bool ledger) {
+  strut_step_end *now = l->next, *next = l->now;
+  double *restrict q = now->q, *restrict v = now->v;
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    strut_lanes_store(next->q + i, strut_lanes_load(q + i));
+    strut_lanes_store(next->v + i, strut_lanes_load(v + i));
+  }
+  now->q = next->q, now->v = next->v;
+  next->q = q, next->v = v;
+  l->now = now, l->next = next;
+  l->fresh = true;
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->work[p] += l->gained[p];
+}
+
+/* Size of the next step within what is left to the grid point. */
+STRUT_INLINE double located_step_size(const strut_state *state, const strut_located *l, double dt) {
+  double rest = dt - l->done, h = rest;
+  if (l->stepper->adaptive) {
+    h = l->h > 0.0 ? l->h : dt * 1e-3;
+    if (h < rest && h > 0.5 * rest) h = 0.5 * rest;
+  } else if (l->refine > 1.0 && (double)state->step * dt + l->done < state->refined_until) {
+    h = dt / l->refine;
+  }
+  return h > rest * (1.0 - 1e-9) ? rest : h;
+}
+
+/* After a step of `gone`: on to the next grid point when this one is reached. */
+STRUT_INLINE void located_go_on(strut_state *state, strut_located *l, double gone, double dt) {
+  double rest = dt - l->done;
+  l->done = gone == rest ? dt : l->done + gone;
+  if (dt - l->done > 1e-12 * dt) return;
+  l->done = 0.0;
+  state->step++;
+}
+
 #endif

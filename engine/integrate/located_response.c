@@ -58,6 +58,32 @@ static double settling_time(const strut_contact_entry *e, double inverse_mass) {
   return rate * longest > 1.0 ? 1.0 / rate : longest;
 }
 
+static int32_t root_of(int32_t *body, int32_t i) {
+  while (body[i] != i) i = body[i] = body[body[i]];
+  return i;
+}
+
+/* Joins contacts whose responses share a node. */
+static strut_status find_bodies(const strut_model *model, strut_located *l) {
+  size_t nodes = (size_t)model->node_count;
+  int32_t *seen = strut_allocate(nodes, sizeof *seen), count = model->contacts.count;
+  if (!seen) return STRUT_NO_MEMORY;
+  for (int32_t i = 0; i < count; i++) {
+    const strut_response *r = &l->response[i];
+    l->body[i] = i;
+    for (int32_t k = 0; k < r->count; k++) {
+      int32_t *first = &seen[r->at[k] / 2]; /* one more than the index; 0: none yet */
+      if (*first)
+        l->body[root_of(l->body, *first - 1)] = root_of(l->body, i);
+      else
+        *first = i + 1;
+    }
+  }
+  for (int32_t i = 0; i < count; i++) l->body[i] = root_of(l->body, i);
+  strut_release(seen);
+  return STRUT_OK;
+}
+
 strut_status strut_located_prepare(const strut_model *model, strut_state *state, strut_located *l) {
   const strut_contact_table *c = &model->contacts;
   double *x = l->next->q, *y = l->next->v;
@@ -81,7 +107,9 @@ strut_status strut_located_prepare(const strut_model *model, strut_state *state,
   size_t room = (size_t)l->stuck_room;
   l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
   l->stuck_work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
-  return l->stuck_factor && l->stuck_work ? STRUT_OK : STRUT_NO_MEMORY;
+  l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
+  if (!l->stuck_factor || !l->stuck_work || !l->body_seen) return STRUT_NO_MEMORY;
+  return find_bodies(model, l);
 }
 
 void strut_located_respond(const strut_model *model, const strut_located *l, int32_t i,
@@ -130,8 +158,13 @@ static void factor_stuck(const strut_model *model, strut_located *l) {
 
 void strut_located_relist(const strut_model *model, strut_located *l) {
   l->closed_count = l->stuck_count = 0;
+  l->apart = model->contacts.normal[0] == 0.0;
+  for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
+    l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
     if (l->mode[i] == STRUT_MODE_OPEN) continue;
+    if (l->body_seen[l->body[i]]) l->apart = false;
+    l->body_seen[l->body[i]] = true;
     l->closed[l->closed_count++] = i;
     if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
       if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;

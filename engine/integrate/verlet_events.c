@@ -2,13 +2,9 @@
 /*
  * Velocity Verlet between events, with the ground's dampers implicit: one evaluation a step, no
  * limit from the dampers, and shorter steps for a while after a touchdown.
- *
- * The dampers enter by the trapezoidal rule: v1 = v0 + h/2 (a0 + a1), where a1 contains the damper's
- * force at v1. Contacts of one body are coupled through its mass; sweeps over them converge fast,
- * since the scaled consistent mass has its eigenvalues in [1/2, 3/2].
  */
+#include "engine/integrate/implicit_ground.h"
 #include "engine/integrate/integrator.h"
-#include "engine/integrate/located_kernel.h"
 
 enum { PREDICTED, STAGES };
 
@@ -30,93 +26,27 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
                                                                   strut_lanes_load_pairs(a1 + i)));
 }
 
-/* Speed into the ground at the end of the step, given the accelerations so far. */
-STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_located *l, int32_t i,
-                                double h, const double *a1) {
-  uint32_t at = c->at[i];
-  const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
-  return (v[0] + 0.5 * h * (a0[0] + a[0])) * c->normal[0] +
-         (v[1] + 0.5 * h * (a0[1] + a[1])) * c->normal[1];
-}
-
-/* The damper of contact i by the trapezoidal rule; returns the change of its force. */
-STRUT_INLINE double solve_damper(const strut_model *model, strut_located *l, int32_t i, double h,
-                                 const double *a1, strut_touch *o) {
-  const strut_contact_entry *e = &model->contacts.entry[i];
-  double spring = -e->stiffness * o->gap, now = l->damped[i];
-  bool smooth = e->dissipation > 0.0;
-  double rate = !smooth ? e->damping : spring > 0.0 ? e->dissipation * spring : 0.0;
-  if (!(rate > 0.0)) return 0.0;
-  double half = 0.5 * h * l->response[i].normal;
-  double free = final_speed(&model->contacts, l, i, h, a1) - half * now;
-  double into = free / (1.0 + half * rate), force = -rate * into;
-  if (smooth) {
-    if (force < -spring) force = spring > 0.0 ? -spring : 0.0;
-  } else if (into > 0.0) {
-    force = 0.0;
-  }
-  l->damped[i] = force;
-  return force - now;
-}
-
-STRUT_INLINE void solve_dampers(const strut_model *model, strut_located *l, double h, double *a1,
-                                strut_touch *restrict touch) {
-  for (int sweep = 0; sweep < 40; sweep++) {
-    double changed = 0.0, largest = 0.0;
-    for (int32_t k = 0; k < l->closed_count; k++) {
-      int32_t i = l->closed[k];
-      double more = solve_damper(model, l, i, h, a1, &touch[i]);
-      if (more != 0.0) strut_located_respond(model, l, i, more, 0.0, a1);
-      if (fabs(more) > changed) changed = fabs(more);
-      if (fabs(touch[i].normal) > largest) largest = fabs(touch[i].normal);
-    }
-    if (changed <= 1e-15 * largest || l->closed_count == 1) break;
-  }
-}
-
-/* Friction again with the whole normal force, then what holds stuck nodes. */
-STRUT_INLINE void solve_friction(const strut_model *model, strut_located *l, double *a1,
-                                 strut_touch *restrict touch) {
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
-    strut_touch *o = &touch[i];
-    o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
-    double friction = located_friction(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
-                                       o->slip, o->applied);
-    bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
-    if (held || friction == o->friction) continue;
-    strut_located_respond(model, l, i, 0.0, friction - o->friction, a1);
-    o->friction = friction;
-  }
-  if (l->stuck_count) strut_located_hold(model, l, a1, l->next);
-}
-
-STRUT_INLINE void place_again(const strut_model *model, strut_located *l) {
-  for (int32_t k = 0; k < l->closed_count; k++)
-    located_place(&model->contacts, l->closed[k], l->next->q, l->next->v,
-                  &l->next->touch[l->closed[k]]);
-}
-
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
                        double h, bool ledger) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
   forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
   located_keep(model, state, l->next, ledger);
-  if (l->closed_count)
+  if (!l->closed_count) {
+    mass_kernel(model, state->force, a1, state->scratch);
+  } else if (l->apart) {
+    mass_kernel(model, state->force, a1, state->scratch);
+    implicit_ground_apart(model, l, h, predicted, state->force, a1);
+  } else {
     located_ground(model, l, l->next->q, predicted, state->force, false, l->next->touch);
-  mass_kernel(model, state->force, a1, state->scratch);
-  for (int32_t k = 0; k < l->closed_count; k++) l->damped[l->closed[k]] = 0.0;
-  for (int pass = 0; pass < l->passes && l->closed_count; pass++) {
-    solve_dampers(model, l, h, a1, l->next->touch);
-    solve_friction(model, l, a1, l->next->touch);
+    mass_kernel(model, state->force, a1, state->scratch);
+    implicit_ground_together(model, l, h, a1, l->next->touch);
   }
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
-  if (l->closed_count) {
-    place_again(model, l);
-    located_rates(model, l, a1, l->next->touch);
-    if (ledger) located_powers(model, state, l, l->next->touch);
-  }
+  if (l->closed_count && l->apart)
+    implicit_ground_leave(model, state, l, ledger);
+  else if (l->closed_count)
+    implicit_ground_finish(model, state, l, ledger);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
     l->next->power[p] = state->power[p];
     l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
@@ -132,8 +62,61 @@ static void verlet_events_trial(const strut_model *model, strut_state *state, st
     take(model, state, l, t, h, false);
 }
 
-static const strut_stepper stepper = {
-    .trial = verlet_events_trial, .stages = STAGES, .predict = predict};
+/* Does a contact open or close within the step that has been predicted? */
+STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_located *l,
+                          const double *restrict q) {
+  const uint32_t *restrict at = c->at;
+  const double *restrict outward = l->outward;
+  const double slope = c->normal[0], rise = c->normal[1], height = c->height;
+  bool any = false;
+  if (slope == 0.0)
+    for (int32_t i = 0, count = c->count; i < count; i++)
+      any |= outward[i] * (q[at[i] + 1] - height) < 0.0;
+  else
+    for (int32_t i = 0, count = c->count; i < count; i++)
+      any |= outward[i] * (q[at[i]] * slope + (q[at[i] + 1] - height) * rise) < 0.0;
+  return any;
+}
+
+/* Does what l->next says contradict a mode? */
+STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
+                              const strut_located *l, double h) {
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    if (located_contradiction(&model->contacts.entry[i], &l->next->touch[i], l->mode[i],
+                              l->side[i]))
+      return true;
+  }
+  return l->cable_count && strut_event_first(model, state, l, h).kind;
+}
+
+STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut_located *l,
+                             double dt, int64_t end, bool ledger) {
+  while (state->step < end) {
+    double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+    predict(model, l, h);
+    if (crosses(&model->contacts, l, l->next->q)) return;
+    take(model, state, l, t, h, ledger);
+    l->tried = contradicts(model, state, l, h);
+    if (l->tried) return;
+    located_accept(model, state, l, ledger);
+    located_go_on(state, l, h, dt);
+  }
+}
+
+STRUT_CLONES
+static void verlet_events_quiet(const strut_model *model, strut_state *state, strut_located *l,
+                                double dt, int64_t end) {
+  if (state->ledger)
+    go_quietly(model, state, l, dt, end, true);
+  else
+    go_quietly(model, state, l, dt, end, false);
+}
+
+static const strut_stepper stepper = {.trial = verlet_events_trial,
+                                      .stages = STAGES,
+                                      .predict = predict,
+                                      .quiet = verlet_events_quiet};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_located_create(model, state, &stepper);
