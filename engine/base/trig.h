@@ -5,14 +5,43 @@
  * libm picks another routine where the processor has fused multiply-add, so its last bit may change
  * from machine to machine. These use plain products and sums only. Because the angle comes in turns
  * (cycles), its reduction is exact: a drive of f hertz at t seconds needs the turns f*t, and no
- * multiple of pi is ever subtracted.
+ * multiple of pi is ever subtracted. In a header, since a drive asks for them at every force evaluation.
  */
 #ifndef STRUT_ENGINE_BASE_TRIG_H
 #define STRUT_ENGINE_BASE_TRIG_H
 
-#include "engine/base/export.h"
+#include <math.h>
+
+/* Taylor sums for |x| <= pi/4, s = x^2: the first term left out is below 2e-17 in both. The even
+   and the odd powers of s are summed apart, so that neither waits for the other. */
+static inline double strut_sine_of_small(double x) {
+  double s = x * x, ss = s * s;
+  double even = -1.0 / 6 + ss * (-1.0 / 5040 + ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));
+  double odd = 1.0 / 120 + ss * (1.0 / 362880 + ss * (1.0 / 6227020800.0));
+  return x + x * (s * (even + s * odd));
+}
+
+static inline double strut_cosine_of_small(double x) {
+  double s = x * x, ss = s * s;
+  double even = 1.0 / 24 + ss * (1.0 / 40320 + ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));
+  double odd = -1.0 / 720 + ss * (-1.0 / 3628800 + ss * (-1.0 / 87178291200.0));
+  double half = 0.5 * s, rest = 1.0 - half;
+  return rest + (((1.0 - rest) - half) + ss * (even + s * odd));
+}
 
 /** sine = sin(2 pi turns), cosine = cos(2 pi turns); error below 1.5 units in the last place of 1. */
-STRUT_API void strut_sincos_turns(double turns, double *sine, double *cosine);
+static inline void strut_sincos_turns(double turns, double *sine, double *cosine) {
+  /* Adding and taking away 1.5 * 2^52 rounds to an integer; above 2^49 turns floor comes first. */
+  const double rounder = 6755399441055744.0;
+  if (!(turns > -0x1p49 && turns < 0x1p49)) turns -= floor(turns);
+  double quarter = (4.0 * turns + rounder) - rounder; /* nearest quarter turn */
+  double rest = turns - 0.25 * quarter;               /* exact: in [-1/8, 1/8] */
+  double x = 6.283185307179586476925 * rest;
+  double s = strut_sine_of_small(x), c = strut_cosine_of_small(x);
+  int quadrant = (int)((long long)quarter & 3);
+  double first = quadrant & 1 ? c : s, second = quadrant & 1 ? s : c;
+  *sine = quadrant & 2 ? -first : first;
+  *cosine = (quadrant + 1) & 2 ? -second : second;
+}
 
 #endif

@@ -127,11 +127,38 @@ STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_lo
     o->slip = v[at] - c->belt_speed;
     o->applied = force[at];
     implicit_ground_touch(&c->entry[i], r, &before[i], o, mode, l->side[i], h, a[at], a[at + 1]);
+    const strut_pair reaction = {o->friction, o->normal};
+    const double *restrict xy = r->xy;
     for (int32_t j = 0, nodes = r->count; j < nodes; j++) {
-      a[r->at[j]] += r->x[j] * o->friction;
-      a[r->at[j] + 1] += r->y[j] * o->normal;
+      double *node = a + r->at[j];
+      strut_pair_store(node, strut_pair_load(node) + strut_pair_load(xy + 2 * j) * reaction);
     }
     if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP) a[at] = 0.0; /* but for rounding */
+  }
+}
+
+/* The same where all of them slip, or have no friction. */
+STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_located *l, double h,
+                                         double *restrict a) {
+  const strut_touch *restrict before = l->now->touch;
+  const double *restrict q = l->next->q, height = model->contacts.height;
+  strut_touch *restrict touch = l->next->touch;
+  const strut_slider *s = l->slider;
+  for (const strut_slider *end = s + l->closed_count; s < end; s++) {
+    const strut_touch *b = &before[s->index];
+    strut_touch *o = &touch[s->index];
+    double gap = q[s->at + 1] - height, spring = -s->stiffness * gap, half = 0.5 * h * s->answer;
+    double free = b->into + 0.5 * h * (b->into_rate + a[s->at + 1]) + half * spring;
+    double into = free / (1.0 + half * s->damping);
+    double normal = spring + (into > 0.0 ? 0.0 : -s->damping * into);
+    const strut_pair reaction = {s->friction * normal, normal};
+    o->gap = gap;
+    o->normal = normal;
+    o->friction = reaction[0];
+    for (int32_t j = 0; j < s->nodes; j++) {
+      double *node = a + s->place[j];
+      strut_pair_store(node, strut_pair_load(node) + strut_pair_load(s->xy + 2 * j) * reaction);
+    }
   }
 }
 
@@ -156,10 +183,9 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
     moved += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
   if (!ledger) return;
-  state->power[STRUT_POWER_CONTACT] += contact;
-  state->power[STRUT_POWER_FRICTION] += friction;
-  state->power[STRUT_POWER_BELT] += belt;
-  state->power[STRUT_POWER_MOVED] += moved;
+  double *low = state->power + STRUT_POWER_DRIVE, *high = state->power + STRUT_POWER_CONTACT;
+  strut_lanes_store(low, strut_lanes_load(low) + (strut_lanes){0.0, 0.0, belt, 0.0});
+  strut_lanes_store(high, strut_lanes_load(high) + (strut_lanes){contact, friction, moved, 0.0});
 }
 
 #endif

@@ -29,7 +29,7 @@ typedef enum strut_contact_mode {
 typedef struct strut_response {
   int32_t count;
   const uint32_t *at;    /* (count) 2 * node */
-  const double *x, *y;   /* (count) x per unit force in x, y per unit in y [1/kg] */
+  const double *xy;      /* (count, 2) x per unit force in x, y per unit in y [1/kg] */
   double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg] */
 } strut_response;
 
@@ -46,10 +46,22 @@ typedef struct strut_step_end {
   double *q, *v, *a;
   strut_touch *touch; /* (contacts) of those that are closed; of open ones the gap alone */
   double *tension, *stretch; /* (cables) not clamped [N], [m] */
-  double power[STRUT_POWER_COUNT]; /* [W]; only with the ledger */
+  double power[STRUT_POWER_ROOM]; /* [W]; only with the ledger */
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
-  double *structure, structure_power[STRUT_POWER_COUNT];
+  double *structure, structure_power[STRUT_POWER_ROOM];
 } strut_step_end;
+
+/** A closed contact that slips or has no friction, alone on its body, on level ground: all that a
+    step asks of it in one place. */
+typedef struct strut_slider {
+  uint32_t at;
+  int32_t index, nodes;        /* contact; nodes that answer to it */
+  double stiffness, damping;   /* [N/m], [N s/m] */
+  double answer, friction;     /* along the normal [1/kg]; friction force over normal force [1] */
+  double side, edge;           /* slips while side * u >= edge [m/s] */
+  const uint32_t *place;       /* (nodes) */
+  const double *xy;            /* (nodes, 2) */
+} strut_slider;
 
 typedef struct strut_located strut_located;
 
@@ -74,7 +86,7 @@ struct strut_located {
   const strut_stepper *stepper;
   strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
   double **stage;           /* (stepper->stages) arrays (length) */
-  double gained[STRUT_POWER_COUNT];
+  double gained[STRUT_POWER_ROOM];
   uint8_t *mode;            /* (contacts) strut_contact_mode */
   int8_t *side, *damper;    /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
   int32_t *closed;          /* (closed_count) contacts that touch, ascending */
@@ -82,6 +94,8 @@ struct strut_located {
   double *outward;          /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
   int32_t *body;            /* (contacts) equal where a force on one accelerates the other */
   bool *body_seen;          /* (contacts) scratch */
+  strut_slider *slider;     /* (closed_count), where `plain` */
+  bool plain;               /* apart, and all closed contacts are sliders */
   bool apart;               /* level ground, and no two closed contacts are of one body */
   double *damped;           /* (contacts) damper force while it is being solved for [N] */
   strut_response *response; /* (contacts) */

@@ -102,8 +102,8 @@ STRUT_INLINE void located_keep(const strut_model *model, const strut_state *stat
                                strut_step_end *end, bool ledger) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES)
     strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->force + i));
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
-    end->structure_power[p] = state->power[p];
+  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
+    strut_lanes_store(end->structure_power + p, strut_lanes_load(state->power + p));
 }
 
 /* From the forces of the structure in state->force to the acceleration. */
@@ -183,7 +183,9 @@ STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, s
   next->q = q, next->v = v;
   l->now = now, l->next = next;
   l->fresh = true;
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->work[p] += l->gained[p];
+  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
+    strut_lanes_store(state->work + p,
+                      strut_lanes_load(state->work + p) + strut_lanes_load(l->gained + p));
 }
 
 /* Size of the next step within what is left to the grid point. */

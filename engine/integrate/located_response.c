@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/integrate/located.h"
+#include "engine/integrate/located_kernel.h"
 
 /* Entries below this part of a column's largest one change no bit that matters. */
 static const double NEGLIGIBLE = 1e-18;
@@ -31,16 +31,15 @@ static strut_status make_response(const strut_model *model, strut_state *state, 
   for (int32_t k = 0; k < 2 * model->node_count; k += 2)
     count += fabs(x[k]) > least || fabs(y[k + 1]) > least;
   uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
-  double *rx = strut_arena_allocate(&state->arena, count, sizeof *rx);
-  double *ry = strut_arena_allocate(&state->arena, count, sizeof *ry);
-  if (!place || !rx || !ry) return STRUT_NO_MEMORY;
+  double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
+  if (!place || !xy) return STRUT_NO_MEMORY;
   for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
     if (!(fabs(x[k]) > least || fabs(y[k + 1]) > least)) continue;
     place[r->count] = (uint32_t)k;
-    rx[r->count] = x[k];
-    ry[r->count++] = y[k + 1];
+    xy[2 * r->count] = x[k];
+    xy[2 * r->count++ + 1] = y[k + 1];
   }
-  r->at = place, r->x = rx, r->y = ry;
+  r->at = place, r->xy = xy;
   r->normal = x[at] * c->normal[0] * c->normal[0] + y[at + 1] * c->normal[1] * c->normal[1];
   r->tangent = x[at] * c->tangent[0] * c->tangent[0] + y[at + 1] * c->tangent[1] * c->tangent[1];
   return STRUT_OK;
@@ -108,7 +107,8 @@ strut_status strut_located_prepare(const strut_model *model, strut_state *state,
   l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
   l->stuck_work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
   l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
-  if (!l->stuck_factor || !l->stuck_work || !l->body_seen) return STRUT_NO_MEMORY;
+  l->slider = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->slider);
+  if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->slider) return STRUT_NO_MEMORY;
   return find_bodies(model, l);
 }
 
@@ -119,8 +119,8 @@ void strut_located_respond(const strut_model *model, const strut_located *l, int
   double fx = tangential * c->tangent[0] + normal * c->normal[0];
   double fy = tangential * c->tangent[1] + normal * c->normal[1];
   for (int32_t k = 0; k < r->count; k++) {
-    a[r->at[k]] += r->x[k] * fx;
-    a[r->at[k] + 1] += r->y[k] * fy;
+    a[r->at[k]] += r->xy[2 * k] * fx;
+    a[r->at[k] + 1] += r->xy[2 * k + 1] * fy;
   }
 }
 
@@ -144,8 +144,8 @@ static void factor_stuck(const strut_model *model, strut_located *l) {
   for (int32_t j = 0; j < n; j++) {
     const strut_response *r = &l->response[l->stuck[j]];
     for (int32_t k = 0; k < r->count; k++) {
-      l->scatter[r->at[k]] = r->x[k] * t[0];
-      l->scatter[r->at[k] + 1] = r->y[k] * t[1];
+      l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
+      l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
     }
     for (int32_t i = j; i < n; i++) {
       uint32_t at = c->at[l->stuck[i]];
@@ -154,6 +154,34 @@ static void factor_stuck(const strut_model *model, strut_located *l) {
     for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
   }
   if (!factor(n, l->stuck_factor)) l->stuck_count = -n; /* singular: by sweeps */
+}
+
+static bool is_slider(const strut_located *l, const strut_contact_entry *e, int32_t i) {
+  if (e->dissipation > 0.0) return false;
+  return l->mode[i] == STRUT_MODE_SLIP ||
+         (l->mode[i] == STRUT_MODE_SLIDE && e->law != STRUT_FRICTION_SMOOTH);
+}
+
+static void list_sliders(const strut_model *model, strut_located *l) {
+  l->plain = l->apart;
+  for (int32_t k = 0; k < l->closed_count && l->plain; k++) {
+    int32_t i = l->closed[k];
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    const strut_response *r = &l->response[i];
+    bool slips = l->mode[i] == STRUT_MODE_SLIP;
+    l->plain = is_slider(l, e, i);
+    l->slider[k] = (strut_slider){.at = model->contacts.at[i],
+                                  .index = i,
+                                  .nodes = r->count,
+                                  .stiffness = e->stiffness,
+                                  .damping = e->damping,
+                                  .answer = r->normal,
+                                  .friction = slips ? -l->side[i] * e->mu_kinetic : 0.0,
+                                  .side = slips ? l->side[i] : 0.0,
+                                  .edge = slips ? located_edge(e) : 0.0,
+                                  .place = r->at,
+                                  .xy = r->xy};
+  }
 }
 
 void strut_located_relist(const strut_model *model, strut_located *l) {
@@ -169,6 +197,7 @@ void strut_located_relist(const strut_model *model, strut_located *l) {
     if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
       if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
   }
+  list_sliders(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
   else if (l->stuck_count > 1)

@@ -34,6 +34,9 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   located_keep(model, state, l->next, ledger);
   if (!l->closed_count) {
     mass_kernel(model, state->force, a1, state->scratch);
+  } else if (l->plain) {
+    mass_kernel(model, state->force, a1, state->scratch);
+    implicit_ground_slides(model, l, h, a1);
   } else if (l->apart) {
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_apart(model, l, h, predicted, state->force, a1);
@@ -47,9 +50,10 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
     implicit_ground_leave(model, state, l, ledger);
   else if (l->closed_count)
     implicit_ground_finish(model, state, l, ledger);
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
-    l->next->power[p] = state->power[p];
-    l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
+  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
+    strut_lanes power = strut_lanes_load(state->power + p);
+    strut_lanes_store(l->next->power + p, power);
+    strut_lanes_store(l->gained + p, 0.5 * h * (strut_lanes_load(l->now->power + p) + power));
   }
 }
 
@@ -68,20 +72,30 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_located *l,
   const uint32_t *restrict at = c->at;
   const double *restrict outward = l->outward;
   const double slope = c->normal[0], rise = c->normal[1], height = c->height;
-  bool any = false;
-  if (slope == 0.0)
-    for (int32_t i = 0, count = c->count; i < count; i++)
-      any |= outward[i] * (q[at[i] + 1] - height) < 0.0;
-  else
-    for (int32_t i = 0, count = c->count; i < count; i++)
-      any |= outward[i] * (q[at[i]] * slope + (q[at[i] + 1] - height) * rise) < 0.0;
-  return any;
+  double lowest = 0.0;
+  if (slope == 0.0) {
+    for (int32_t i = 0, count = c->count; i < count; i++) {
+      double gap = outward[i] * (q[at[i] + 1] - height);
+      lowest = gap < lowest ? gap : lowest;
+    }
+  } else {
+    for (int32_t i = 0, count = c->count; i < count; i++) {
+      double gap = outward[i] * (q[at[i]] * slope + (q[at[i] + 1] - height) * rise);
+      lowest = gap < lowest ? gap : lowest;
+    }
+  }
+  return lowest < 0.0;
 }
 
 /* Does what l->next says contradict a mode? */
 STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
                               const strut_located *l, double h) {
-  for (int32_t k = 0; k < l->closed_count; k++) {
+  if (l->plain) {
+    const strut_slider *s = l->slider;
+    for (const strut_slider *end = s + l->closed_count; s < end; s++)
+      if (s->side * l->next->touch[s->index].slip < s->edge) return true;
+  }
+  for (int32_t k = 0; k < l->closed_count && !l->plain; k++) {
     int32_t i = l->closed[k];
     if (located_contradiction(&model->contacts.entry[i], &l->next->touch[i], l->mode[i],
                               l->side[i]))

@@ -10,7 +10,7 @@
 
 #include "engine/model/model.h"
 
-/** Powers that the ledger integrates beside the motion [W]. */
+/** Powers that the ledger integrates beside the motion [W]. Kernels write them by fours. */
 typedef enum strut_power {
   STRUT_POWER_DRIVE,    /* actuators, on the structure */
   STRUT_POWER_LOAD,     /* loads that change with time */
@@ -19,7 +19,8 @@ typedef enum strut_power {
   STRUT_POWER_CONTACT,  /* lost in ground dampers, > 0 */
   STRUT_POWER_FRICTION, /* lost in friction, > 0 */
   STRUT_POWER_MOVED,    /* sum of the absolute values of the above */
-  STRUT_POWER_COUNT
+  STRUT_POWER_COUNT,
+  STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
 typedef enum strut_trouble {
@@ -34,7 +35,7 @@ typedef struct strut_state {
   int64_t step;  /* n; time is n * dt, never a sum */
   double *q;     /* positions [m] */
   double *v;     /* velocities [m/s] */
-  double work[STRUT_POWER_COUNT]; /* powers integrated since t = 0 [J] */
+  double work[STRUT_POWER_ROOM];  /* powers integrated since t = 0 [J] */
   double load_mark;               /* strut_energy_mark: where the works count from [J] */
   double refined_until;           /* methods that refine after touchdowns do so until then [s] */
   int64_t evaluations;            /* of the forces since the reset */
@@ -52,7 +53,7 @@ typedef struct strut_state {
   double *force;     /* net force on each node [N] */
   double *normal;    /* (contacts) normal force [N]; in the step only where it touches */
   double *friction;  /* (contacts) friction force along the ground [N] */
-  double power[STRUT_POWER_COUNT]; /* [W]; only where the ledger is kept */
+  double power[STRUT_POWER_ROOM]; /* [W]; only where the ledger is kept */
 
   /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
      forces follow from q, v and t alone */

@@ -78,7 +78,8 @@ static strut_status run_until_steady(way *w, strut_experiment e, double toleranc
   e.periods = fmin(e.periods, periods);
   e.measure_last = fmin(e.measure_last, e.periods);
   e.output_last = 0.0;
-  strut_run_options options = {.interrupt = a->options->interrupt,
+  strut_run_options options = {.without_ledger = true,
+                               .interrupt = a->options->interrupt,
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,
                                .from = from_end ? &from : a->options->from,

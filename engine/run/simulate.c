@@ -135,7 +135,7 @@ static strut_status prepare(run *r) {
       (r->watching && strut_watch_create(r->model, span.period, begin, &r->watch)))
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   if ((status = place_state(r))) return status;
-  r->state->ledger = true;
+  r->state->ledger = !r->options->without_ledger;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, begin);
@@ -333,7 +333,8 @@ static void fill_summary(run *r, strut_status status) {
   strut_measure_finish(r->model, &r->measure, s);
   if (r->watching) strut_watch_finish(&r->watch, s);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
-  strut_balance_fill(r->model, r->state, &r->initial, (double)r->state->step * r->dt, &s->energy);
+  if (r->state->ledger)
+    strut_balance_fill(r->model, r->state, &r->initial, (double)r->state->step * r->dt, &s->energy);
   keep_end(r);
 }
 

@@ -29,6 +29,7 @@ typedef struct strut_run_options {
   const strut_snapshot *from; /* instead of the scene's start; its time becomes a whole number of
                                  steps; may be NULL */
   strut_snapshot *to;         /* filled at the end; may be NULL */
+  bool without_ledger;        /* no works and no energy residual in the summary: 0. Cheaper */
 } strut_run_options;
 
 /**

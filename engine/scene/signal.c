@@ -47,14 +47,10 @@ static void table(const strut_signal *s, double t, double *value, double *rate) 
   *rate = rise / span;
 }
 
-void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t, double *value,
-                           double *rate) {
+/* All but sines, which strut_signal_evaluate looks at first. */
+static void evaluate(const strut_signal *signals, int32_t index, double t, double turns,
+                     double *value, double *rate) {
   const strut_signal *s = &signals[index];
-  double turns = s->frequency * (t - s->start) + s->phase;
-  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop) { /* the usual one first */
-    wave(s, turns, value, rate);
-    return;
-  }
   *value = *rate = 0.0;
   if (s->kind == STRUT_RAMP) {
     ramp(s, t, value, rate);
@@ -83,6 +79,16 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
         *rate += part_rate;
       }
   }
+}
+
+void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t, double *value,
+                           double *rate) {
+  const strut_signal *s = &signals[index];
+  double turns = s->frequency * (t - s->start) + s->phase;
+  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
+    wave(s, turns, value, rate);
+  else
+    evaluate(signals, index, t, turns, value, rate);
 }
 
 /* Longest period among a signal's repeating parts, or among its pulses; 0 where there is none. */
