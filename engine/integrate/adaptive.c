@@ -4,7 +4,8 @@
  * from event to event. The last stage is the first of the next step.
  *
  * Errors are measured against the size of the structure, a hundredth of it, for positions, and
- * against the fastest speed so far for velocities.
+ * against the fastest speed so far for velocities. A step within which a contact's gap or slip dips
+ * below its mode's edge and comes back is rejected as well: its ends alone would not show that.
  */
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/located_kernel.h"
@@ -59,6 +60,85 @@ static double error_of(const strut_model *model, strut_located *l, double h, dou
   return error;
 }
 
+/*
+ * Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if that is below
+ * 0 by more than `faint`; else 0.
+ */
+static double dip(double g0, double d0, double g1, double d1, double faint) {
+  if (!(d0 < 0.0 && d1 > 0.0)) return 0.0;
+  /* slope: d0 + 2 b x + 3 c x^2, which passes 0 upwards once */
+  double rise = g1 - g0, b = 3.0 * rise - 2.0 * d0 - d1, c = d0 + d1 - 2.0 * rise;
+  double x = -d0 / (b + sqrt(fmax(0.0, b * b - 3.0 * c * d0)));
+  return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
+}
+
+/* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
+static double earliest_dip(const strut_model *model, const strut_located *l, double h) {
+  const strut_contact_table *c = &model->contacts;
+  double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
+  double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
+  for (int32_t i = 0; i < c->count; i++) {
+    strut_touch from, to;
+    located_place(c, i, l->now->q, l->now->v, &from);
+    located_place(c, i, l->next->q, l->next->v, &to);
+    bool open = l->mode[i] == STRUT_MODE_OPEN;
+    double side = open ? 1.0 : -1.0;
+    double at = 0.0;
+    if (side * to.gap > 0.0)
+      at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
+    if (l->mode[i] == STRUT_MODE_SLIP && at == 0.0) {
+      const strut_contact_entry *e = &c->entry[i];
+      double s = l->side[i], edge = e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+      double end = s * to.slip - edge;
+      if (end > 0.0)
+        at = dip(s * from.slip - edge, s * h * l->now->touch[i].slip_rate, end,
+                 s * h * l->next->touch[i].slip_rate, faint[1]);
+    }
+    if (at > 0.0 && (first == 0.0 || at < first)) first = at;
+  }
+  return first;
+}
+
+/*
+ * A band entered just now has its edge, but for rounding, where the step begins: an end beyond either
+ * edge then tells nothing of where it was left. Part of the step that ends amidst the band; 0 where
+ * all is well.
+ */
+static double part_within_band(const strut_model *model, const strut_located *l) {
+  double least = 0.0;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    if (l->mode[i] != STRUT_MODE_BAND && l->mode[i] != STRUT_MODE_PUSH) continue;
+    double edge = model->contacts.entry[i].stick_velocity, from = l->now->touch[i].slip;
+    double to = l->next->touch[i].slip, outwards = from * l->now->touch[i].slip_rate;
+    if (fabs(from) < edge * (1.0 - 1e-9) || fabs(to) <= edge) continue;
+    if (outwards > 0.0 || (outwards == 0.0 && from * to > 0.0)) continue;
+    double part = from * to < 0.0 ? fabs(from) / fabs(to - from) : 0.5;
+    if (least == 0.0 || part < least) least = part;
+  }
+  return least;
+}
+
+/*
+ * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
+ * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
+ */
+static void settle_ties(const strut_model *model, const strut_located *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    strut_touch *o = &l->next->touch[i];
+    double faint = 1e-10 * o->normal, edge = e->stick_velocity;
+    if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
+      o->friction = -o->applied + l->side[i] * faint; /* creep ends */
+    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= 1e-10 * edge)
+      o->slip = o->slip < 0.0 ? -edge : edge;
+  }
+}
+
+/* The error that makes the next step end there. */
+static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
+
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
                        double h, bool ledger) {
   double *v[PAIR], *a[PAIR];
@@ -79,6 +159,11 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   }
   located_finish(model, state, l, t + h, l->next, ledger);
   l->error = error_of(model, l, h, v, a, l->stage[0]);
+  settle_ties(model, l);
+  if (!(l->error <= 1.0) || model->contacts.count == 0) return;
+  double part = part_within_band(model, l);
+  if (part == 0.0) part = earliest_dip(model, l, h);
+  if (part > 0.0) l->error = error_to_reach(part);
 }
 
 STRUT_CLONES

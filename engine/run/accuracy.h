@@ -11,11 +11,13 @@
  * Runs the scene's experiment so that the measured velocity is within experiment.accuracy, relative
  * to it or, where it is small, to a thousandth of the structure's size per period (or per run).
  *
- * A run by periods whose motion becomes steady is made with the cheapest method, and its orbit is
- * then corrected by an accurate one (orbit.h); any other run is repeated, finer each time, until
- * two agree. summary->accuracy says what was done, why, what it cost to check, and the error to
- * expect; `kept` is false where the accuracy was not reached. The scene's own method and step are not
- * used. Results and errors as strut_simulate.
+ * The velocity is the mean over the scene's window, or, with experiment.steady, that of the steady
+ * motion. A run by periods whose motion becomes steady long before its window is made with the
+ * cheapest method, and its orbit is then corrected by an accurate one (orbit.h). Any other run is made
+ * with the cheapest method and with one of error control, then with ever smaller tolerances, until two
+ * agree; rigid bars with ever smaller steps. summary->accuracy says what was done, why, what it cost
+ * to check, and the error to expect; `kept` is false where the accuracy was not reached. The scene's
+ * own method and step are not used. Results and errors as strut_simulate.
  */
 STRUT_API strut_status strut_simulate_accurately(const strut_scene *scene,
                                                  const strut_run_options *options,
@@ -28,6 +30,7 @@ typedef struct strut_accuracy {
   const strut_run_options *options;
   strut_experiment cheap; /* the cheapest method with the largest step it should take */
   double wanted, scale;   /* [1], [m/s] */
+  bool halving;           /* the scene has one method only: compare it with itself */
   int64_t spent;          /* evaluations of the forces that the answer does not rest on */
   strut_summary *summary;
   strut_error *error;
@@ -36,6 +39,13 @@ typedef struct strut_accuracy {
 /** The run of a scene with another experiment. */
 strut_status strut_accuracy_run(const strut_accuracy *a, const strut_experiment *experiment,
                                 const strut_run_options *options, strut_summary *summary);
+/**
+ * Drive periods in which the motion must have become steady: all where the run ends when it is. Else
+ * what is then left of the transient is to be gone when the window begins, hence half of those before.
+ */
+double strut_accuracy_periods(const strut_accuracy *a);
+/** Is the mean over the window that over a steady motion found so? */
+bool strut_accuracy_orbit_answers(const strut_accuracy *a, const strut_steady_summary *steady);
 /** By the steady orbit. *done is false where there is none to be had. */
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done);
 /** By runs that are ever finer. */

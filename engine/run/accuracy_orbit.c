@@ -13,6 +13,8 @@ static const double COARSE = 0.0099;
 static const double FINE = 0.0019;
 /* Largest error of the accurate method's velocity over its tolerance, by random points. */
 static const double TOLERANCE_PER_ERROR = 1.0 / 1500.0;
+/* Periods without which runs are repeated rather than an orbit looked for. */
+static const double LEAST = 20.0;
 enum { MOST_CORRECTIONS = 4 };
 
 /* What the cheap map has cost until it was steady. */
@@ -95,7 +97,7 @@ static strut_status run_until_steady(way *w, strut_experiment e, double toleranc
 static strut_status run_cheap(way *w, bool *steady) {
   strut_accuracy *a = w->a;
   strut_model *model = NULL;
-  double periods = a->scene->experiment.periods, first = fmin(150.0, periods);
+  double periods = strut_accuracy_periods(a), first = fmin(150.0, periods);
   strut_status status = strut_model_compile(a->scene, &model, a->error);
   if (!status) status = allocate(w, model);
   strut_model_free(model);
@@ -108,7 +110,8 @@ static strut_status run_cheap(way *w, bool *steady) {
     if (!status) add_part(&w->run, &more);
     strut_summary_free(&more);
   }
-  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC;
+  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
+            strut_accuracy_orbit_answers(a, &w->run.steady);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
@@ -179,17 +182,29 @@ static strut_status run_orbit(way *w, strut_summary *summary) {
 }
 
 /*
- * The accurate method itself until it is steady, from the orbit found, of which it then is
- * independent. The run's costs are added to those of the cheap one.
+ * No switch in a period of a motion no faster than the stick band: all is stuck, and at which speed
+ * within the band is a matter of how it came to be, not of the orbit.
  */
-static strut_status run_accurate(way *w, strut_summary *last) {
+static bool is_stuck(const way *w) {
+  const strut_contact_table *c = &w->cheap.model->contacts;
+  double band = 0.0;
+  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].stick_velocity);
+  return w->fine.applied > 0 && w->fine.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
+}
+
+/*
+ * The accurate method itself until it is steady: from the orbit found, of which it then is
+ * independent, or, where that depends on how it came to be, from the scene's start. The run's costs
+ * are added to those of the cheap one.
+ */
+static strut_status run_accurate(way *w, bool from_orbit, strut_summary *last) {
   strut_accuracy *a = w->a;
   size_t length = (size_t)w->cheap.model->length;
   memcpy(w->end.q, w->orbit.y, length * sizeof(double));
   memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
   w->end.refined = w->orbit.y[2 * length];
   strut_status status = run_until_steady(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
-                                         fmax(20.0, a->scene->experiment.periods), true, last);
+                                         fmax(20.0, strut_accuracy_periods(a)), from_orbit, last);
   if (status || last->steady.kind != STRUT_MOTION_PERIODIC) return status;
   memcpy(w->orbit.y, w->end.q, length * sizeof(double));
   memcpy(w->orbit.y + length, w->end.v, length * sizeof(double));
@@ -240,7 +255,10 @@ static void tell(way *w, const strut_summary *orbit, bool cheap_does) {
     s->steady.periods += w->run.steady.periods;
   }
   s->steady.interval = error;
-  s->steps = w->run.steps;
+  s->steps = w->run.steps + settled->applied * w->cheap.steps;
+  if (!cheap_does) /* of the grid, where the step itself varies */
+    s->steps += (w->cheap.applied - settled->applied) * w->cheap.steps +
+                w->fine.applied * w->fine.steps + w->last.steps;
   s->step = w->cheap.dt;
   s->step_limit = w->run.step_limit;
   s->steady.periods += settled->applied;
@@ -317,8 +335,9 @@ static strut_status find_without_cheap(way *w, strut_summary *orbit) {
   w->run.steady.repeats = 1;
   strut_status status = make_maps(w);
   w->error = HUGE_VAL;
-  if (!status) status = run_accurate(w, &w->last);
-  if (status || !w->finished || w->last.steady.repeats > 1) {
+  if (!status) status = run_accurate(w, true, &w->last);
+  if (status || !w->finished || w->last.steady.repeats > 1 ||
+      !strut_accuracy_orbit_answers(w->a, &w->last.steady)) {
     w->error = HUGE_VAL;
     return status;
   }
@@ -339,8 +358,10 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   if (status) return status;
   double moved = steady ? fabs(w->orbit.velocity - w->run.velocity) + w->error : HUGE_VAL;
   *cheap_does = a->wanted >= COARSE && moved <= 0.8 * a->wanted * size;
-  if (!*cheap_does && (a->wanted < FINE || !(part_of_wanted(w) <= 0.8)))
-    status = run_accurate(w, &w->last);
+  bool stuck = is_stuck(w);
+  if (stuck) *cheap_does = false;
+  if (stuck || (!*cheap_does && (a->wanted < FINE || !(part_of_wanted(w) <= 0.8))))
+    status = run_accurate(w, !stuck, &w->last);
   if (status || !isfinite(w->error)) return status;
   status = run_orbit(w, orbit);
   double away = fabs(orbit->velocity - w->orbit.velocity);
@@ -348,12 +369,14 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   *cheap_does = false;
   a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
   strut_summary_free(orbit);
-  status = run_accurate(w, &w->last);
+  status = run_accurate(w, true, &w->last);
   return status ? status : run_orbit(w, orbit);
 }
 
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   way w = {.a = a};
+  *done = false;
+  if (strut_accuracy_periods(a) < LEAST) return STRUT_OK;
   bool steady = false, cheap_does = false;
   strut_summary orbit = {0};
   const strut_experiment given = a->cheap;

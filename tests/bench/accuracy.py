@@ -48,7 +48,7 @@ with tempfile.TemporaryDirectory() as folder:
         apart = max(apart, abs(one["velocity"] - two["velocity"]) / max(abs(one["velocity"]), 1e-3))
     print(f"{count} points; the references differ by {apart:.1e} at most")
     print(f"{'wanted':>8} {'median':>9} {'90 %':>9} {'worst':>9} {'cost':>6} {'total':>9} "
-          f"{'periods':>8} {'kept':>6}")
+          f"{'periods: mean':>13} {'median':>6} {'90 %':>5} {'worst':>5} {'kept':>6}")
     for wanted in ("1%", "0.5%", "0.1%", "0.04%"):
         errors, costs, totals, periods, kept = [], [], [], [], 0
         for point in points:
@@ -63,4 +63,6 @@ with tempfile.TemporaryDirectory() as folder:
             kept += error <= claim["wanted"]
         mean = lambda values: sum(values) / len(values)
         print(f"{wanted:>8} {at(0.5, errors):8.4f}% {at(0.9, errors):8.4f}% {max(errors):8.4f}% "
-              f"{mean(costs):6.3f} {mean(totals):9.0f} {mean(periods):8.1f} {kept:3d}/{count}")
+              f"{mean(costs):6.3f} {mean(totals):9.0f} "
+              f"{mean(periods):13.1f} {at(0.5, periods):6.0f} {at(0.9, periods):5.0f} "
+              f"{max(periods):5.0f} {kept:3d}/{count}", flush=True)

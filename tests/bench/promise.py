@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Does `strut run --accuracy X` keep X? On random scenes of four classes.
+
+  tests/bench/promise.py STRUT [SCENES [SEED [FOLDER]]]
+
+SCENES of each class (default 50): smooth, contact, friction, stiff (promise_scenes.py). X is 1 %, 0.5 %
+or 0.1 %, at random. The reference is `adaptive` with a tolerance of 1e-11; it counts where the same
+with 1e-9 on another grid, or `rk4-events` with a small step, agrees to a twentieth of X; scenes where
+none does, because the motion is chaotic over its time, are made again and counted as such. An error is
+relative to the velocity or to the scale that the summary names, where that is larger. A run that ends
+with "kept": false makes no promise; those are counted by themselves. Scenes that break a promise are
+left in FOLDER. Exit code 1 where more than one in a hundred does, or more than one in ten promise
+nothing.
+"""
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import promise_scenes
+
+strut = sys.argv[1]
+count = int(sys.argv[2]) if len(sys.argv) > 2 else 50
+seed = int(sys.argv[3]) if len(sys.argv) > 3 else 20261121
+folder = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 else None
+
+
+def run(file, *options, limit=600):
+    words = [strut, "run", str(file), "--json", *options]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, timeout=limit, check=False)
+    except subprocess.TimeoutExpired:
+        return None, f"took more than {limit} s"
+    if done.returncode:
+        return None, done.stderr.strip()
+    return json.loads(done.stdout), ""
+
+
+def reference(file, grid, wanted, scale):
+    """The velocity, or None where two ways do not agree."""
+    one, why = run(file, "--integrator", "adaptive", "--step", repr(grid), "--tolerance", "1e-11")
+    if not one:
+        return None, why
+    right = one["velocity"]
+    enough = 0.05 * wanted * max(abs(right), scale)
+    for options in (["adaptive", "--step", repr(grid / 3), "--tolerance", "1e-9"],
+                    ["rk4-events", "--step", repr(min(grid, 0.2 * one["step_limit"]
+                                                      if one["step_limit"] else grid))]):
+        two, why = run(file, "--integrator", *options)
+        if two and abs(two["velocity"] - right) <= enough:
+            return right, ""
+    return None, why or f"{right} or {two['velocity']}"
+
+
+def one_scene(kind, number, work, totals):
+    """One scene that has a reference: 'kept', 'broken' or 'none'."""
+    for attempt in range(20):
+        chance = random.Random(f"{seed} {kind} {number} {attempt}")
+        scene, grid = promise_scenes.make(kind, chance)
+        wanted = chance.choice([0.01, 0.005, 0.001])
+        file = work / f"{kind}-{number}.yaml"
+        file.write_text(json.dumps(scene, indent=1), encoding="utf-8")
+        found, why = run(file, "--accuracy", repr(wanted))
+        scale = found["accuracy"]["scale"] if found else 1e-300
+        right, other = reference(file, grid, wanted, scale)
+        if right is None:
+            totals["chaotic"] += 1
+            continue
+        if not found:
+            return "none", file, f"{why} (right: {right})"
+        error = abs(found["velocity"] - right) / max(abs(right), scale)
+        told = found["accuracy"]
+        totals["forces"] += found["force_evaluations"] + told["check_evaluations"]
+        what = (f"wanted {wanted}, error {error:.2g}, expected {told['expected']:.2g}, "
+                f"v {found['velocity']:.6g} right {right:.6g} scale {scale:.2g}: {told['why']}")
+        if not told["kept"]:
+            return "none", file, what
+        return ("kept" if error <= wanted else "broken"), file, what
+    return "none", file, "no scene with a reference"
+
+
+def main():
+    totals = {"kept": 0, "broken": 0, "none": 0, "chaotic": 0, "forces": 0}
+    with tempfile.TemporaryDirectory() as name:
+        work = folder or pathlib.Path(name)
+        work.mkdir(parents=True, exist_ok=True)
+        print(f"{'class':>9} {'kept':>5} {'broken':>7} {'no promise':>11} {'no reference':>13}")
+        for kind in promise_scenes.CLASSES:
+            part = {"kept": 0, "broken": 0, "none": 0, "chaotic": 0, "forces": 0}
+            for number in range(count):
+                result, file, what = one_scene(kind, number, work, part)
+                part[result] += 1
+                if result != "kept":
+                    print(f"{file.stem}: {result}: {what}", file=sys.stderr, flush=True)
+                elif folder:
+                    file.unlink()
+            print(f"{kind:>9} {part['kept']:5d} {part['broken']:7d} {part['none']:11d} "
+                  f"{part['chaotic']:13d}", flush=True)
+            for key, value in part.items():
+                totals[key] += value
+    scenes = 4 * count
+    promised = totals["kept"] + totals["broken"]
+    print(f"{totals['kept']} of {promised} promises kept; {totals['none']} of {scenes} scenes got none; "
+          f"{totals['chaotic']} scenes without a reference were made again")
+    return int(100 * totals["broken"] > scenes or 10 * totals["none"] > scenes)
+
+
+sys.exit(main())
