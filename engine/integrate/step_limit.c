@@ -188,6 +188,17 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
   return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
 }
 
+strut_status strut_step_limit_at(const strut_model *model, const double *q, const double *rest,
+                                 strut_closed closed, strut_step_limit *limit,
+                                 strut_error *error) {
+  strut_arena arena = {0};
+  strut_status status = limits(model, q, rest, closed, true, &arena, limit);
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of_implicit[region] = limit->of[region];
+  strut_arena_free(&arena);
+  return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+}
+
 double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method) {
   return method->implicit_damper ? limit->of_implicit[method->region] : limit->of[method->region];
 }

@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_STEP_LIMIT_H
 #define STRUT_ENGINE_INTEGRATE_STEP_LIMIT_H
 
+#include "engine/forces/stiffness.h"
 #include "engine/integrate/stability.h"
 
 typedef struct strut_step_limit {
@@ -23,6 +24,11 @@ typedef struct strut_step_limit {
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);
+
+/** The same at positions q and rest lengths `rest`, with those contacts; of_implicit is as `of`. */
+STRUT_API strut_status strut_step_limit_at(const strut_model *model, const double *q,
+                                           const double *rest, strut_closed closed,
+                                           strut_step_limit *limit, strut_error *error);
 
 /** The largest stable step of a method [s]. */
 STRUT_API double strut_step_limit_of(const strut_step_limit *limit,

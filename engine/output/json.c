@@ -39,6 +39,15 @@ static void add_accuracy(strut_json *json, cJSON *to, const strut_accuracy_summa
   strut_json_integer(json, accuracy, "check_evaluations", a->check_evaluations);
 }
 
+static void add_limit_fell(strut_json *json, cJSON *to, const strut_limit_fell *fell) {
+  if (!(fell->limit > 0.0)) return;
+  cJSON *object = strut_json_object(json, to, "step_limit_fell");
+  strut_json_number(json, object, "to", fell->limit);
+  strut_json_number(json, object, "at", fell->time);
+  strut_json_number(json, object, "since", fell->since);
+  strut_json_integer(json, object, "steps", fell->steps);
+}
+
 static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool with_wall_time) {
   strut_json_text(json, to, "status", strut_status_text(s->status));
   strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
@@ -53,6 +62,7 @@ static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_text(json, to, "method", s->method);
   strut_json_number(json, to, "step", s->step);
   strut_json_number(json, to, "step_limit", s->step_limit);
+  add_limit_fell(json, to, &s->limit_fell);
   add_steady(json, to, &s->steady);
   add_accuracy(json, to, &s->accuracy);
   if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);

@@ -73,6 +73,9 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   }
   strut_buffer_add(table, "\n  step        %s, stable up to %s\n", in(s->step, "s").text,
                    in(s->step_limit, "s").text);
+  if (s->limit_fell.limit > 0.0)
+    strut_buffer_add(table, "              TOO LARGE since %s: the largest stable one fell to %s\n",
+                     in(s->limit_fell.since, "s").text, in(s->limit_fell.limit, "s").text);
   strut_buffer_add(table, "  computed    %" PRId64 " forces in %s", s->force_evaluations,
                    in(s->wall_time, "s").text);
   if (s->steps > 0) {

@@ -8,6 +8,7 @@
 #include "engine/base/subnormals.h"
 #include "engine/integrate/step_limit.h"
 #include "engine/run/balance.h"
+#include "engine/run/guard.h"
 #include "engine/run/measure.h"
 #include "engine/run/recording.h"
 #include "engine/run/settle.h"
@@ -30,6 +31,7 @@ typedef struct run {
   void *workspace;
   strut_measure measure;
   strut_recording recording;
+  strut_guard guard;
   strut_stored initial;
   bool watching;
   strut_watch watch;
@@ -137,6 +139,8 @@ static strut_status prepare(run *r) {
   if ((status = place_state(r))) return status;
   r->state->ledger = !r->options->without_ledger;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard))
+    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, begin);
   return strut_recording_create(r->model, r->dt, begin, r->options->sinks,
@@ -155,15 +159,25 @@ static int32_t lost_node(const strut_model *model, const strut_state *state) {
 }
 
 static strut_status diverged(const run *r, int32_t node) {
-  const char *remedy = r->dt > 0.5 * r->summary->step_limit
+  double limit = strut_guard_last_limit(r->model, &r->guard), least = r->summary->step_limit;
+  double seen = (double)r->guard.last * r->dt;
+  const char *remedy = r->dt > 0.5 * fmin(limit, least)
                            ? "use a smaller step"
                            : "look for a member or contact that is far too stiff or a load that "
                              "grows without bound; a smaller step may help too";
+  if (r->guard.lowest > 0.0 && !r->options->force)
+    return strut_guard_fail(&r->guard, r->state, least, r->error);
+  if (limit < 0.99 * least)
+    return strut_fail(r->error, STRUT_DIVERGED,
+                      "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
+                      "at the start: %.4g s, at t = %.9g s: %.4g s); %s",
+                      r->summary->node_names[node], (double)r->state->step * r->dt, r->dt, least,
+                      seen, limit, remedy);
   return strut_fail(r->error, STRUT_DIVERGED,
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
-                    r->summary->node_names[node], (double)r->state->step * r->dt, r->dt,
-                    r->summary->step_limit, remedy);
+                    r->summary->node_names[node], (double)r->state->step * r->dt, r->dt, least,
+                    remedy);
 }
 
 /* A method could not go on. */
@@ -176,6 +190,26 @@ static strut_status stuck(const run *r) {
                               "bars that hold each other"};
   return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
                     r->method->name, (double)r->state->step * r->dt, why[r->state->trouble]);
+}
+
+/* Has most of the energy that was exchanged come from nowhere? So it does where motions grow by
+   themselves, also those that slack cables and open contacts bound. */
+static bool energy_from_nowhere(const run *r) {
+  strut_energy e;
+  if (!(r->dt > 0.5 * r->summary->step_limit)) return false; /* then it is not the step's limit */
+  strut_balance_fill(r->model, r->state, &r->initial, (double)r->state->step * r->dt, &e);
+  return e.residual > 0.5 * (e.moved + fabs(e.initial));
+}
+
+/* Every so many steps: does the step still suit the structure? */
+static strut_status watch_step(run *r) {
+  if (r->state->step < r->guard.next) return STRUT_OK;
+  bool garbage = !r->options->force && energy_from_nowhere(r);
+  if (garbage && !(r->guard.lowest > 0.0)) strut_guard_blame(r->model, r->state, &r->guard);
+  if (!garbage) strut_guard_look(r->model, r->state, &r->guard);
+  if (r->options->force) return STRUT_OK;
+  if (!r->guard.hopeless && !garbage) return STRUT_OK;
+  return strut_guard_fail(&r->guard, r->state, r->summary->step_limit, r->error);
 }
 
 /* A place within the period that no symmetry of the drive prefers. */
@@ -290,6 +324,8 @@ static strut_status step_all(run *r) {
   for (;;) {
     int64_t n = r->state->step;
     int32_t lost = lost_node(r->model, r->state);
+    strut_status guarded = watch_step(r);
+    if (guarded) return guarded;
     if (lost >= 0) return diverged(r, lost);
     strut_status watched = r->watching ? watch_motion(r) : STRUT_OK;
     if (watched) return watched;
@@ -330,6 +366,10 @@ static void fill_summary(run *r, strut_status status) {
   s->duration = (double)(s->steps + r->shot_periods * r->period_steps) * r->dt;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
+  s->limit_fell = (strut_limit_fell){.limit = r->guard.lowest,
+                                     .time = r->guard.lowest_time,
+                                     .since = r->guard.first_time,
+                                     .steps = r->guard.steps_below};
   strut_measure_finish(r->model, &r->measure, s);
   if (r->watching) strut_watch_finish(&r->watch, s);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];

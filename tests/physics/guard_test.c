@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A structure that becomes stiffer than it was at its start, and a step that then no longer suits. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/integrate/step_limit.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double STIFFNESS = 1000, MASS = 2, REST = 0.6, STROKE = 0.3, FREQUENCY = 0.002;
+static const double PI = 3.14159265358979323846;
+
+/*
+ * A mass between two springs of length 1 that can move across them only: w^2 = 2 t / (L m) with the
+ * tension t. Actuators shorten the springs' rest lengths slowly, so that w grows from 20 to 26.5
+ * rad/s within a quarter of their period.
+ */
+static void tightening(strut_scene *scene, const char *method, double step) {
+  strut_scene_init(scene);
+  build_support(scene, -1, 0);
+  build_support(scene, 1, 0);
+  build_mass(scene, 0, 0, MASS);
+  scene->nodes[2].fixed[0] = true;
+  scene->nodes[2].velocity[1] = 1e-3;
+  int32_t signal = build_sine(scene, -STROKE, FREQUENCY);
+  for (int32_t i = 0; i < 2; i++)
+    build_actuator(scene, build_sized(scene, STRUT_SPRING, i, 2, STIFFNESS, 0, 0, REST), signal);
+  scene->experiment.integrator = method;
+  motion_experiment(scene, step, 0.5 / FREQUENCY);
+}
+
+/* When w has reached so much [s]. */
+static double when(double omega) {
+  double tension = omega * omega * MASS / 2, stroke = tension / STIFFNESS - (1 - REST);
+  return asin(stroke / STROKE) / (2 * PI * FREQUENCY);
+}
+
+static strut_status run(const strut_scene *scene, bool force, strut_summary *s, strut_error *e) {
+  strut_run_options options = {.force = force};
+  strut_model *model = motion_compile(scene);
+  *e = (strut_error){0};
+  strut_status status = strut_simulate(model, &options, s, e);
+  strut_model_free(model);
+  return status;
+}
+
+static const char *const METHODS[] = {"rk4", "verlet", "euler", "rk4-events", "verlet-events",
+                                      "euler-events"};
+
+static void check(const char *name) {
+  const strut_integrator *method = strut_integrator_find(name);
+  double reach = method->region == STRUT_REGION_RK4 ? 2 * sqrt(2) : 2, step = reach / 23.5;
+  double looks = 2 * 256 / method->evaluations * step, crossing = when(23.5);
+  strut_scene scene;
+  strut_summary s;
+  strut_error error;
+  tightening(&scene, name, step);
+  assert_int_equal(run(&scene, false, &s, &error), STRUT_DIVERGED);
+  print_message("%s: %s\n", name, error.message);
+  assert_non_null(strstr(error.message, "t = "));
+  assert_relative(s.step_limit, reach / 20, 1e-6);
+  if (s.limit_fell.limit > 0) {
+    assert_non_null(strstr(error.message, "use solver.step <= "));
+    assert_within(s.limit_fell.since, crossing, crossing + looks);
+    assert_within(s.limit_fell.limit, reach / 26.5, step);
+  } else { /* all happened between two looks; the last one saw it coming */
+    const char *last = strstr(error.message, ", at t = ");
+    double time = last ? strtod(last + 9, NULL) : 0;
+    assert_non_null(strstr(error.message, "use a smaller step"));
+    assert_within(time, crossing - looks, crossing);
+  }
+  assert_true(s.duration < 0.5 / FREQUENCY);
+  double stopped = s.duration;
+  strut_summary_free(&s);
+  strut_status status = run(&scene, true, &s, &error); /* --force: to the end, or out of bounds */
+  assert_true(status == STRUT_OK || strstr(error.message, "node 'n3'"));
+  assert_true(s.duration >= stopped);
+  strut_summary_free(&s);
+  scene.experiment.step = 0.99 * reach / 26.46;
+  assert_int_equal(run(&scene, false, &s, &error), STRUT_OK);
+  assert_true(s.limit_fell.limit == 0);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_a_structure_that_tightens(void **unused) {
+  (void)unused;
+  for (size_t i = 0; i < sizeof METHODS / sizeof METHODS[0]; i++) check(METHODS[i]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_structure_that_tightens),
+  };
+  return cmocka_run_group_tests_name("guard", tests, NULL, NULL);
+}
