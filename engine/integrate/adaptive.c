@@ -10,7 +10,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/located_kernel.h"
 
-enum { PAIR = 7, V = 1, A = V + PAIR, STAGES = A + PAIR };
+enum { PAIR = 7, V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
 
 static const double ahead[PAIR] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
 static const double table[PAIR][PAIR - 1] = {

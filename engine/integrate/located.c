@@ -218,6 +218,26 @@ static double step(const strut_model *model, strut_state *state, strut_located *
   return h;
 }
 
+/*
+ * Error control may take long within one step of the grid: when interrupted it goes back to the
+ * begin of it. The last two stages hold that.
+ */
+static bool given_up(const strut_model *model, strut_state *state, strut_located *l) {
+  double **kept = l->stage + l->stepper->stages - 2;
+  bool wanted = state->interrupt && *state->interrupt;
+  if (l->done == 0.0) {
+    copy(model->length, state->q, kept[0]);
+    copy(model->length, state->v, kept[1]);
+    copy(STRUT_POWER_ROOM, state->work, l->work);
+  } else if (wanted) {
+    copy(model->length, kept[0], state->q);
+    copy(model->length, kept[1], state->v);
+    copy(STRUT_POWER_ROOM, l->work, state->work);
+  }
+  if (wanted) state->trouble = STRUT_TROUBLE_INTERRUPT;
+  return wanted;
+}
+
 static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
   double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
   for (int32_t i = 0; i < model->contacts.count; i++) {
@@ -233,7 +253,7 @@ void strut_located_advance(const strut_model *model, strut_state *state, void *w
   if (!l->started) strut_located_restart(model, state, workspace, dt);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (l->stepper->quiet && l->at_once == 0) l->stepper->quiet(model, state, l, dt, end);
-    if (state->step == end) break;
+    if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
     double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
     located_go_on(state, l, step(model, state, l, t, h, dt), dt);
   }

@@ -74,7 +74,9 @@ typedef struct strut_stepper {
   /** Fills l->next->q and what trial needs beside it, where positions are known before forces are:
       q + h v + h^2/2 a at any fraction of a step. trial expects it done. NULL: they are not. */
   void (*predict)(const strut_model *model, strut_located *l, double h);
-  bool adaptive; /* l->error is the local error over what is allowed; l->h is the step to try */
+  /* l->error is the local error over what is allowed; l->h is the step to try; the last two stages
+     are not trial's: they hold the state at the begin of the grid step */
+  bool adaptive;
   /** Takes steps up to grid point `end` while nothing happens, with the bits that trial gives; stops
       before the step in which something does, with l->tried if it has tried that one. May be NULL. */
   void (*quiet)(const strut_model *model, strut_state *state, strut_located *l, double dt,
@@ -87,6 +89,7 @@ struct strut_located {
   strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
   double **stage;           /* (stepper->stages) arrays (length) */
   double gained[STRUT_POWER_ROOM];
+  double work[STRUT_POWER_ROOM]; /* adaptive: at the begin of the grid step [J] */
   uint8_t *mode;            /* (contacts) strut_contact_mode */
   int8_t *side, *damper;    /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
   int32_t *closed;          /* (closed_count) contacts that touch, ascending */

@@ -37,6 +37,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   size_t slots = (size_t)model->members.slots * sizeof(double);
   state->step = 0;
   state->evaluations = state->events = 0;
+  state->interrupt = NULL;
   state->trouble = STRUT_TROUBLE_NONE;
   state->drive_time = (double)NAN;
   state->refined_until = -HUGE_VAL;

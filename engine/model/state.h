@@ -8,6 +8,8 @@
 #ifndef STRUT_ENGINE_MODEL_STATE_H
 #define STRUT_ENGINE_MODEL_STATE_H
 
+#include <signal.h>
+
 #include "engine/model/model.h"
 
 /** Powers that the ledger integrates beside the motion [W]. Kernels write them by fours. */
@@ -27,7 +29,8 @@ typedef enum strut_trouble {
   STRUT_TROUBLE_NONE,
   STRUT_TROUBLE_STEP,   /* the step has become too small to matter */
   STRUT_TROUBLE_NEWTON, /* an implicit step has no solution nearby */
-  STRUT_TROUBLE_RIGID   /* rigid bars cannot keep their lengths */
+  STRUT_TROUBLE_RIGID,  /* rigid bars cannot keep their lengths */
+  STRUT_TROUBLE_INTERRUPT /* *interrupt was set */
 } strut_trouble;
 
 typedef struct strut_state {
@@ -40,6 +43,8 @@ typedef struct strut_state {
   double refined_until;           /* methods that refine after touchdowns do so until then [s] */
   int64_t evaluations;            /* of the forces since the reset */
   int64_t events;                 /* switches located in time, since the reset */
+  const volatile sig_atomic_t *interrupt; /* a method whose steps may take long gives up soon after
+                                             it becomes non-zero; NULL after the reset */
   strut_trouble trouble;          /* why a method could not go on; it stays on the latest grid point */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */

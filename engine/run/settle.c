@@ -45,11 +45,18 @@ static strut_status relax(const strut_model *model, strut_state *state,
   size_t bytes = (size_t)both * sizeof(double);
   double speed = HUGE_VAL, push = HUGE_VAL;
   memset(state->v, 0, bytes);
+  state->interrupt = interrupt;
   if (method->restart) method->restart(model, state, workspace, dt);
   while ((double)state->step * dt < wanted->limit) {
     if (interrupt && *interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
     method->advance(model, state, workspace, dt, 1);
+    if (state->trouble == STRUT_TROUBLE_INTERRUPT) continue;
+    if (state->trouble)
+      return strut_fail(error, STRUT_DIVERGED,
+                        "%s could not go on while coming to rest, after %g s; settle by another "
+                        "method or look for a member of zero length",
+                        method->name, (double)state->step * dt);
     double kinetic = strut_energy_kinetic(model, state->v);
     if (!isfinite(kinetic))
       return strut_fail(error, STRUT_DIVERGED,

@@ -138,6 +138,7 @@ static strut_status prepare(run *r) {
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   if ((status = place_state(r))) return status;
   r->state->ledger = !r->options->without_ledger;
+  r->state->interrupt = r->options->interrupt;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard))
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
@@ -187,7 +188,8 @@ static strut_status stuck(const run *r) {
                              "larger solver.tolerance, or look for a member of zero length",
       [STRUT_TROUBLE_NEWTON] = "the implicit step has no solution nearby; use a smaller step",
       [STRUT_TROUBLE_RIGID] = "rigid bars cannot keep their lengths; use a smaller step, or look for "
-                              "bars that hold each other"};
+                              "bars that hold each other",
+      [STRUT_TROUBLE_INTERRUPT] = "it was interrupted"};
   return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
                     r->method->name, (double)r->state->step * r->dt, why[r->state->trouble]);
 }
@@ -336,10 +338,10 @@ static strut_status step_all(run *r) {
       if (status) return status;
     }
     if (n >= r->steps) return STRUT_OK;
-    if (r->state->trouble) return stuck(r);
     if (o->interrupt && *o->interrupt)
       return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
                         (double)n * r->dt);
+    if (r->state->trouble) return stuck(r);
     if (o->progress && strut_run_clock() - told > 0.1) {
       o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
       told = strut_run_clock();

@@ -40,7 +40,19 @@ out_has "Hopper: interrupted"
 interrupt TERM --quiet
 out_empty
 
+# A method that chooses its steps stops within a step of the grid, and goes back to its begin.
+sed -e 's/^solver: .*/solver: {integrator: adaptive, step: step}/' -e '/^output:/d' "$hopper" >grid.yaml
+hopper=grid.yaml
+interrupt INT --set step=1e5 --json
+out_has '"status":	"interrupted"'
+out_has '"steps":	0'
+err_has "interrupted at t = 0 s"
+interrupt TERM --set step=1e5 --quiet
+sed -i 's/^run: .*/initial: {settle: {friction: kept, limit: 1e9, speed: 1e-15, acceleration: 1e-15}}\n&/' grid.yaml
+interrupt INT --set step=1e5
+err_has "interrupted while coming to rest"
+
 # timeout(1) sends its signal twice.
-timeout -s INT 1 "$strut" run "$hopper" --set seconds=1e6 --quiet -o twice 2>err </dev/null
+timeout -s INT 1 "$strut" run "$here/hopper.yaml" --set seconds=1e6 --quiet -o twice 2>err </dev/null
 grep -q '"status":	"interrupted"' twice/summary.json || fail "killed by timeout's second signal"
 done_testing
