@@ -41,14 +41,16 @@ interrupt TERM --quiet
 out_empty
 
 # A method that chooses its steps stops within a step of the grid, and goes back to its begin.
-sed -e 's/^solver: .*/solver: {integrator: adaptive, step: step}/' -e '/^output:/d' "$hopper" >grid.yaml
+sed -e 's/^solver: .*/solver: {integrator: adaptive, step: step}/' -e '/^output:/d' \
+  "$hopper" >grid.yaml
 hopper=grid.yaml
 interrupt INT --set step=1e5 --json
 out_has '"status":	"interrupted"'
 out_has '"steps":	0'
 err_has "interrupted at t = 0 s"
 interrupt TERM --set step=1e5 --quiet
-sed -i 's/^run: .*/initial: {settle: {friction: kept, limit: 1e9, speed: 1e-15, acceleration: 1e-15}}\n&/' grid.yaml
+never='friction: kept, limit: 1e9, speed: 1e-15, acceleration: 1e-15'
+sed -i "s/^run: .*/initial: {settle: {$never}}\\n&/" grid.yaml
 interrupt INT --set step=1e5
 err_has "interrupted while coming to rest"
 
