@@ -225,14 +225,15 @@ static double step(const strut_model *model, strut_state *state, strut_located *
 static bool given_up(const strut_model *model, strut_state *state, strut_located *l) {
   double **kept = l->stage + l->stepper->stages - 2;
   bool wanted = state->interrupt && *state->interrupt;
+  size_t bytes = (size_t)model->length * sizeof(double);
   if (l->done == 0.0) {
-    copy(model->length, state->q, kept[0]);
-    copy(model->length, state->v, kept[1]);
-    copy(STRUT_POWER_ROOM, state->work, l->work);
+    memcpy(kept[0], state->q, bytes);
+    memcpy(kept[1], state->v, bytes);
+    memcpy(l->work, state->work, sizeof l->work);
   } else if (wanted) {
-    copy(model->length, kept[0], state->q);
-    copy(model->length, kept[1], state->v);
-    copy(STRUT_POWER_ROOM, l->work, state->work);
+    memcpy(state->q, kept[0], bytes);
+    memcpy(state->v, kept[1], bytes);
+    memcpy(state->work, l->work, sizeof l->work);
   }
   if (wanted) state->trouble = STRUT_TROUBLE_INTERRUPT;
   return wanted;
