@@ -25,39 +25,83 @@ static const double table[PAIR][PAIR - 1] = {
 static const double difference[PAIR] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
                                         -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
-/* out = z + h sum_j weight[j] k[j] over `count` stages */
-STRUT_INLINE void add_stages(int32_t n, double h, const double *z, double *const *k,
-                             const double *weight, int count, double *out) {
+/* sum_j weight[j] k[j] over `count` stages at i; where these are constants no weight is looked at. */
+STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, int32_t i) {
+  strut_lanes sum = weight[0] * strut_lanes_load_pairs(k[0] + i);
+#pragma GCC unroll 8
+  for (int j = 1; j < count; j++)
+    if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load_pairs(k[j] + i);
+  return sum;
+}
+
+/* Stage k: q = q0 + h sum v, speed = v0 + h sum a, over the stages before it. */
+STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
+                        double *const *a, int k, double *restrict q, double *restrict speed) {
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes sum = weight[0] * strut_lanes_load_pairs(k[0] + i);
-    for (int j = 1; j < count; j++)
-      if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load_pairs(k[j] + i);
-    strut_lanes_store(out + i, strut_lanes_load(z + i) + h * sum);
+    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, table[k], k, i));
+    strut_lanes_store(speed + i, strut_lanes_load(now->v + i) + h * weighted(a, table[k], k, i));
   }
 }
 
-static double largest(int32_t n, const double *x) {
-  double most = 0.0;
-  for (int32_t i = 0; i < n; i++) {
-    if (!(fabs(x[i]) <= most)) most = fabs(x[i]);
-    if (isnan(x[i])) return HUGE_VAL;
+STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
+                           double *const *a, int k, double *restrict q) {
+  switch (k) {
+    case 1:
+      stage(n, h, now, v, a, 1, q, v[1]);
+      break;
+    case 2:
+      stage(n, h, now, v, a, 2, q, v[2]);
+      break;
+    case 3:
+      stage(n, h, now, v, a, 3, q, v[3]);
+      break;
+    case 4:
+      stage(n, h, now, v, a, 4, q, v[4]);
+      break;
+    case 5:
+      stage(n, h, now, v, a, 5, q, v[5]);
+      break;
+    default:
+      stage(n, h, now, v, a, 6, q, v[6]);
+      break;
   }
-  return most;
 }
 
-static double error_of(const strut_model *model, strut_located *l, double h, double *const *v,
-                       double *const *a, double *scratch) {
-  int32_t n = model->length;
-  for (int32_t i = 0; i < n; i++) scratch[i] = 0.0;
-  add_stages(n, h, scratch, v, difference, PAIR, scratch);
-  double position = largest(n, scratch);
-  for (int32_t i = 0; i < n; i++) scratch[i] = 0.0;
-  add_stages(n, h, scratch, a, difference, PAIR, scratch);
-  double velocity = largest(n, scratch);
-  l->fastest = fmax(l->fastest, fmax(largest(n, l->now->v), largest(n, l->next->v)));
-  double error = position / (0.01 * model->size * l->tolerance);
-  if (velocity > 0.0) error = fmax(error, velocity / (l->fastest * l->tolerance));
-  return error;
+/* The largest magnitude seen so far, lane by lane; `poison` is no number once one was none. */
+typedef struct largest {
+  strut_lanes most, poison;
+} largest;
+
+STRUT_INLINE largest larger_of(largest so_far, strut_lanes x) {
+  strut_lanes size = strut_lanes_magnitude(x);
+  return (largest){strut_lanes_choose(size > so_far.most, size, so_far.most),
+                   so_far.poison + (x - x)};
+}
+
+STRUT_INLINE double largest_of(largest x) {
+  double most = x.most[0], poison = x.poison[0];
+  for (int l = 1; l < STRUT_LANES; l++) {
+    most = x.most[l] > most ? x.most[l] : most;
+    poison += x.poison[l];
+  }
+  return poison == 0.0 ? most : HUGE_VAL;
+}
+
+/* Local error over what is allowed, by the difference of the pair. */
+STRUT_INLINE double error_of(const strut_model *model, strut_located *l, double h, double *const *v,
+                             double *const *a) {
+  largest position = {0}, velocity = {0}, speed = {0};
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    position = larger_of(position, h * weighted(v, difference, PAIR, i));
+    velocity = larger_of(velocity, h * weighted(a, difference, PAIR, i));
+    speed = larger_of(speed, strut_lanes_load(l->now->v + i));
+    speed = larger_of(speed, strut_lanes_load(l->next->v + i));
+  }
+  double fast = largest_of(speed), off = largest_of(velocity);
+  if (fast > l->fastest) l->fastest = fast;
+  double error = largest_of(position) / (0.01 * model->size * l->tolerance);
+  double other = off > 0.0 ? off / (l->fastest * l->tolerance) : 0.0;
+  return other > error ? other : error;
 }
 
 /*
@@ -150,15 +194,14 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
     l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
   for (int k = 1; k < PAIR; k++) {
     double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
-    add_stages(n, h, l->now->q, v, table[k], k, q);
-    add_stages(n, h, l->now->v, a, table[k], k, v[k]);
+    stage_of(n, h, l->now, v, a, k, q);
     if (k == PAIR - 1) break;
     located_acceleration(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
       l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
   }
   located_finish(model, state, l, t + h, l->next, ledger);
-  l->error = error_of(model, l, h, v, a, l->stage[0]);
+  l->error = error_of(model, l, h, v, a);
   settle_ties(model, l);
   if (!(l->error <= 1.0) || model->contacts.count == 0) return;
   double part = part_within_band(model, l);
