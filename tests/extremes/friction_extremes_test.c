@@ -90,7 +90,7 @@ static void test_friction_of_a_million_holds_a_frame(void **unused) {
 
 /*
  * Karnopp's band does not hold: it keeps the speed with which a node came into it. Methods without
- * events are not here: mu N changes the slip by 2.5e4 bands in a step, and they blow up.
+ * events are not here: mu N changes the slip by millions of bands in a step, and they blow up.
  */
 static void test_karnopps_band_creeps_at_most_at_its_edge(void **unused) {
   (void)unused;
