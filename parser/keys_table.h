@@ -110,7 +110,7 @@
   X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, false, 0, "every pair that can carry", "", "Contact nodes to hold in turn: of each list the first is pinned, the others roll on the ground.") \
   X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, NOT_NEGATIVE, false, 0, "until little can be missing", "", "Random starts for each list of supports.") \
   X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, NOT_NEGATIVE, false, 0, "1", "", "Of the random starts; the same seed gives the same answer.") \
-  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4|euler|verlet|rk4-events|euler-events|verlet-events|adaptive", "The method.") \
+  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4|euler|verlet|rk4-events|euler-events|verlet-events|adaptive|midpoint", "The method.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step; of `adaptive` the longest. A run needs it, or `accuracy`.") \
   X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, false, 0, "1e-6", "", "Of `adaptive`: local error of a step, relative.") \
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, false, 0, "from the scene", "", "Of methods with events: so many times shorter steps after a touchdown; 1 for none.") \

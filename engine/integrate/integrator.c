@@ -8,7 +8,7 @@
 static const strut_integrator *const table[] = {
     &strut_integrator_rk4,        &strut_integrator_euler,        &strut_integrator_verlet,
     &strut_integrator_rk4_events, &strut_integrator_euler_events, &strut_integrator_verlet_events,
-    &strut_integrator_adaptive};
+    &strut_integrator_adaptive,   &strut_integrator_midpoint};
 
 const strut_integrator *strut_integrator_at(size_t i) {
   return i < sizeof table / sizeof table[0] ? table[i] : NULL;
@@ -39,6 +39,11 @@ strut_status strut_integrator_check(const strut_model *model, strut_error *error
                       "solver.integrator rk4-events, verlet-events or adaptive instead of %s, or "
                       "the law karnopp",
                       scene->nodes[model->contacts.entry[exact].node].name, name);
+  if (method->no_ground && model->contacts.count > 0)
+    return strut_fail(error, STRUT_USAGE,
+                      "%s cannot step over contacts, and node '%s' may touch the ground; use "
+                      "solver.integrator verlet-events, rk4-events or adaptive",
+                      name, scene->nodes[model->contacts.entry[0].node].name);
   if (!(model->plan & STRUT_TERM_RIGID)) return STRUT_OK;
   if (!method->rigid)
     return strut_fail(error, STRUT_USAGE,

@@ -26,6 +26,7 @@ typedef struct strut_integrator {
   bool implicit_damper;    /* the ground's dampers do not limit the step */
   bool events;             /* locates events: modes of contacts are frozen within a step */
   bool rigid;              /* keeps the lengths of rigid bars */
+  bool no_ground;          /* cannot step over contacts */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
   void *(*create)(const strut_model *model, strut_state *state);
   /** Must be called whenever someone else has changed q or v; NULL where nothing depends on it. */
@@ -44,7 +45,8 @@ STRUT_API const strut_integrator *strut_integrator_at(size_t i);
 STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 /**
  * Can the scene's method run the model? STRUT_USAGE, with what to change, where there is no such
- * method, exact Coulomb friction has none with events, or rigid bars have none that keeps them;
+ * method, exact Coulomb friction has none with events, contacts have one that cannot step over them,
+ * or rigid bars have none that keeps them;
  * STRUT_SINGULAR with the bar where rigid bars hold each other.
  */
 STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_error *error);
@@ -52,6 +54,6 @@ STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_er
 /* The rows of the table. */
 extern const strut_integrator strut_integrator_rk4, strut_integrator_euler,
     strut_integrator_verlet, strut_integrator_rk4_events, strut_integrator_euler_events,
-    strut_integrator_verlet_events, strut_integrator_adaptive;
+    strut_integrator_verlet_events, strut_integrator_adaptive, strut_integrator_midpoint;
 
 #endif

@@ -30,7 +30,8 @@ typedef enum strut_trouble {
   STRUT_TROUBLE_STEP,   /* the step has become too small to matter */
   STRUT_TROUBLE_NEWTON, /* an implicit step has no solution nearby */
   STRUT_TROUBLE_RIGID,  /* rigid bars cannot keep their lengths */
-  STRUT_TROUBLE_INTERRUPT /* *interrupt was set */
+  STRUT_TROUBLE_INTERRUPT, /* *interrupt was set */
+  STRUT_TROUBLE_IMPLICIT /* an implicit step of the whole structure has no solution nearby */
 } strut_trouble;
 
 typedef struct strut_state {
@@ -46,6 +47,7 @@ typedef struct strut_state {
   const volatile sig_atomic_t *interrupt; /* a method whose steps may take long gives up soon after
                                              it becomes non-zero; NULL after the reset */
   strut_trouble trouble;          /* why a method could not go on; it stays on the latest grid point */
+  int32_t trouble_node;           /* where, with STRUT_TROUBLE_IMPLICIT */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */

@@ -190,6 +190,12 @@ static strut_status stuck(const run *r) {
       [STRUT_TROUBLE_RIGID] = "rigid bars cannot keep their lengths; use a smaller step, or look for "
                               "bars that hold each other",
       [STRUT_TROUBLE_INTERRUPT] = "it was interrupted"};
+  if (r->state->trouble == STRUT_TROUBLE_IMPLICIT)
+    return strut_fail(r->error, STRUT_DIVERGED,
+                      "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g "
+                      "s; use a smaller step, or look there for a member that passes through no length",
+                      r->method->name, (double)r->state->step * r->dt,
+                      r->summary->node_names[r->state->trouble_node], r->dt);
   return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
                     r->method->name, (double)r->state->step * r->dt, why[r->state->trouble]);
 }

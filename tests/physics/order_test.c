@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every fixed-step method of the table shows the order that its row claims, on smooth scenes. */
 #include <math.h>
+#include <string.h>
 
 #include "tests/physics/smooth_scenes.h"
 #include "tests/support/check.h"
@@ -57,7 +58,7 @@ static void test_every_method_has_its_order(void **unused) {
     reach(&smooth_scenes[s], "rk4", REFERENCE, exact);
     const strut_integrator *method;
     for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
-      if (method->region == STRUT_REGION_ALL) continue; /* chooses its steps itself */
+      if (!strcmp(method->name, "adaptive")) continue; /* chooses its steps itself */
       double width = method->order == 2 ? 0.05 : 0.1;
       double order = order_of(&smooth_scenes[s], method, exact);
       failures += !(fabs(order - method->order) <= width);

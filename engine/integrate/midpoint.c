@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Implicit midpoint with a fixed step, for stiff members without ground: velocities and positions
+ * from M (v1 - v0) = h F, q1 - q0 = h (v0 + v1) / 2, where the members' forces in F are averaged over
+ * the step so that energies change by what is done on them (averaged.h). Of order 2, stable at every
+ * step, and undamped: motions too fast for the step stay as large as they are.
+ *
+ * Newton's method in the mean velocity u: R = M (u - v0) - h/2 F, to near rounding. The factor is
+ * kept from step to step and made anew where it no longer serves.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/midpoint_matrix.h"
+
+enum { MOST_TURNS = 30, MOST_HALVINGS = 4 };
+/* Corrections that shrink by less than this want a new factor. */
+static const double SLOW = 0.2;
+/* Corrections within so many times rounding are the last; where they stall within the second. */
+static const double CLOSE = 8.0, STALLED = 1e5;
+static const double ROUNDING = 0x1p-52;
+
+typedef struct midpoint_workspace {
+  strut_averaged step;
+  strut_midpoint_matrix matrix;
+  double *u, *q1;           /* (length) mean velocity, positions at the end */
+  double *before[2];        /* (length) mean velocities of the last two steps, latest first */
+  int known;                /* of those */
+  double *grid[2];          /* (length) positions and velocities on the latest grid point */
+  double *held;             /* (members) tension in the step before [N] */
+  double *x, *residual;     /* (n) correction, and what it is to undo */
+  double stiffest;          /* about the largest squared frequency [1/s^2] */
+  double factor_step;       /* the step that the factor is for [s]; 0: none; below: never restarted */
+} midpoint_workspace;
+
+/* Stiffness over mass at the worst node. */
+static double stiffest_of(const strut_model *model) {
+  const strut_member_table *t = &model->members;
+  double most = 0.0;
+  for (int32_t j = 0; j < t->count; j++)
+    for (int e = 0; e < 2; e++) {
+      uint32_t at = e ? t->to[j] : t->from[j];
+      if (model->fixed[at] && model->fixed[at + 1]) continue;
+      most = fmax(most, 4.0 * t->stiffness[j] / model->weight[at / 2]);
+    }
+  return most;
+}
+
+static void *midpoint_create(const strut_model *model, strut_state *state) {
+  strut_arena *arena = &state->arena;
+  midpoint_workspace *w = strut_arena_allocate(arena, 1, sizeof *w);
+  size_t both = (size_t)model->length;
+  if (!w || !strut_averaged_create(model, state, &w->step) ||
+      !strut_midpoint_matrix_create(model, arena, &w->matrix))
+    return NULL;
+  double **all[] = {&w->u,       &w->q1,      &w->before[0], &w->before[1],
+                    &w->grid[0], &w->grid[1], &w->x,         &w->residual};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    if (!(*all[i] = strut_arena_allocate(arena, both, sizeof(double)))) return NULL;
+  w->held = strut_arena_allocate(arena, (size_t)model->members.count, sizeof *w->held);
+  if (!w->held) return NULL;
+  w->stiffest = stiffest_of(model);
+  w->factor_step = -1.0;
+  return w;
+}
+
+static void midpoint_restart(const strut_model *model, strut_state *state, void *workspace,
+                             double dt) {
+  midpoint_workspace *w = workspace;
+  if (model->plan & STRUT_TERM_DRIVE) strut_drive_apply(model, state, (double)state->step * dt);
+  strut_averaged_tensions(model, state, w->held);
+  w->known = 0;
+  w->factor_step = 0.0;
+}
+
+/* The mean velocity goes on as it did, or else as the velocity is. */
+static void guess(const strut_model *model, const strut_state *state, midpoint_workspace *w,
+                  bool plain) {
+  for (int32_t i = 0; i < model->length; i++)
+    w->u[i] = w->known < 2 || plain ? state->v[i] : 2.0 * w->before[0][i] - w->before[1][i];
+}
+
+/* Correction at u into x. False where there are no numbers. */
+static bool correct(const strut_model *model, strut_state *state, midpoint_workspace *w, double *x) {
+  const strut_midpoint_matrix *m = &w->matrix;
+  double h = w->step.h;
+  for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + h * w->u[i];
+  strut_averaged_forces(model, state, &w->step, w->q1, w->u);
+  for (int32_t i = 0; i < model->length; i++) w->u[i] -= state->v[i];
+  strut_midpoint_matrix_mass(m, w->u, x);
+  for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
+  bool finite = true;
+  for (int32_t i = 0; i < m->n; i++) {
+    x[i] = 0.5 * h * state->force[m->coordinate[i]] - x[i];
+    finite = finite && isfinite(x[i]);
+  }
+  return finite;
+}
+
+static double size_of(const strut_midpoint_matrix *m, const double *x) {
+  double most = 0.0;
+  for (int32_t i = 0; i < m->n; i++) most = fmax(most, fabs(x[i]));
+  return most;
+}
+
+/* u += factor x */
+static void move(midpoint_workspace *w, const double *x, double factor) {
+  for (int32_t i = 0; i < w->matrix.n; i++) w->u[w->matrix.coordinate[i]] += factor * x[i];
+}
+
+/* What rounding leaves of a correction [m/s]. */
+static double rounding_of(const strut_model *model, const strut_state *state,
+                          const midpoint_workspace *w) {
+  double speed = 0.0, reach = 0.0, h = w->step.h;
+  for (int32_t i = 0; i < model->length; i++) {
+    speed = fmax(speed, fabs(w->u[i]));
+    reach = fmax(reach, fabs(state->q[i]));
+  }
+  return ROUNDING * (speed + reach * fmin(1.0 / h, h * w->stiffest));
+}
+
+static bool renew(const strut_model *model, midpoint_workspace *w, bool stiff) {
+  w->factor_step = w->step.h;
+  return strut_midpoint_matrix_update(model, &w->step, w->held, stiff, &w->matrix);
+}
+
+/*
+ * Newton's method from the guess in u. What turns with members is the tension of the step before, not
+ * that of an iterate, in which a stiff member is far too long or short until the next one. Where
+ * corrections grow although the factor is new, only a part of each is taken.
+ */
+static bool iterate(const strut_model *model, strut_state *state, midpoint_workspace *w,
+                    bool stiff) {
+  double before = 0.0, part = 1.0;
+  size_t bytes = (size_t)w->matrix.n * sizeof *w->x;
+  for (int turn = 0; turn < MOST_TURNS; turn++) {
+    if (!correct(model, state, w, w->x)) return false;
+    memcpy(w->residual, w->x, bytes);
+    bool missing = w->factor_step != w->step.h || (turn == 0 && stiff);
+    bool fresh = missing || strut_midpoint_matrix_stale(model, &w->step, &w->matrix);
+    if (fresh && !renew(model, w, stiff)) return false;
+    strut_refactor_solve(w->matrix.factor, w->x);
+    double size = size_of(&w->matrix, w->x), close = rounding_of(model, state, w);
+    if (turn > 0 && size > SLOW * before && size > CLOSE * close) {
+      if (size <= STALLED * close && size > 0.5 * before) return true;
+      if (!fresh && !renew(model, w, stiff)) return false;
+      memcpy(w->x, w->residual, bytes);
+      strut_refactor_solve(w->matrix.factor, w->x);
+      size = size_of(&w->matrix, w->x);
+      part = size > 2.0 * before ? fmax(0.5 * part, 1.0 / 64.0) : fmin(1.0, 2.0 * part);
+    } else {
+      part = 1.0;
+    }
+    if (!isfinite(size)) return false;
+    move(w, w->x, part);
+    if (size <= CLOSE * close) return true;
+    before = size;
+  }
+  return false;
+}
+
+/* The node that is farthest from having a solution. */
+static int32_t worst_node(const midpoint_workspace *w) {
+  int32_t worst = 0;
+  for (int32_t i = 0; i < w->matrix.n; i++)
+    if (!(fabs(w->residual[i]) <= fabs(w->residual[worst]))) worst = i;
+  return w->matrix.coordinate[worst] / 2;
+}
+
+/* Is there a solution? It is left in u, q1 and the powers. */
+static bool solve(const strut_model *model, strut_state *state, midpoint_workspace *w) {
+  if (w->matrix.n == 0) {
+    memcpy(w->q1, state->q, (size_t)model->length * sizeof *w->q1);
+    strut_averaged_forces(model, state, &w->step, w->q1, w->u);
+    return true;
+  }
+  for (int attempt = 0; attempt < 2; attempt++) {
+    guess(model, state, w, attempt > 0);
+    if (iterate(model, state, w, attempt > 0)) return true;
+    w->factor_step = 0.0;
+  }
+  return false;
+}
+
+static void finish(const strut_model *model, strut_state *state, midpoint_workspace *w) {
+  double h = w->step.h, *oldest = w->before[1];
+  for (int32_t i = 0; i < w->matrix.n; i++) {
+    int32_t at = w->matrix.coordinate[i];
+    state->q[at] += h * w->u[at];
+    state->v[at] = 2.0 * w->u[at] - state->v[at];
+  }
+  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++)
+    state->work[p] += h * state->power[p];
+  memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
+  w->before[1] = w->before[0], w->before[0] = w->u, w->u = oldest;
+  if (w->known < 2) w->known++;
+}
+
+/*
+ * A step, or where that has no solution its halves: cables that go slack and taut may chase Newton's
+ * method round in circles, which seldom happens twice at one place.
+ */
+static bool take(const strut_model *model, strut_state *state, midpoint_workspace *w, double begin,
+                 double h, int halvings) {
+  strut_averaged_begin(model, state, state->q, begin, h, &w->step);
+  if (solve(model, state, w)) {
+    finish(model, state, w);
+    return true;
+  }
+  w->known = 0;
+  if (halvings == 0) return false;
+  bool done = take(model, state, w, begin, 0.5 * h, halvings - 1) &&
+              take(model, state, w, begin + 0.5 * h, 0.5 * h, halvings - 1);
+  w->known = 0; /* mean velocities of other steps */
+  return done;
+}
+
+static void midpoint_advance(const strut_model *model, strut_state *state, void *workspace,
+                             double dt, int64_t count) {
+  midpoint_workspace *w = workspace;
+  size_t bytes = (size_t)model->length * sizeof(double);
+  if (w->factor_step < 0.0) midpoint_restart(model, state, w, dt);
+  for (int64_t end = state->step + count; state->step < end && !state->trouble; state->step++) {
+    memcpy(w->grid[0], state->q, bytes);
+    memcpy(w->grid[1], state->v, bytes);
+    if (take(model, state, w, (double)state->step * dt, dt, MOST_HALVINGS)) continue;
+    state->trouble = STRUT_TROUBLE_IMPLICIT;
+    state->trouble_node = w->matrix.n ? worst_node(w) : 0;
+    memcpy(state->q, w->grid[0], bytes);
+    memcpy(state->v, w->grid[1], bytes);
+    return;
+  }
+}
+
+const strut_integrator strut_integrator_midpoint = {
+    .name = "midpoint",
+    .description = "implicit midpoint, members averaged over the step; for stiff scenes without ground",
+    .order = 2,
+    .evaluations = 4, /* about: as many as Newton's method takes */
+    .region = STRUT_REGION_ALL,
+    .no_ground = true,
+    .create = midpoint_create,
+    .restart = midpoint_restart,
+    .advance = midpoint_advance,
+};

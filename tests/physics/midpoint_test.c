@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Implicit midpoint: steps a hundred times the explicit limit on stiff members, the work that closes
+ * the energy balance to rounding, and what it refuses.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/energy.h"
+#include "engine/integrate/step_limit.h"
+#include "tests/physics/random_scene.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static double explicit_limit(const strut_scene *scene) {
+  strut_step_limit limit;
+  strut_model *model = motion_compile(scene);
+  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  strut_model_free(model);
+  return limit.of[STRUT_REGION_RK4];
+}
+
+static strut_summary run_by(strut_scene *scene, const char *method, double step, double duration) {
+  scene->experiment.integrator = method;
+  motion_experiment(scene, step, duration);
+  return motion_simulate(scene);
+}
+
+static double farthest(const strut_summary *a, const strut_summary *b) {
+  double most = 0.0;
+  for (size_t i = 0; i < 2 * a->node_count; i++)
+    most = fmax(most, fabs(a->positions[i] - b->positions[i]));
+  return most;
+}
+
+/* A uniform rod let go horizontally, T = 4 sqrt(2 L / 3 g) K(sin 45 deg) where it is rigid. */
+static void pendulum(strut_scene *scene, double stiffness) {
+  strut_scene_init(scene);
+  scene->gravity[1] = -9.81;
+  int32_t pin = build_support(scene, 0, 0), tip = build_node(scene, 1, 0);
+  build_member(scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
+}
+
+static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
+  (void)unused;
+  const double period = 4.0 * sqrt(2.0 / (3.0 * 9.81)) * 1.8540746773013719;
+  for (double stiffness = 1e8; stiffness < 2e12; stiffness *= 100) {
+    double error[3];
+    for (int k = 0; k < 3; k++) {
+      strut_scene scene;
+      pendulum(&scene, stiffness);
+      strut_summary s = run_by(&scene, "midpoint", period / (100 << k), 10.25 * period);
+      error[k] = hypot(s.positions[2], s.positions[3] + 1.0);
+      assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved + 1e-9);
+      print_message("stiffness %g, %d steps a period, %.0f times RK4's limit: %.2g m off after ten\n",
+                    stiffness, 100 << k, s.step / explicit_limit(&scene), error[k]);
+      strut_summary_free(&s);
+      strut_scene_free(&scene);
+    }
+    assert_within(observed_order(error, 3), 1.9, 2.1);
+  }
+}
+
+/* A closed frame, spinning and vibrating, at 100 times the largest step of RK4. */
+static void test_energy_of_a_stiff_frame(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  const x_frame frame = {.side = 1, .cable_stiffness = 1e7, .bar_stiffness = 1e9,
+                         .force_density = 200, .cable_mass = 0.1, .bar_mass = 1};
+  strut_scene_init(&scene);
+  structure_x_frame(&scene, &frame);
+  structure_throw(&scene, 1.0, -2.0, 0.5);
+  scene.nodes[0].velocity[0] += 0.1;
+  double step = 100.0 * explicit_limit(&scene), most = 0.0;
+  motion m;
+  motion_begin_by(&m, &scene, "midpoint", step);
+  strut_stored start = strut_energy_stored(m.model, m.state, 0.0);
+  double whole = start.kinetic + start.elastic;
+  for (int k = 0; k < 1000; k++) {
+    motion_steps(&m, 100);
+    assert_int_equal(m.state->trouble, 0);
+    strut_stored now = strut_energy_stored(m.model, m.state, (double)m.state->step * step);
+    most = fmax(most, fabs(now.kinetic + now.elastic - whole));
+  }
+  print_message("1e5 steps at 100 times the limit: energy within %.2g of itself, %.1f evaluations a "
+                "step\n", most / whole, (double)m.state->evaluations / 1e5);
+  assert_near(most / whole, 0.0, 1e-9);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+/* Masses in a row on soft springs and, every other one, on bars a million times as stiff. */
+static void chain(strut_scene *scene, double ratio) {
+  strut_scene_init(scene);
+  scene->gravity[1] = -9.81;
+  int32_t last = build_support(scene, 0, 0);
+  for (int i = 1; i <= 20; i++) {
+    int32_t next = build_mass(scene, 0.1 * i, 0.02 * (i % 2), 0.1);
+    build_member(scene, i % 2 ? STRUT_SPRING : STRUT_BAR, last, next, i % 2 ? 100.0 : 100.0 * ratio,
+                 0, 0);
+    last = next;
+  }
+}
+
+static void test_stiff_chain_against_rk4(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  const double duration = 0.5;
+  chain(&scene, 1e6);
+  double limit = explicit_limit(&scene), error[3];
+  strut_summary exact = run_by(&scene, "rk4", 0.25 * limit, duration);
+  strut_summary usual = run_by(&scene, "rk4", 0.95 * limit, duration);
+  for (int k = 0; k < 3; k++) {
+    strut_summary s = run_by(&scene, "midpoint", ldexp(100.0 * limit, -k), duration);
+    error[k] = farthest(&s, &exact);
+    double saving = (double)usual.force_evaluations / (double)s.force_evaluations;
+    print_message("stiffness ratio 1e6, %d times RK4's limit: %.2g m off, a %.0fth of its forces\n",
+                  100 >> k, error[k], saving);
+    if (k == 0) assert_true(saving > 20.0);
+    strut_summary_free(&s);
+  }
+  assert_true(error[0] < 0.04 && error[1] < 0.6 * error[0] && error[2] < 0.6 * error[1]);
+  strut_summary_free(&exact);
+  strut_summary_free(&usual);
+  strut_scene_free(&scene);
+}
+
+/*
+ * Everything that scenes without ground have: cables that go slack, dampers, drives and loads of all
+ * kinds, rest lengths of zero. What is left of the error is compared with RK4 at a fine step; the
+ * balance closes whatever the step.
+ */
+static void test_random_scenes(void **unused) {
+  (void)unused;
+  enum { SCENES = 30 };
+  const double duration = 0.25;
+  double balance = 0.0;
+  int better = 0;
+  int64_t evaluations = 0, steps = 0;
+  for (uint64_t seed = 1; seed <= SCENES; seed++) {
+    strut_scene scene;
+    random_scene(&scene, seed);
+    scene.contact_count = 0;
+    scene.ground.present = false;
+    for (size_t i = 0; i < scene.member_count; i++) /* a damper turns round where it has no length */
+      if (scene.members[i].stiffness > 0.0 && scene.members[i].rest_value == 0.0)
+        scene.members[i].damping = 0.0;
+    double fine = fmin(5e-6, 0.2 * explicit_limit(&scene));
+    strut_summary exact = run_by(&scene, "rk4", fine, duration);
+    strut_summary coarse = run_by(&scene, "midpoint", 1.6e-3, duration);
+    strut_summary s = run_by(&scene, "midpoint", 1e-4, duration);
+    double before = farthest(&coarse, &exact), error = farthest(&s, &exact);
+    balance = fmax(balance, fabs(coarse.energy.residual) / (coarse.energy.moved + 1.0));
+    balance = fmax(balance, fabs(s.energy.residual) / (s.energy.moved + 1.0));
+    better += error < 0.25 * before;
+    evaluations += coarse.force_evaluations, steps += coarse.steps;
+    strut_summary_free(&exact);
+    strut_summary_free(&coarse);
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+  print_message("%d scenes: %d better by 4 with 0.1 ms than with 1.6 ms; balance of all within %.2g; "
+                "%.1f evaluations a step of 1.6 ms\n",
+                SCENES, better, balance, (double)evaluations / (double)steps);
+  assert_true(better >= SCENES - 3); /* where forces jump it is 16, with chaos nothing */
+  assert_true(balance < 1e-9);
+}
+
+/* A mass on a cable with a damper, thrown through its slack length again and again: 1000 steps. */
+static void test_cable_in_large_steps(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  scene.gravity[1] = -9.81;
+  int32_t hook = build_support(&scene, 0, 0), mass = build_mass(&scene, 0.4, -0.2, 1);
+  build_sized(&scene, STRUT_CABLE, hook, mass, 1e8, 100, 0, 1.0);
+  strut_summary s = run_by(&scene, "midpoint", 100 * sqrt(8.0 / 1e8), 30.0);
+  print_message("cable: energy off by %.2g of %.2g J moved; %.2f J lost\n", s.energy.residual,
+                s.energy.moved, s.energy.dissipated_members);
+  assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved);
+  assert_true(hypot(s.positions[2], s.positions[3]) < 1.01);
+  assert_true(s.energy.dissipated_members > 0.0);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* A swing of small amplitude: midpoint turns by 2 atan(omega h / 2) in a step. */
+static void test_frequency_is_that_of_midpoint(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t wall = build_support(&scene, 0, 0), mass = build_mass(&scene, 1, 0, 2);
+  build_sized(&scene, STRUT_SPRING, wall, mass, 50, 0, 0, 0.9);
+  scene.nodes[mass].fixed[1] = true;
+  double turn = 2.0 * atan(0.5 * 5.0 * 0.3);
+  motion m;
+  motion_begin_by(&m, &scene, "midpoint", 0.3);
+  for (int n = 1; n <= 1000; n++) {
+    motion_steps(&m, 1);
+    assert_near(m.state->q[2 * mass], 0.9 + 0.1 * cos(n * turn), 1e-12);
+    assert_near(m.state->v[2 * mass], -0.5 * sin(n * turn), 1e-11);
+  }
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void expect_refusal(strut_scene *scene, const char *word) {
+  strut_error error = {0};
+  strut_model *model = motion_compile(scene);
+  scene->experiment.integrator = "midpoint";
+  assert_int_equal(strut_integrator_check(model, &error), STRUT_USAGE);
+  assert_non_null(strstr(error.message, word));
+  strut_model_free(model);
+}
+
+static void test_refusals(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  pendulum(&scene, 1e6);
+  scene.bar_model = STRUT_BARS_RIGID;
+  expect_refusal(&scene, "rigid");
+  scene.bar_model = STRUT_BARS_ELASTIC;
+  build_contact(&scene, 1, 1e4, 0);
+  expect_refusal(&scene, "'n2' may touch the ground");
+  strut_scene_free(&scene);
+}
+
+/* A force that no number of metres a second goes with. */
+static void test_no_solution_is_named(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_summary s;
+  strut_error error = {0};
+  strut_run_options options = {0};
+  pendulum(&scene, 1e6);
+  strut_signal late = strut_signal_default(STRUT_CONSTANT);
+  late.amplitude = 1e300, late.start = 0.5;
+  build_load(&scene, 1, 1e9, 0, build_signal(&scene, late));
+  scene.experiment.integrator = "midpoint";
+  motion_experiment(&scene, 0.01, 1.0);
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_simulate(model, &options, &s, &error), STRUT_DIVERGED);
+  print_message("%s\n", error.message);
+  assert_non_null(strstr(error.message, "no solution of its step at t = 0.5 s"));
+  assert_non_null(strstr(error.message, "node 'n2'"));
+  assert_non_null(strstr(error.message, "smaller step"));
+  assert_int_equal(s.steps, 50);
+  strut_summary_free(&s);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_stiff_pendulum_is_the_rigid_one),
+      cmocka_unit_test(test_energy_of_a_stiff_frame),
+      cmocka_unit_test(test_stiff_chain_against_rk4),
+      cmocka_unit_test(test_random_scenes),
+      cmocka_unit_test(test_cable_in_large_steps),
+      cmocka_unit_test(test_frequency_is_that_of_midpoint),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_no_solution_is_named),
+  };
+  return cmocka_run_group_tests_name("midpoint", tests, NULL, NULL);
+}
