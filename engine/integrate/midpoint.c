@@ -235,7 +235,7 @@ static void midpoint_advance(const strut_model *model, strut_state *state, void 
 
 const strut_integrator strut_integrator_midpoint = {
     .name = "midpoint",
-    .description = "implicit midpoint, members averaged over the step; for stiff scenes without ground",
+    .description = "implicit midpoint, fixed step, for stiff members without ground",
     .order = 2,
     .evaluations = 4, /* about: as many as Newton's method takes */
     .region = STRUT_REGION_ALL,

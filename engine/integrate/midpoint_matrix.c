@@ -86,7 +86,8 @@ static bool make_members(const strut_model *model, strut_arena *arena, strut_mid
   return true;
 }
 
-bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena, strut_midpoint_matrix *m) {
+bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
+                                  strut_midpoint_matrix *m) {
   size_t both = (size_t)model->length, members = (size_t)model->members.count;
   int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
   m->coordinate = strut_arena_allocate(arena, both, sizeof *m->coordinate);
