@@ -94,6 +94,8 @@ static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
     cJSON *contact = strut_json_object(json, contacts, s->contacts[i].node);
     strut_json_number(json, contact, "duty", s->contacts[i].duty);
     strut_json_number(json, contact, "max_height", s->contacts[i].max_height);
+    if (s->contacts[i].band_needed > 0.0)
+      strut_json_number(json, contact, "stick_velocity_needed", s->contacts[i].band_needed);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "engine/run/settle.h"
 #include "engine/run/shooting.h"
 #include "engine/run/steady.h"
+#include "engine/run/stick_band.h"
 
 /* Beyond this many times the scene's size a run counts as diverged. */
 static const double BEYOND = 1e10;
@@ -32,6 +33,7 @@ typedef struct run {
   strut_measure measure;
   strut_recording recording;
   strut_guard guard;
+  strut_stick_band band;
   strut_stored initial;
   bool watching;
   strut_watch watch;
@@ -140,7 +142,8 @@ static strut_status prepare(run *r) {
   r->state->ledger = !r->options->without_ledger;
   r->state->interrupt = r->options->interrupt;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
-  if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard))
+  if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard) ||
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, begin);
@@ -206,12 +209,14 @@ static bool energy_from_nowhere(const run *r) {
   strut_energy e;
   if (!(r->dt > 0.5 * r->summary->step_limit)) return false; /* then it is not the step's limit */
   strut_balance_fill(r->model, r->state, &r->initial, (double)r->state->step * r->dt, &e);
-  return e.residual > 0.5 * (e.moved + fabs(e.initial));
+  double there = e.kinetic + e.elastic + fabs(e.gravity) + e.contact;
+  return e.residual > 0.5 * (e.moved + fabs(e.initial) + there);
 }
 
 /* Every so many steps: does the step still suit the structure? */
 static strut_status watch_step(run *r) {
   if (r->state->step < r->guard.next) return STRUT_OK;
+  strut_stick_band_look(r->model, r->state, &r->band);
   bool garbage = !r->options->force && energy_from_nowhere(r);
   if (garbage && !(r->guard.lowest > 0.0)) strut_guard_blame(r->model, r->state, &r->guard);
   if (!garbage) strut_guard_look(r->model, r->state, &r->guard);
@@ -367,8 +372,14 @@ static void keep_end(const run *r) {
   to->refined = fmax(0.0, r->state->refined_until - to->time);
 }
 
+static void fill_contacts(run *r) {
+  for (int32_t i = 0; i < r->model->contacts.count; i++)
+    r->summary->contacts[i].band_needed = strut_stick_band_missed(r->model, &r->band, i);
+}
+
 static void fill_summary(run *r, strut_status status) {
   strut_summary *s = r->summary;
+  fill_contacts(r);
   s->status = status;
   s->steps = r->state->step - r->first;
   s->duration = (double)(s->steps + r->shot_periods * r->period_steps) * r->dt;

@@ -11,6 +11,7 @@
 #include "engine/output/quantity_text.h"
 #include "engine/output/sketch.h"
 #include "engine/run/plan.h"
+#include "engine/run/stick_band.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/terminal.h"
@@ -79,6 +80,23 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
     printf("  step               %s: too large, strut run will refuse it\n", in(step, "s").text);
   } else if (step > 0) {
     printf("  step               %s\n", in(step, "s").text);
+  }
+}
+
+/* Stick bands that a step passes over. */
+static void print_bands(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
+  for (int32_t i = 0; method && i < model->contacts.count; i++) {
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    double needed = strut_stick_band_needed(model, method, i, scene->experiment.step);
+    if (!(needed * (1.0 - 1e-6) > e->stick_velocity)) continue;
+    fprintf(stderr,
+            "strut: warning: stick_velocity %s of node '%s' is narrower than what a step of %s "
+            "changes its slip by, so that it sticks by luck; use stick_velocity >= %s, a smaller "
+            "step, or a method with events\n",
+            in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name,
+            in(scene->experiment.step, "s").text, in(needed, "m/s").text);
   }
 }
 
@@ -216,6 +234,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
+  if (status == STRUT_OK) print_bands(model);
   if (status != STRUT_OK) {
     strut_complain(&error);
   } else if (arguments->json) {

@@ -117,6 +117,25 @@ static strut_status print_summary(const strut_arguments *arguments, const strut_
   return status;
 }
 
+/* A result that is there, but is not what the scene meant. */
+static void warn(const strut_summary *summary) {
+  for (size_t i = 0; i < summary->contact_count; i++) {
+    const strut_contact_summary *contact = &summary->contacts[i];
+    if (!(contact->band_needed > 0.0)) continue;
+    fprintf(stderr,
+            "strut: warning: node '%s' stuck to the ground by accident, if at all: a step changes its "
+            "slip by %.2g m/s, a hundred times its band or more; use stick_velocity >= %.2g m/s, a "
+            "smaller step, or a method with events\n",
+            contact->node, contact->band_needed, contact->band_needed);
+  }
+  if (summary->status == STRUT_OK && summary->limit_fell.limit > 0.0)
+    fprintf(stderr,
+            "strut: warning: the largest stable step fell to %.4g s at t = %.9g s, below the step "
+            "%g s; use solver.step <= %.2g s\n",
+            summary->limit_fell.limit, summary->limit_fell.time, summary->step,
+            0.9 * summary->limit_fell.limit);
+}
+
 /* Last, for it takes longest: what was computed is on the screen by then. */
 static strut_status make_film(strut_run_pictures *pictures, const strut_model *model) {
   strut_error error = {0};
@@ -134,6 +153,7 @@ static strut_status run_model(const strut_arguments *arguments, const strut_mode
   strut_status status = simulate(model, arguments, &keep, pictures, &summary, &error);
   if (status != STRUT_OK) strut_complain(&error);
   if (began(status)) {
+    warn(&summary);
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
     if (written != STRUT_OK) strut_complain(&late);
