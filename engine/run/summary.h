@@ -27,8 +27,8 @@ typedef struct strut_energy {
 typedef struct strut_contact_summary {
   const char *node;  /* name; owned by the scene */
   double duty;       /* fraction of the window's steps in contact [1] */
-  double band_needed; /* where a step passes over its stick band: the width that would do [m/s]; or 0 */
   double max_height; /* largest height above the ground in the window [m] */
+  double band_needed; /* where a step passes over its stick band: the width that would do [m/s]; or 0 */
 } strut_contact_summary;
 
 /** What a run that stops when it is steady found; `kind` is STRUT_MOTION_NOT_WATCHED without it. */
