@@ -12,7 +12,9 @@
 #include "engine/output/sketch.h"
 #include "engine/run/plan.h"
 #include "engine/run/stick_band.h"
+#include "parser/cli/fidelity_settings.h"
 #include "parser/cli/open_model.h"
+#include "parser/cli/run_settings.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/terminal.h"
 
@@ -22,6 +24,8 @@ static const double TURN = 6.283185307179586476925;
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    STRUT_RUN_SETTING_OPTIONS,
+    STRUT_FIDELITY_OPTIONS,
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -225,6 +229,13 @@ static strut_status print_json(const strut_plan *plan, const strut_scene *scene)
   return status;
 }
 
+/* Is there a run by the method that is given? Else it is for statics, or accuracy chooses. */
+static bool runs(const strut_scene *scene) {
+  const strut_experiment *e = &scene->experiment;
+  bool by_hand = !(e->accuracy > 0.0);
+  return by_hand && (e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0);
+}
+
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_plan plan;
@@ -232,7 +243,15 @@ static strut_status run(const strut_arguments *arguments) {
   strut_error error = {0};
   strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
   if (status != STRUT_OK) return status;
+  status = strut_run_settings_apply(&strut_command_check, arguments, &scene);
+  if (status == STRUT_OK)
+    status = strut_fidelity_settings_apply(&strut_command_check, arguments, &scene);
+  if (status != STRUT_OK) {
+    strut_scene_free(&scene);
+    return status;
+  }
   status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK && runs(&scene)) status = strut_integrator_check(model, &error);
   if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
   if (status == STRUT_OK) print_bands(model);
   if (status != STRUT_OK) {

@@ -11,6 +11,7 @@
 #include "engine/output/results.h"
 #include "engine/run/accuracy.h"
 #include "engine/run/simulate.h"
+#include "parser/cli/fidelity_settings.h"
 #include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/progress.h"
@@ -26,6 +27,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
     {STRUT_OPTION_FORCE, "force", NULL, "run even where the step is above the stability limit"},
     STRUT_RUN_SETTING_OPTIONS,
+    STRUT_FIDELITY_OPTIONS,
     STRUT_RUN_PICTURE_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -179,6 +181,8 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
   if (status != STRUT_OK) return status;
   status = strut_run_settings_apply(&strut_command_run, arguments, &scene);
+  if (status == STRUT_OK)
+    status = strut_fidelity_settings_apply(&strut_command_run, arguments, &scene);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
     strut_scene_free(&scene);

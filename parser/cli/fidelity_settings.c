@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/fidelity_settings.h"
+
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+#include "parser/keys.h"
+
+/* Reads an option whose words are those of a key: the word's index, as the reader takes it too. */
+static strut_status read_word(const strut_command *command, const strut_arguments *arguments,
+                              strut_option_id id, int key, int *word) {
+  enum { MOST = 8, LONGEST = 24 };
+  char text[MOST][LONGEST];
+  const char *words[MOST + 1] = {0};
+  for (int i = 0; i < MOST; i++)
+    if (!(words[i] = strut_word_at(strut_key_at(key)->words, i, text[i], LONGEST))) break;
+  return strut_option_word(command, arguments, id, words, word);
+}
+
+static strut_status refuse(const char *option, const char *needs) {
+  strut_error error = {0};
+  strut_fail(&error, STRUT_USAGE, "--%s %s", option, needs);
+  strut_complain(&error);
+  return STRUT_USAGE;
+}
+
+static strut_status set_friction(strut_scene *scene, strut_friction_law law) {
+  bool any = false;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    strut_friction *f = &scene->contacts[i].friction;
+    if (f->law == STRUT_FRICTION_NONE) continue;
+    any = true;
+    if (law == STRUT_FRICTION_KARNOPP && !(f->stick_velocity > 0.0))
+      return refuse("friction-law", "karnopp needs ground.friction.stick_velocity in the model");
+    if (law == STRUT_FRICTION_SMOOTH && !(f->width > 0.0))
+      return refuse("friction-law", "smooth needs ground.friction.width in the model");
+    f->law = law;
+  }
+  return any ? STRUT_OK : refuse("friction-law", "needs a ground with friction in the model");
+}
+
+static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
+  bool damped = false, other = false;
+  if (!scene->ground.present) return refuse("damping-law", "needs a ground in the model");
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    bool crossley = law == STRUT_DAMPING_HUNT_CROSSLEY;
+    damped = damped || (crossley ? scene->contacts[i].dissipation : scene->contacts[i].damping) > 0;
+    other = other || (crossley ? scene->contacts[i].damping : scene->contacts[i].dissipation) > 0;
+  }
+  if (other && !damped)
+    return refuse("damping-law", law == STRUT_DAMPING_HUNT_CROSSLEY
+                                     ? "hunt_crossley needs ground.dissipation in the model"
+                                     : "printed needs ground.damping in the model");
+  scene->ground.damping_law = law;
+  return STRUT_OK;
+}
+
+strut_status strut_fidelity_settings_apply(const strut_command *command,
+                                           const strut_arguments *arguments, strut_scene *scene) {
+  int bars = -1, mass = -1, friction = -1, damping = -1;
+  const struct {
+    strut_option_id id;
+    int key, *word;
+  } words[] = {{STRUT_OPTION_BARS, STRUT_KEY_SCENE_BARS, &bars},
+               {STRUT_OPTION_MASS_MODEL, STRUT_KEY_SCENE_MASS_MODEL, &mass},
+               {STRUT_OPTION_FRICTION_LAW, STRUT_KEY_FRICTION_LAW, &friction},
+               {STRUT_OPTION_DAMPING_LAW, STRUT_KEY_GROUND_DAMPING_LAW, &damping}};
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < sizeof words / sizeof words[0] && status == STRUT_OK; i++)
+    status = read_word(command, arguments, words[i].id, words[i].key, words[i].word);
+  if (status != STRUT_OK) return status;
+  if (bars >= 0) scene->bar_model = (strut_bar_model)bars;
+  if (mass >= 0) scene->mass_model = (strut_mass_model)mass;
+  if (friction >= 0) status = set_friction(scene, (strut_friction_law)friction);
+  if (status == STRUT_OK && damping >= 0) status = set_damping(scene, (strut_ground_damping)damping);
+  return status;
+}

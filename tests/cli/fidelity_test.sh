@@ -1,0 +1,56 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Other models of a scene by options give what the same words in the file give; what cannot be run
+# together is refused by run and check alike.
+. "$(dirname "$0")/lib.sh"
+crawler=$here/../../models/crawler/crawler.yaml
+rod=$here/../../models/basics/pendulum.yaml
+
+# same_run OPTIONS FILE MODEL: MODEL with the options runs as FILE without
+same_run() {
+  # shellcheck disable=SC2086 # options, not one word
+  expect 0 run "$3" $1 --json
+  cp "$work/out" "$work/one"
+  expect 0 run "$2" --json
+  jq -e '.velocity' "$work/one" >"$work/a" || fail "no velocity"
+  jq -e '.velocity' "$work/out" >"$work/b" || fail "no velocity"
+  cmp -s "$work/a" "$work/b" || fail "$1 is not the same as in the file"
+}
+sed 's/^nodes:/mass_model: lumped\nnodes:/' "$rod" >"$work/lumped.yaml"
+same_run "--mass-model lumped" "$work/lumped.yaml" "$rod"
+same_run "--mass-model consistent" "$rod" "$work/lumped.yaml"
+sed 's/^nodes:/bars: rigid\nnodes:/' "$rod" >"$work/rigid.yaml"
+same_run "--bars rigid" "$work/rigid.yaml" "$rod"
+same_run "--bars elastic" "$rod" "$work/rigid.yaml"
+
+for command in run check; do
+  expect 1 "$command" "$crawler" --bars rigdi
+  err_has "--bars expects elastic or rigid, not 'rigdi'; did you mean 'rigid'?"
+  expect 1 "$command" "$crawler" --mass-model heavy
+  err_has "--mass-model expects consistent or lumped, not 'heavy'"
+  expect 1 "$command" "$crawler" --friction-law coulom
+  err_has "did you mean 'coulomb'?"
+  expect 1 "$command" "$crawler" --damping-law hunt
+  err_has "--damping-law expects printed or hunt_crossley, not 'hunt'"
+  expect 1 "$command" "$crawler" --friction-law smooth
+  err_has "needs ground.friction.width"
+  expect 1 "$command" "$crawler" --damping-law hunt_crossley
+  err_has "needs ground.dissipation"
+  expect 1 "$command" "$rod" --friction-law coulomb
+  err_has "needs a ground with friction"
+  expect 1 "$command" "$rod" --damping-law printed
+  err_has "needs a ground"
+  expect 1 "$command" "$crawler" --friction-law coulomb
+  err_has "needs a method with events"
+  expect 1 "$command" "$crawler" --integrator midpoint
+  err_has "midpoint cannot step over contacts, and node 'n1' may touch the ground"
+  expect 1 "$command" "$rod" --bars rigid --integrator midpoint
+  err_has "midpoint does not keep the lengths of rigid bars"
+done
+
+# No step is too large for it.
+expect 0 check "$rod" --integrator midpoint
+out_has "none"
+expect 0 run "$rod" --set stiffness=1e12 --integrator midpoint --step "5 ms" --json
+jq -e '(.velocity + 2.069) | fabs < 0.01' "$work/out" >/dev/null || fail "midpoint: another pendulum"
+done_testing
