@@ -33,10 +33,10 @@ static bool pose(const cables *c, strut_linear_program *program, strut_arena *sc
   size_t entries = (size_t)c->count * (size_t)c->states->count;
   if (!strut_linear_program_create(program, c->count, c->states->count, entries, scratch))
     return false;
-  for (int32_t i = 0; i < c->states->count; i++) program->low[i] = -INFINITY;
+  for (int32_t i = 0; i < c->states->count; i++) program->low[i] = -HUGE_VAL;
   for (int32_t r = 0; r < c->count; r++) {
     program->row_low[r] = 1.0;
-    program->row_high[r] = INFINITY;
+    program->row_high[r] = HUGE_VAL;
     for (int32_t i = 0; i < c->states->count; i++) {
       double force = force_of(c, i, c->member[r]);
       program->cost[i] += force;
