@@ -108,7 +108,8 @@ strut_status strut_draw_ladder(strut_canvas *canvas, strut_box box, const strut_
     x.low -= 0.3;
     x.high += 0.3;
   }
-  strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = (double)NAN, .high = (double)NAN};
+  const double any = (double)NAN;
+  strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = any, .high = any};
   double zero = HUGE_VAL;
   int ends[2];
   for (size_t k = 0; k < count; k++) zero = fmin(zero, strut_drawn_energy(all, chosen[k]));
