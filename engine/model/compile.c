@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/model/model.h"
+#include "engine/model/room.h"
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
@@ -199,6 +200,8 @@ static void compile_contacts(strut_model *model, bool *failed) {
 strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
                                  strut_error *error) {
   *result = NULL;
+  strut_status room = strut_room_check(scene, error);
+  if (room) return room;
   strut_model *model = strut_allocate(1, sizeof *model);
   if (!model) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   model->scene = scene;
