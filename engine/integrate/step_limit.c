@@ -153,11 +153,13 @@ static strut_status limits(const strut_model *model, const double *q, const doub
     limit->of[region] = limit->of_implicit[region] = HUGE_VAL;
   strut_status status = strut_tangent_assemble(model, q, rest, closed, arena, &tangent);
   if (status || tangent.n == 0) return status;
-  if ((model->plan & STRUT_TERM_RIGID) &&
-      !(tangent.rigid = strut_rigid_standing(model, q, arena)))
+  if ((model->plan & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
     return STRUT_NO_MEMORY;
   bool all = tangent.n <= STRUT_EXACT_LIMIT;
-  if (!begin(&s, model, all ? tangent.n : tangent.n > LARGE ? LARGE_ROOM : ROOM) ||
+  if (!begin(&s, model,
+             all                 ? tangent.n
+             : tangent.n > LARGE ? LARGE_ROOM
+                                 : ROOM) ||
       !(all ? take_all(&s) : look_around(&s) && improve(&s)))
     return STRUT_NO_MEMORY;
   limit->exact = all && s.found.solved;
@@ -189,8 +191,7 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
 }
 
 strut_status strut_step_limit_at(const strut_model *model, const double *q, const double *rest,
-                                 strut_closed closed, strut_step_limit *limit,
-                                 strut_error *error) {
+                                 strut_closed closed, strut_step_limit *limit, strut_error *error) {
   strut_arena arena = {0};
   strut_status status = limits(model, q, rest, closed, true, &arena, limit);
   for (int region = 0; region < STRUT_REGIONS; region++)

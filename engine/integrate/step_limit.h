@@ -11,9 +11,9 @@
 typedef struct strut_step_limit {
   double largest_frequency; /* undamped, all contacts closed [rad/s]; 0 where nothing vibrates */
   double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
-  double of[STRUT_REGIONS];  /* largest stable step of each region, RK4's being `limit` */
+  double of[STRUT_REGIONS]; /* largest stable step of each region, RK4's being `limit` */
   double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
-  bool exact;               /* from all eigenvalues; else from those that bind, within 1 % */
+  bool exact; /* from all eigenvalues; else from those that bind, within 1 % */
 } strut_step_limit;
 
 /**
@@ -31,8 +31,7 @@ STRUT_API strut_status strut_step_limit_at(const strut_model *model, const doubl
                                            strut_step_limit *limit, strut_error *error);
 
 /** The largest stable step of a method [s]. */
-STRUT_API double strut_step_limit_of(const strut_step_limit *limit,
-                                     const strut_integrator *method);
+STRUT_API double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method);
 
 enum { STRUT_EXACT_LIMIT = 60 };
 

@@ -12,11 +12,11 @@ enum { MOST_STEPS = 80, KEPT = 3 };
 
 typedef struct lanczos {
   strut_tangent_space *space;
-  double a, b;                   /* the matrix is a K + b D */
-  double *v, *u, *before, *r;    /* v, u = M v, the u before, residual; (n) */
-  double *kept;                  /* (KEPT, n) */
+  double a, b;                                /* the matrix is a K + b D */
+  double *v, *u, *before, *r;                 /* v, u = M v, the u before, residual; (n) */
+  double *kept;                               /* (KEPT, n) */
   double alpha[MOST_STEPS], beta[MOST_STEPS]; /* of the tridiagonal matrix */
-  double mix[KEPT][MOST_STEPS];  /* its eigenvectors */
+  double mix[KEPT][MOST_STEPS];               /* its eigenvectors */
   int steps, wanted;
 } lanczos;
 

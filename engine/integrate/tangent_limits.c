@@ -40,7 +40,8 @@ static void symmetric_free(symmetric *s) {
 }
 
 /* The largest eigenvalue of a K + b D with its vector. */
-static double largest(symmetric *s, const strut_tangent_space *space, double a, double b, double *x) {
+static double largest(symmetric *s, const strut_tangent_space *space, double a, double b,
+                      double *x) {
   size_t m = s->m, row = (size_t)space->most;
   for (size_t i = 0; i < m; i++)
     for (size_t j = 0; j < m; j++)
@@ -139,8 +140,7 @@ static void take_pairs(const gsl_vector_complex *values, const gsl_matrix_comple
 }
 
 /* All eigenvalues of [0 w; -K/w, -D] / w: scaled so that its two halves are of one size. */
-static bool find_rk4(const strut_tangent_space *space, double omega,
-                     strut_tangent_limits *limits) {
+static bool find_rk4(const strut_tangent_space *space, double omega, strut_tangent_limits *limits) {
   size_t m = (size_t)space->count, row = (size_t)space->most;
   gsl_matrix *system = gsl_matrix_calloc(2 * m, 2 * m);
   gsl_vector_complex *values = gsl_vector_complex_alloc(2 * m);

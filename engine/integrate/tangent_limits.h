@@ -18,19 +18,19 @@ enum { STRUT_BINDING_PAIRS = 4, STRUT_MOST_BINDING = 4 + 2 * STRUT_BINDING_PAIRS
 
 /** One motion: coefficients of its real and imaginary parts, and for whom it matters. */
 typedef struct strut_binding {
-  double a, b;        /* its residual is a K x + b D x; complex: K x + (re + i im) D x */
-  double re, im;      /* eigenvalue, where it is RK4's */
+  double a, b;   /* its residual is a K x + b D x; complex: K x + (re + i im) D x */
+  double re, im; /* eigenvalue, where it is RK4's */
   bool complex_pair, rk4;
-  double *x, *y;      /* (most) real and imaginary part */
+  double *x, *y; /* (most) real and imaginary part */
 } strut_binding;
 
 typedef struct strut_tangent_limits {
-  double largest_frequency;  /* [rad/s] */
-  double of[STRUT_REGIONS];  /* [s] */
-  bool solved;               /* RK4's from eigenvalues; else by a bound */
-  int count;                 /* of binding motions */
+  double largest_frequency; /* [rad/s] */
+  double of[STRUT_REGIONS]; /* [s] */
+  bool solved;              /* RK4's from eigenvalues; else by a bound */
+  int count;                /* of binding motions */
   strut_binding binding[STRUT_MOST_BINDING];
-  double *room;              /* their coefficients */
+  double *room; /* their coefficients */
 } strut_tangent_limits;
 
 /** In the arena, for spaces of `most` vectors. False: out of memory. */

@@ -16,11 +16,11 @@
 typedef struct strut_tangent_space {
   const strut_model *model;
   const strut_tangent *tangent;
-  int count, most;   /* vectors it has, and has room for */
-  double *vector;    /* (most, n) */
+  int count, most;             /* vectors it has, and has room for */
+  double *vector;              /* (most, n) */
   double *stiffness, *damping; /* (most, most) projected [1/s^2], [1/s]; the leading count rows */
-  double *image;     /* (n) scratch */
-  double *node;      /* (3, length) scratch */
+  double *image;               /* (n) scratch */
+  double *node;                /* (3, length) scratch */
 } strut_tangent_space;
 
 /** In the arena, empty. False: out of memory. */

@@ -13,8 +13,8 @@ enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
 static const double GROWTH = 1.0, GROWTH_RK4 = 4.0, HOPELESS = 16.0;
 
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
-static void apply_members(const strut_model *model, const strut_state *state,
-                          strut_guard *g, const strut_guard_watch *w) {
+static void apply_members(const strut_model *model, const strut_state *state, strut_guard *g,
+                          const strut_guard_watch *w) {
   const strut_member_table *t = &model->members;
   const double *q = state->q, *x = w->motion;
   double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
@@ -33,8 +33,8 @@ static void apply_members(const strut_model *model, const strut_state *state,
   }
 }
 
-static void apply_contacts(const strut_model *model, const strut_state *state,
-                           strut_guard *g, const strut_guard_watch *w) {
+static void apply_contacts(const strut_model *model, const strut_state *state, strut_guard *g,
+                           const strut_guard_watch *w) {
   const strut_contact_table *c = &model->contacts;
   double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
   for (int32_t i = 0; i < c->count; i++) {
@@ -51,8 +51,7 @@ static void apply_contacts(const strut_model *model, const strut_state *state,
 static void stir(const strut_model *model, strut_guard *g, strut_guard_watch *w, double size) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
     g->noise = g->noise * 6364136223846793005u + 1442695040888963407u;
-    if (!model->fixed[i])
-      w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
+    if (!model->fixed[i]) w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
   }
 }
 

@@ -15,29 +15,29 @@
 /** The largest eigenvalue of M^-1 (h^2 K stiff + h D damp): at 1 or more the step may be too large. */
 typedef struct strut_guard_watch {
   double stiff, damp;
-  double *motion;          /* (length) */
-  double weight;           /* of the motion in the mass; 0: not known */
-  double strength, known;  /* as of the last look, and when the limit was computed last */
-  double alarm;            /* the strength at which it must be computed again */
+  double *motion;         /* (length) */
+  double weight;          /* of the motion in the mass; 0: not known */
+  double strength, known; /* as of the last look, and when the limit was computed last */
+  double alarm;           /* the strength at which it must be computed again */
 } strut_guard_watch;
 
 typedef struct strut_guard {
   const strut_integrator *method;
-  double step;          /* [s] */
-  int64_t every, next;  /* steps between looks; the step of the next one */
-  int count;            /* of watches: 2 with RK4, which K and D bind apart */
+  double step;         /* [s] */
+  int64_t every, next; /* steps between looks; the step of the next one */
+  int count;           /* of watches: 2 with RK4, which K and D bind apart */
   strut_guard_watch watch[2];
   double *image, *divided, *scratch; /* (length) */
-  double *shape, *rest; /* (length), (slots) at the look before */
-  double known_limit;   /* as computed last [s] */
+  double *shape, *rest;              /* (length), (slots) at the look before */
+  double known_limit;                /* as computed last [s] */
   uint64_t noise;
-  bool below;           /* now */
-  double grown;         /* logarithm of what a motion has grown by since it is, at least */
-  int64_t last;         /* step of the last look */
+  bool below;                 /* now */
+  double grown;               /* logarithm of what a motion has grown by since it is, at least */
+  int64_t last;               /* step of the last look */
   double lowest, lowest_time; /* [s]; 0: never below the step */
-  double first_time;    /* when it first was [s] */
+  double first_time;          /* when it first was [s] */
   int64_t steps_below;
-  bool hopeless;        /* it was below for so long that the motion is not the structure's */
+  bool hopeless; /* it was below for so long that the motion is not the structure's */
 } strut_guard;
 
 /** Room and a first estimate, in the state's arena. False: out of memory. */

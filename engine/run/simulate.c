@@ -38,10 +38,10 @@ typedef struct run {
   bool watching;
   strut_watch watch;
   double dt;
-  int64_t first, steps;   /* the step number it begins with, and the one it is to end with */
-  int64_t period_steps;   /* of a drive period, where steady motion is watched for */
-  int64_t more_periods;   /* to run, and record, once it is steady */
-  int64_t shot_periods;   /* drive periods that shooting took */
+  int64_t first, steps; /* the step number it begins with, and the one it is to end with */
+  int64_t period_steps; /* of a drive period, where steady motion is watched for */
+  int64_t more_periods; /* to run, and record, once it is steady */
+  int64_t shot_periods; /* drive periods that shooting took */
 } run;
 
 double strut_run_clock(void) {
@@ -147,8 +147,8 @@ static strut_status prepare(run *r) {
     return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
   strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, begin);
-  return strut_recording_create(r->model, r->dt, begin, r->options->sinks,
-                                r->options->sink_count, &r->recording, r->error);
+  return strut_recording_create(r->model, r->dt, begin, r->options->sinks, r->options->sink_count,
+                                &r->recording, r->error);
 }
 
 /* The first node that is nowhere or too far away, or -1. */
@@ -187,18 +187,21 @@ static strut_status diverged(const run *r, int32_t node) {
 /* A method could not go on. */
 static strut_status stuck(const run *r) {
   static const char *const why[] = {
-      [STRUT_TROUBLE_STEP] = "the step needed for the tolerance became too small to matter; give a "
-                             "larger solver.tolerance, or look for a member of zero length",
+      [STRUT_TROUBLE_STEP] =
+          "the step needed for the tolerance became too small to matter; give a "
+          "larger solver.tolerance, or look for a member of zero length",
       [STRUT_TROUBLE_NEWTON] = "the implicit step has no solution nearby; use a smaller step",
-      [STRUT_TROUBLE_RIGID] = "rigid bars cannot keep their lengths; use a smaller step, or look for "
-                              "bars that hold each other",
+      [STRUT_TROUBLE_RIGID] =
+          "rigid bars cannot keep their lengths; use a smaller step, or look for "
+          "bars that hold each other",
       [STRUT_TROUBLE_INTERRUPT] = "it was interrupted"};
   if (r->state->trouble == STRUT_TROUBLE_IMPLICIT)
-    return strut_fail(r->error, STRUT_DIVERGED,
-                      "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g "
-                      "s; use a smaller step, or look there for a member that passes through no length",
-                      r->method->name, (double)r->state->step * r->dt,
-                      r->summary->node_names[r->state->trouble_node], r->dt);
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g "
+        "s; use a smaller step, or look there for a member that passes through no length",
+        r->method->name, (double)r->state->step * r->dt,
+        r->summary->node_names[r->state->trouble_node], r->dt);
   return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
                     r->method->name, (double)r->state->step * r->dt, why[r->state->trouble]);
 }
@@ -266,8 +269,8 @@ static strut_status shoot(run *r) {
   strut_period_map map = {.model = NULL};
   double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
   if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
-  strut_status status = strut_period_map_create(
-      r->model->scene, &r->model->scene->experiment, found->repeats, &map, r->error);
+  strut_status status = strut_period_map_create(r->model->scene, &r->model->scene->experiment,
+                                                found->repeats, &map, r->error);
   if (!status) {
     map.time = (double)r->state->step * r->dt;
     memcpy(y, r->state->q, length * sizeof *y);

@@ -17,7 +17,7 @@ typedef struct strut_band_watch {
 } strut_band_watch;
 
 typedef struct strut_stick_band {
-  double step;       /* [s] */
+  double step; /* [s] */
   int looks;
   strut_band_watch *watch; /* (contacts); NULL: nothing to watch */
   double *a, *scratch;     /* (length) */

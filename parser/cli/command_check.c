@@ -78,8 +78,7 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
   print_limits(plan);
   const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
   double limit = method ? strut_step_limit_of(&plan->limits, method) : plan->step_limit;
-  if (method && method->region == STRUT_REGION_ALL)
-    printf("  limit of %-9s none\n", method->name);
+  if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
   if (step > limit) {
     printf("  step               %s: too large, strut run will refuse it\n", in(step, "s").text);
   } else if (step > 0) {

@@ -124,11 +124,12 @@ static void warn(const strut_summary *summary) {
   for (size_t i = 0; i < summary->contact_count; i++) {
     const strut_contact_summary *contact = &summary->contacts[i];
     if (!(contact->band_needed > 0.0)) continue;
-    fprintf(stderr,
-            "strut: warning: node '%s' stuck to the ground by accident, if at all: a step changes its "
-            "slip by %.2g m/s, a hundred times its band or more; use stick_velocity >= %.2g m/s, a "
-            "smaller step, or a method with events\n",
-            contact->node, contact->band_needed, contact->band_needed);
+    fprintf(
+        stderr,
+        "strut: warning: node '%s' stuck to the ground by accident, if at all: a step changes its "
+        "slip by %.2g m/s, a hundred times its band or more; use stick_velocity >= %.2g m/s, a "
+        "smaller step, or a method with events\n",
+        contact->node, contact->band_needed, contact->band_needed);
   }
   if (summary->status == STRUT_OK && summary->limit_fell.limit > 0.0)
     fprintf(stderr,

@@ -46,8 +46,8 @@ static strut_status run(const strut_scene *scene, bool force, strut_summary *s, 
   return status;
 }
 
-static const char *const METHODS[] = {"rk4", "verlet", "euler", "rk4-events", "verlet-events",
-                                      "euler-events"};
+static const char *const METHODS[] = {"rk4",        "verlet",        "euler",
+                                      "rk4-events", "verlet-events", "euler-events"};
 
 static void check(const char *name) {
   const strut_integrator *method = strut_integrator_find(name);

@@ -27,7 +27,8 @@ typedef struct dense {
 static void fill(const strut_model *model, const strut_tangent *t, const strut_sparse *a,
                  double *out) {
   size_t n = (size_t)t->n, length = (size_t)model->length;
-  double *x = calloc(n, sizeof *x), *y = calloc(n, sizeof *y), *full = calloc(3 * length, sizeof *x);
+  double *x = calloc(n, sizeof *x), *y = calloc(n, sizeof *y),
+         *full = calloc(3 * length, sizeof *x);
   assert_true(x && y && full);
   for (size_t j = 0; j < n; j++) {
     for (size_t i = 0; i < n; i++) x[i] = i == j;
@@ -43,9 +44,9 @@ static void fill(const strut_model *model, const strut_tangent *t, const strut_s
 static dense dense_of(const strut_model *model, strut_closed closed) {
   strut_arena arena = {0};
   strut_tangent t;
-  assert_int_equal(strut_tangent_assemble(model, model->start, model->members.rest, closed, &arena,
-                                          &t),
-                   STRUT_OK);
+  assert_int_equal(
+      strut_tangent_assemble(model, model->start, model->members.rest, closed, &arena, &t),
+      STRUT_OK);
   dense s = {.n = (size_t)t.n};
   s.k = calloc(s.n * s.n, sizeof *s.k), s.d = calloc(s.n * s.n, sizeof *s.d);
   assert_true(s.k && s.d);
@@ -55,9 +56,7 @@ static dense dense_of(const strut_model *model, strut_closed closed) {
   return s;
 }
 
-static void dense_free(dense *s) {
-  free(s->k), free(s->d);
-}
+static void dense_free(dense *s) { free(s->k), free(s->d); }
 
 /* All eigenvalues of a (rows, rows) matrix, which is destroyed. */
 static gsl_vector_complex *eigenvalues(gsl_matrix *a) {
@@ -155,8 +154,8 @@ static void check_plain(const strut_model *model, const strut_step_limit *limit)
   double g[6] = {rk4_growth(z, 0.99 * rk4),        rk4_growth(z, 1.01 * rk4),
                  verlet_growth(&s, 0.99 * verlet), verlet_growth(&s, 1.01 * verlet),
                  euler_growth(&s, 0.99 * euler),   euler_growth(&s, 1.01 * euler)};
-  print_message("  rk4 %.4f %.4f, verlet %.4f %.4f, euler %.4f %.4f\n", g[0], g[1], g[2], g[3], g[4],
-                g[5]);
+  print_message("  rk4 %.4f %.4f, verlet %.4f %.4f, euler %.4f %.4f\n", g[0], g[1], g[2], g[3],
+                g[4], g[5]);
   for (int i = 0; i < 6; i++) assert_true(i % 2 ? g[i] > GROWS : g[i] < STAYS);
   gsl_vector_complex_free(z);
   dense_free(&s);
@@ -288,8 +287,7 @@ static void test_time_of_many_nodes(void **unused) {
                   (double)(clock() - begin) / CLOCKS_PER_SEC);
     assert_relative(limit.of[STRUT_REGION_VERLET] * omega,
                     2 * (sqrt(4 * zeta * zeta + 1) - 2 * zeta), 1e-2);
-    assert_relative(limit.of[STRUT_REGION_EULER] * omega,
-                    2 * (sqrt(zeta * zeta + 1) - zeta), 1e-2);
+    assert_relative(limit.of[STRUT_REGION_EULER] * omega, 2 * (sqrt(zeta * zeta + 1) - zeta), 1e-2);
     if (k == 0) assert_relative(limit.limit * omega, 2.8284271, 1e-2);
     if (k == 2) assert_relative(limit.limit * omega, 2.7852936, 1e-2);
     strut_model_free(model);
