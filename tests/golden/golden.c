@@ -40,7 +40,7 @@ static uint64_t hash_run(const strut_model *model, strut_state *state,
     method->advance(model, state, workspace, model->scene->experiment.step, 100);
     hash = add(hash, state->q, length);
     hash = add(hash, state->v, length);
-    hash = add(hash, state->work, sizeof state->work);
+    hash = add(hash, state->work, STRUT_POWER_COUNT * sizeof state->work[0]);
     hash = add(hash, state->force, length);
   }
   return hash;
