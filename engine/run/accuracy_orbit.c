@@ -102,7 +102,7 @@ static strut_status run_cheap(way *w, bool *steady) {
   if (!status) status = allocate(w, model);
   strut_model_free(model);
   if (status) return status;
-  status = run_until_steady(w, a->cheap, fmax(0.02, 4.0 * a->wanted), 3, first, false, &w->run);
+  status = run_until_steady(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
   if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && periods > first) {
     strut_summary more = {0};
     status = run_until_steady(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true,
@@ -321,7 +321,7 @@ static strut_status settle_cheap(way *w, bool *steady) {
   return status;
 }
 
-/* What is known of the error of the orbit's velocity, in parts of what is wanted. */
+/* The error of the orbit's velocity, in parts of what is wanted. */
 static double part_of_wanted(const way *w) {
   double size = size_of_velocity(w->a, w->orbit.velocity);
   return w->error / (w->a->wanted * size);
@@ -354,7 +354,9 @@ static strut_status find_orbit(way *w, strut_summary *orbit, bool *cheap_does) {
   w->error = HUGE_VAL;
   if (status) return status;
   w->settled = (way_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
-  if (steady) status = correct(w, 0.3 * a->wanted * size, a->wanted < COARSE ? 2 : 1);
+  bool last_word = a->wanted < FINE; /* the accurate method goes on itself: come near enough */
+  double enough = (last_word ? 3.0 : 0.3) * a->wanted * size;
+  if (steady) status = correct(w, enough, a->wanted >= COARSE || last_word ? 1 : 2);
   if (status) return status;
   double moved = steady ? fabs(w->orbit.velocity - w->run.velocity) + w->error : HUGE_VAL;
   *cheap_does = a->wanted >= COARSE && moved <= 0.8 * a->wanted * size;

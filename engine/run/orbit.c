@@ -6,7 +6,7 @@
 
 /* The sum over a disturbance ends when it moves the structure so much less than at its height. */
 static const double REMAINDER = 0.02;
-enum { MOST_PERIODS = 60 };
+enum { MOST_PERIODS = 20 };
 
 /*
  * What C makes of the disturbance d of `base`, summed over the periods, into sum; returns the sum of
