@@ -4,6 +4,7 @@
  *
  *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
  *                                            X-frames of 10 to N (default 1000000) members
+ *   strut_bench lanes                        the crawler in 1, 2, 4 and 8 lanes alone
  *   strut_bench chain MEMBERS [lumped|consistent]   writes such a chain as a scene file to stdout
  *   strut_bench load FILE                    reads and compiles a scene file; seconds and memory
  *
@@ -20,6 +21,7 @@
 #ifdef BENCH_PARSER
 #include "parser/read_scene.h"
 #endif
+#include "tests/bench/lanes.h"
 #include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
 
@@ -184,12 +186,17 @@ static int load(const char *path) {
 static int usage(void) {
   fprintf(stderr,
           "usage: strut_bench [--repeats N] [--members N]\n"
+          "       strut_bench lanes\n"
           "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
           "       strut_bench load FILE\n");
   return 1;
 }
 
 int main(int argc, char **argv) {
+  if (argc == 2 && strcmp(argv[1], "lanes") == 0) {
+    bench_lanes(15);
+    return 0;
+  }
   if (argc == 3 && strcmp(argv[1], "load") == 0) return load(argv[2]);
   if (argc >= 3 && strcmp(argv[1], "chain") == 0) {
     bool consistent = argc > 3 && strcmp(argv[3], "consistent") == 0;
@@ -209,6 +216,7 @@ int main(int argc, char **argv) {
   }
   if (repeats < 1 || repeats > MOST_REPEATS) return usage();
   compare_crawlers(repeats);
+  bench_lanes(repeats);
   compare_chains(members, repeats);
   return 0;
 }

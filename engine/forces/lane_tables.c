@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/lane_tables.h"
+
+#include <math.h>
+#include <string.h>
+
+bool strut_lanes_possible(const strut_model *model) {
+  const strut_mass *mass = model->mass;
+  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_LAWS))) return false;
+  return !mass->coordinate[0].factor && !mass->coordinate[1].factor;
+}
+
+static bool same(const void *a, const void *b, int32_t count, size_t size) {
+  return count == 0 || memcmp(a, b, (size_t)count * size) == 0;
+}
+
+static int32_t rows_of(const strut_mass_operator *op) {
+  int32_t rows = 0;
+  for (int32_t b = 0; b < op->block_count; b++) rows += op->block_size[b];
+  return rows;
+}
+
+static int32_t entries_of(const strut_mass_operator *op) {
+  int32_t entries = 0;
+  for (int32_t b = 0; b < op->block_count; b++) entries += op->block_size[b] * op->block_size[b];
+  return entries;
+}
+
+static bool masses_alike(const strut_mass *a, const strut_mass *b) {
+  if (a->shared != b->shared || a->diagonal != b->diagonal || a->any_single != b->any_single)
+    return false;
+  for (int c = 0; c < 2 && !a->diagonal; c++) {
+    const strut_mass_operator *x = &a->coordinate[c], *y = &b->coordinate[c];
+    if (x->block_count != y->block_count ||
+        !same(x->block_size, y->block_size, x->block_count, sizeof *x->block_size) ||
+        !same(x->block_at, y->block_at, rows_of(x), sizeof *x->block_at))
+      return false;
+  }
+  return true;
+}
+
+bool strut_lanes_alike(const strut_model *a, const strut_model *b) {
+  const strut_member_table *s = &a->members, *t = &b->members;
+  if (a->plan != b->plan || a->length != b->length || a->node_count != b->node_count ||
+      s->slots != t->slots || s->count != t->count || a->contacts.count != b->contacts.count ||
+      a->drives.count != b->drives.count || a->loads.count != b->loads.count || !a->mass ||
+      !b->mass)
+    return false;
+  return same(s->from, t->from, s->slots, sizeof *s->from) &&
+         same(s->to, t->to, s->slots, sizeof *s->to) &&
+         same(s->block_terms, t->block_terms, s->blocks, sizeof *s->block_terms) &&
+         same(a->contacts.at, b->contacts.at, a->contacts.count, sizeof *a->contacts.at) &&
+         same(a->drives.member, b->drives.member, a->drives.count, sizeof *a->drives.member) &&
+         same(a->drives.first, b->drives.first, a->drives.count, sizeof *a->drives.first) &&
+         same(a->loads.node, b->loads.node, a->loads.count, sizeof *a->loads.node) &&
+         masses_alike(a->mass, b->mass);
+}
+
+/* A table of (rows, width). */
+typedef struct table {
+  double **at;
+  int32_t rows;
+} table;
+
+enum { TABLES = 19 };
+
+static void list_tables(strut_lane_tables *t, table *list) {
+  const strut_model *m = t->first;
+  int32_t slots = m->members.slots, length = m->length, loads = m->loads.count;
+  const strut_mass *mass = m->mass;
+  int32_t blocks[2];
+  for (int c = 0; c < 2; c++) blocks[c] = mass->diagonal ? 0 : entries_of(&mass->coordinate[c]);
+  const table all[TABLES] = {{&t->stiffness, slots},
+                             {&t->damping, slots},
+                             {&t->rest0, slots},
+                             {&t->rest, slots},
+                             {&t->rest_rate, slots},
+                             {&t->taut_stretch, slots},
+                             {&t->taut_tension, slots},
+                             {&t->constant, length},
+                             {&t->contact, m->contacts.count * STRUT_LANE_CONTACT_ROWS},
+                             {&t->ground, STRUT_LANE_GROUND_ROWS},
+                             {&t->wave, (m->drives.count + loads) * STRUT_LANE_WAVE_ROWS},
+                             {&t->load_factor, loads},
+                             {&t->load_x, loads},
+                             {&t->load_y, loads},
+                             {&t->inverse, length},
+                             {&t->block_inverse[0], blocks[0]},
+                             {&t->block_inverse[1], blocks[1]},
+                             {&t->force, length},
+                             {&t->power, STRUT_POWER_COUNT}};
+  memcpy(list, all, sizeof all);
+}
+
+bool strut_lane_tables_create(const strut_model *first, int32_t width, strut_arena *arena,
+                              strut_lane_tables *tables) {
+  table list[TABLES];
+  *tables = (strut_lane_tables){.width = width, .first = first};
+  list_tables(tables, list);
+  for (int i = 0; i < TABLES; i++) {
+    size_t count = (size_t)list[i].rows * (size_t)width;
+    *list[i].at = strut_arena_allocate(arena, count, sizeof **list[i].at);
+    if (!*list[i].at) return false;
+  }
+  size_t signals = (size_t)(first->drives.count + first->loads.count);
+  tables->all_waves = strut_arena_allocate(arena, signals, sizeof *tables->all_waves);
+  return tables->all_waves != NULL;
+}
+
+/* A lane of a table from an array; NULL: zeros. */
+static void spread(double *to, int32_t width, int32_t lane, const double *from, int32_t rows) {
+  for (int32_t i = 0; i < rows; i++) to[i * width + lane] = from ? from[i] : 0.0;
+}
+
+static void fill_wave(double *to, int32_t width, int32_t lane, const strut_signal *s) {
+  const double row[STRUT_LANE_WAVE_ROWS] = {
+      [STRUT_LANE_AMPLITUDE] = s->amplitude,
+      [STRUT_LANE_RATE] = s->amplitude * 6.283185307179586476925 * s->frequency,
+      [STRUT_LANE_FREQUENCY] = s->frequency,
+      [STRUT_LANE_PHASE] = s->phase,
+      [STRUT_LANE_START] = s->start,
+      [STRUT_LANE_STOP] = s->stop,
+      [STRUT_LANE_MOST_TURNS] = s->kind == STRUT_HALF_SINE ? 0.5 : HUGE_VAL};
+  spread(to, width, lane, row, STRUT_LANE_WAVE_ROWS);
+}
+
+/* The i-th of a model's signals: those of its drives, then those of its loads. */
+static const strut_signal *signal_at(const strut_model *m, int32_t i) {
+  int32_t drives = m->drives.count;
+  return &m->scene->signals[i < drives ? m->drives.signal[i] : m->loads.signal[i - drives]];
+}
+
+static void fill_signals(strut_lane_tables *t, int32_t lane, const strut_model *m) {
+  int32_t count = m->drives.count + m->loads.count, rows = STRUT_LANE_WAVE_ROWS * t->width;
+  for (int32_t i = 0; i < count; i++) {
+    fill_wave(t->wave + i * rows, t->width, lane, signal_at(m, i));
+    t->all_waves[i] = true;
+    for (int32_t l = 0; l < t->width; l++) {
+      strut_signal_kind kind = t->model[l] ? signal_at(t->model[l], i)->kind : STRUT_SINE;
+      if (kind != STRUT_SINE && kind != STRUT_HALF_SINE) t->all_waves[i] = false;
+    }
+  }
+}
+
+static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_table *c) {
+  for (int32_t i = 0; i < c->count; i++) {
+    const strut_contact_entry *e = &c->entry[i];
+    const double row[STRUT_LANE_CONTACT_ROWS] = {[STRUT_LANE_STIFFNESS] = e->stiffness,
+                                                 [STRUT_LANE_DAMPING] = e->damping,
+                                                 [STRUT_LANE_MU_STATIC] = e->mu_static,
+                                                 [STRUT_LANE_MU_KINETIC] = e->mu_kinetic,
+                                                 [STRUT_LANE_STICK] = e->stick_velocity};
+    spread(t->contact + i * STRUT_LANE_CONTACT_ROWS * t->width, t->width, lane, row,
+           STRUT_LANE_CONTACT_ROWS);
+  }
+  const double ground[STRUT_LANE_GROUND_ROWS] = {c->tangent[0], c->tangent[1], c->normal[0],
+                                                 c->normal[1],  c->height,     c->belt_speed};
+  spread(t->ground, t->width, lane, ground, STRUT_LANE_GROUND_ROWS);
+}
+
+void strut_lane_tables_fill(strut_lane_tables *t, int32_t lane, const strut_model *m) {
+  const strut_member_table *s = &m->members;
+  int32_t width = t->width;
+  t->model[lane] = m;
+  spread(t->stiffness, width, lane, s->stiffness, s->slots);
+  spread(t->damping, width, lane, s->damping, s->slots);
+  spread(t->rest0, width, lane, s->rest, s->slots);
+  spread(t->rest, width, lane, s->rest, s->slots);
+  spread(t->rest_rate, width, lane, NULL, s->slots);
+  spread(t->taut_stretch, width, lane, s->slack, s->slots);
+  spread(t->taut_tension, width, lane, s->slack, s->slots);
+  spread(t->constant, width, lane, m->constant_force, m->length);
+  spread(t->load_x, width, lane, m->loads.x, m->loads.count);
+  spread(t->load_y, width, lane, m->loads.y, m->loads.count);
+  spread(t->inverse, width, lane, m->mass->inverse, m->length);
+  for (int c = 0; c < 2 && !m->mass->diagonal; c++) {
+    const strut_mass_operator *op = &m->mass->coordinate[c];
+    spread(t->block_inverse[c], width, lane, op->block_inverse, entries_of(op));
+  }
+  fill_ground(t, lane, &m->contacts);
+  fill_signals(t, lane, m);
+}
+
+void strut_lane_tables_copy(strut_lane_tables *t, int32_t to, int32_t from) {
+  table list[TABLES];
+  list_tables(t, list);
+  t->model[to] = t->model[from];
+  for (int i = 0; i < TABLES; i++)
+    for (int32_t row = 0; row < list[i].rows; row++) {
+      double *lanes = *list[i].at + row * t->width;
+      lanes[to] = lanes[from];
+    }
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/integrate/batch.h"
+
+#include <string.h>
+
+int32_t strut_batch_widest(void) {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
+    return 8;
+  return __builtin_cpu_supports("avx2") ? 4 : 2;
+#else
+  return 2;
+#endif
+}
+
+bool strut_batch_possible(const strut_model *model, const strut_integrator *method) {
+  return method == &strut_integrator_rk4 && strut_lanes_possible(model);
+}
+
+strut_batch *strut_batch_create(const strut_model *first, const strut_integrator *method,
+                                int32_t width, bool ledger) {
+  strut_batch *b = strut_allocate(1, sizeof *b);
+  if (!b) return NULL;
+  size_t row = (size_t)width, both = (size_t)first->length * row;
+  b->method = method;
+  b->ledger = ledger;
+  b->run = width == 8 ? strut_batch_rk4_8 : width == 4 ? strut_batch_rk4_4 : strut_batch_rk4_2;
+  bool good = strut_lane_tables_create(first, width, &b->arena, &b->tables);
+  double **const all[] = {&b->q,          &b->v,    &b->stage_q, &b->stage_v[1], &b->stage_v[2],
+                          &b->stage_v[3], &b->a[0], &b->a[1],    &b->a[2],       &b->a[3]};
+  for (size_t i = 0; i < sizeof all / sizeof all[0] && good; i++)
+    good = (*all[i] = strut_arena_allocate(&b->arena, both, sizeof(double))) != NULL;
+  b->dt = strut_arena_allocate(&b->arena, row, sizeof(double));
+  b->step = strut_arena_allocate(&b->arena, row, sizeof(double));
+  b->work = strut_arena_allocate(&b->arena, STRUT_POWER_COUNT * row, sizeof(double));
+  if (good && b->dt && b->step && b->work) return b;
+  strut_batch_free(b);
+  return NULL;
+}
+
+void strut_batch_free(strut_batch *b) {
+  if (!b) return;
+  strut_arena_free(&b->arena);
+  strut_release(b);
+}
+
+static void copy_rows(double *table, int32_t rows, int32_t width, int32_t to, int32_t from) {
+  for (int32_t i = 0; i < rows; i++) table[i * width + to] = table[i * width + from];
+}
+
+/* An idle lane does what another one does, which keeps it finite. */
+static void imitate(strut_batch *b, int32_t to, int32_t from) {
+  int32_t width = b->tables.width, length = b->tables.first->length;
+  strut_lane_tables_copy(&b->tables, to, from);
+  copy_rows(b->q, length, width, to, from);
+  copy_rows(b->v, length, width, to, from);
+  copy_rows(b->work, STRUT_POWER_COUNT, width, to, from);
+  b->dt[to] = b->dt[from];
+  b->step[to] = b->step[from];
+}
+
+void strut_batch_fill(strut_batch *b, int32_t lane, const strut_model *model, double dt) {
+  strut_lane_tables_fill(&b->tables, lane, model);
+  b->dt[lane] = dt;
+  b->filled[lane] = true;
+}
+
+void strut_batch_empty(strut_batch *b, int32_t lane) {
+  b->filled[lane] = false;
+  for (int32_t l = 0; l < b->tables.width; l++) /* those that imitate it, too */
+    if (!b->filled[l]) b->tables.model[l] = NULL;
+}
+
+void strut_batch_put(strut_batch *b, int32_t lane, const strut_state *state) {
+  int32_t width = b->tables.width, length = b->tables.first->length;
+  for (int32_t i = 0; i < length; i++) {
+    b->q[i * width + lane] = state->q[i];
+    b->v[i * width + lane] = state->v[i];
+  }
+  for (int32_t p = 0; p < STRUT_POWER_COUNT; p++) b->work[p * width + lane] = state->work[p];
+  b->step[lane] = (double)state->step;
+}
+
+void strut_batch_look(const strut_batch *b, int32_t lane, strut_state *state) {
+  int32_t width = b->tables.width, length = 2 * b->tables.first->node_count;
+  int64_t before = state->step;
+  for (int32_t i = 0; i < length; i++) {
+    state->q[i] = b->q[i * width + lane];
+    state->v[i] = b->v[i * width + lane];
+  }
+  state->step = (int64_t)b->step[lane];
+  state->evaluations += (state->step - before) * b->method->evaluations;
+}
+
+void strut_batch_get(const strut_batch *b, int32_t lane, strut_state *state) {
+  const strut_lane_tables *t = &b->tables;
+  int32_t width = t->width;
+  strut_batch_look(b, lane, state);
+  for (int32_t i = 0; i < 2 * t->first->node_count; i++)
+    state->force[i] = t->force[i * width + lane];
+  for (int32_t j = 0; j < t->first->members.count; j++) {
+    state->rest[j] = t->rest[j * width + lane];
+    state->rest_rate[j] = t->rest_rate[j * width + lane];
+  }
+  state->drive_time = b->step[lane] * b->dt[lane];
+  for (int32_t p = 0; p < STRUT_POWER_COUNT && b->ledger; p++) {
+    state->work[p] = b->work[p * width + lane];
+    state->power[p] = t->power[p * width + lane];
+  }
+}
+
+void strut_batch_advance(strut_batch *b, int64_t count) {
+  int32_t from = 0;
+  while (!b->filled[from]) from++;
+  for (int32_t l = 0; l < b->tables.width; l++)
+    if (!b->filled[l] && !b->tables.model[l]) imitate(b, l, from);
+  b->run(b, count);
+}

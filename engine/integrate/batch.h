@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A batch: several states of models of one topology, stepped in lockstep with vector registers.
+ *
+ * Each lane has its own model, step size and step number, and after any number of steps the bits that
+ * the method's single run would have. Lanes that no one has filled idle as copies of others.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_BATCH_H
+#define STRUT_ENGINE_INTEGRATE_BATCH_H
+
+#include "engine/forces/lane_tables.h"
+#include "engine/integrate/integrator.h"
+
+typedef struct strut_batch strut_batch;
+
+/** The most lanes that this processor steps at once: 8, 4 or 2. */
+STRUT_API int32_t strut_batch_widest(void);
+/** Can the method step this model in lanes? */
+STRUT_API bool strut_batch_possible(const strut_model *model, const strut_integrator *method);
+
+/**
+ * A batch for models like `first`, which must be possible and outlive it. width: 2, 4 or 8, at most the
+ * widest. ledger: whether the lanes' states keep one. NULL: out of memory.
+ */
+STRUT_API strut_batch *strut_batch_create(const strut_model *first, const strut_integrator *method,
+                                          int32_t width, bool ledger);
+STRUT_API void strut_batch_free(strut_batch *batch);
+/** Puts a model, which must be like the first one (strut_lanes_alike), into a lane. */
+STRUT_API void strut_batch_fill(strut_batch *batch, int32_t lane, const strut_model *model,
+                                double dt);
+/** Nobody asks for this lane any more. Its model may go. */
+STRUT_API void strut_batch_empty(strut_batch *batch, int32_t lane);
+/** The lane goes on from the state: q, v, works, step. */
+STRUT_API void strut_batch_put(strut_batch *batch, int32_t lane, const strut_state *state);
+/** The state becomes the lane's: all that the method's advance would have left there. */
+STRUT_API void strut_batch_get(const strut_batch *batch, int32_t lane, strut_state *state);
+/** Positions and velocities only, and the step's number. */
+STRUT_API void strut_batch_look(const strut_batch *batch, int32_t lane, strut_state *state);
+/** Advances all lanes by `count` steps. Allocates nothing. At least one lane must be filled. */
+STRUT_API void strut_batch_advance(strut_batch *batch, int64_t count);
+
+/* Shared by batch.c and the kernels of each width. */
+
+/** Arrays are (length, width) where not said otherwise. */
+struct strut_batch {
+  strut_lane_tables tables;
+  const strut_integrator *method;
+  bool ledger;
+  bool filled[STRUT_MOST_LANES];
+  double *dt, *step; /* (width) */
+  double *q, *v, *stage_q, *stage_v[4], *a[4];
+  double *work; /* (STRUT_POWER_COUNT, width) */
+  void (*run)(strut_batch *batch, int64_t count);
+  strut_arena arena;
+};
+
+void strut_batch_rk4_2(strut_batch *batch, int64_t count);
+void strut_batch_rk4_4(strut_batch *batch, int64_t count);
+void strut_batch_rk4_8(strut_batch *batch, int64_t count);
+
+#endif

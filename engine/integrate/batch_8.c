@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The methods for batches of 8 lanes. */
+#define STRUT_LANE_WIDTH 8
+#if defined(__x86_64__)
+#define STRUT_LANE_TARGET __attribute__((target("avx512f,avx512dq,avx512vl")))
+#endif
+#include "engine/integrate/batch_rk4.h"
+
+STRUT_LANE_TARGET
+static void rk4_plain(strut_batch *batch, int64_t count) { batch_rk4_steps(batch, count, false); }
+
+STRUT_LANE_TARGET
+static void rk4_with_ledger(strut_batch *batch, int64_t count) {
+  batch_rk4_steps(batch, count, true);
+}
+
+void strut_batch_rk4_8(strut_batch *batch, int64_t count) {
+  if (batch->ledger)
+    rk4_with_ledger(batch, count);
+  else
+    rk4_plain(batch, count);
+}

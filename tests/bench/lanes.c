@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/bench/lanes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/integrate/batch.h"
+#include "tests/bench/rivals.h"
+#include "tests/bench/scenes.h"
+
+enum { WIDTHS = 4, METHODS = 1, MOST = 1001 };
+static const int32_t widths[WIDTHS] = {1, 2, 4, 8};
+static const char *const methods[METHODS] = {"rk4"};
+
+typedef struct lane {
+  strut_scene scene;
+  strut_model *model;
+  strut_state *state;
+  void *workspace;
+} lane;
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static bool lane_make(lane *it, int i, const strut_integrator *method, bool ledger) {
+  *it = (lane){0};
+  if (bench_crawler_scene(&it->scene, 10.0 + 0.1 * i, 1e-4, 0.1) != STRUT_OK ||
+      strut_model_compile(&it->scene, &it->model, NULL) != STRUT_OK ||
+      strut_state_create(it->model, &it->state, NULL) != STRUT_OK ||
+      !(it->workspace = method->create(it->model, it->state)))
+    return false;
+  it->state->ledger = ledger;
+  if (method->restart) method->restart(it->model, it->state, it->workspace, 1e-4);
+  return true;
+}
+
+static void lane_free(lane *it) {
+  strut_state_free(it->state);
+  strut_model_free(it->model);
+  strut_scene_free(&it->scene);
+}
+
+/* One method: the lanes, and a batch of each width made of them. */
+static void compare(const char *name, bool ledger, int repeats) {
+  static double times[WIDTHS][MOST];
+  const strut_integrator *method = strut_integrator_find(name);
+  lane lanes[STRUT_MOST_LANES];
+  strut_batch *batch[WIDTHS] = {NULL};
+  bool good = true;
+  const int64_t steps = 5000;
+  for (int i = 0; i < STRUT_MOST_LANES; i++) good &= lane_make(&lanes[i], i, method, ledger);
+  for (int w = 1; w < WIDTHS && good && widths[w] <= strut_batch_widest(); w++) {
+    batch[w] = strut_batch_create(lanes[0].model, method, widths[w], ledger);
+    for (int32_t l = 0; l < widths[w] && batch[w]; l++) {
+      strut_batch_fill(batch[w], l, lanes[l].model, 1e-4);
+      strut_batch_put(batch[w], l, lanes[l].state);
+    }
+  }
+  for (int r = -1; r < repeats && good; r++) /* the first round is for warming up */
+    for (int w = 0; w < WIDTHS; w++) {
+      double start = bench_seconds();
+      if (w && batch[w])
+        strut_batch_advance(batch[w], steps);
+      else if (!w)
+        method->advance(lanes[0].model, lanes[0].state, lanes[0].workspace, 1e-4, steps);
+      if (r >= 0) times[w][r] = 1e9 * (bench_seconds() - start) / (double)(steps * widths[w]);
+    }
+  for (int w = 0; w < WIDTHS && good; w++) {
+    if (w && !batch[w]) continue;
+    qsort(times[w], (size_t)repeats, sizeof times[w][0], ascending);
+    double typical = times[w][repeats / 2];
+    printf("  %-14s %-8s %5d %10.1f %10.2f\n", name, ledger ? "ledger" : "", widths[w], typical,
+           times[0][repeats / 2] / typical);
+  }
+  for (int w = 1; w < WIDTHS; w++) strut_batch_free(batch[w]);
+  for (int i = 0; i < STRUT_MOST_LANES; i++) lane_free(&lanes[i]);
+}
+
+void bench_lanes(int repeats) {
+  printf("\nlanes: the crawler, 0.1 ms\n  %-14s %-8s %5s %10s %10s\n", "", "", "lanes", "ns/step",
+         "times");
+  for (int m = 0; m < METHODS; m++)
+    for (int ledger = 0; ledger < 2; ledger++) compare(methods[m], ledger, repeats);
+}

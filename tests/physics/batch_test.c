@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Lanes of a batch against single runs, bit for bit: random structures with all that a scene can have,
+ * each lane with numbers of its own, lanes that end and are refilled, and the crawler from both starts.
+ */
+#include <string.h>
+
+#include "engine/integrate/batch.h"
+#include "tests/physics/random_scene.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/structures.h"
+
+/* A point: a scene of its own, run alone for the reference and in a lane. */
+typedef struct point {
+  strut_scene scene;
+  motion alone, lane; /* the lane's state is where it is put from and taken to */
+  int64_t steps;
+} point;
+
+/* Other numbers, the same topology. */
+static void vary(strut_scene *scene, uint64_t *r) {
+  for (size_t i = 0; i < scene->node_count; i++) {
+    strut_node *node = &scene->nodes[i];
+    for (int c = 0; c < 2; c++) {
+      node->start[c] += random_between(r, -0.05, 0.05);
+      node->velocity[c] += node->fixed[c] ? 0.0 : random_between(r, -1, 1);
+    }
+    node->mass *= random_between(r, 0.8, 1.2);
+  }
+  for (size_t j = 0; j < scene->member_count; j++) {
+    scene->members[j].stiffness *= random_between(r, 0.8, 1.2);
+    scene->members[j].damping *= random_between(r, 0.8, 1.2);
+    scene->members[j].mass *= random_between(r, 0.8, 1.2);
+  }
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    scene->signals[i].amplitude *= random_between(r, 0.5, 1.5);
+    if (scene->signals[i].frequency > 0.0) scene->signals[i].frequency = random_scale(r, 0.1, 10);
+  }
+  for (size_t i = 0; i < scene->load_count; i++) scene->loads[i].force[0] += 0.1;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    strut_contact *c = &scene->contacts[i];
+    c->stiffness *= random_between(r, 0.8, 1.2), c->damping *= random_between(r, 0.8, 1.2);
+    c->friction.mu_kinetic *= random_between(r, 0.5, 1.0);
+    c->friction.stick_velocity *= random_between(r, 0.5, 2.0);
+  }
+  scene->ground.height += random_between(r, -0.1, 0.1);
+  scene->ground.belt_speed *= random_between(r, 0.5, 1.5);
+}
+
+static void begin_point(point *p, const char *method, double step, int64_t steps, bool ledger) {
+  motion_begin_by(&p->alone, &p->scene, method, step);
+  motion_begin_by(&p->lane, &p->scene, method, step);
+  p->alone.state->ledger = p->lane.state->ledger = ledger;
+  p->steps = steps;
+}
+
+static void end_point(point *p) {
+  motion_end(&p->alone);
+  motion_end(&p->lane);
+  strut_scene_free(&p->scene);
+}
+
+/* Some of the motions are violent and end nowhere; of that only the sign may differ. */
+static void check_array(const double *lane, const double *alone, int32_t count) {
+  for (int32_t i = 0; i < count; i++)
+    if (!isnan(lane[i]) || !isnan(alone[i])) assert_same_bits(lane[i], alone[i]);
+}
+
+static void check_point(point *p, bool ledger) {
+  const strut_state *a = p->lane.state, *b = p->alone.state;
+  const strut_model *m = p->lane.model;
+  assert_int_equal(a->step, b->step);
+  assert_int_equal(a->evaluations, b->evaluations);
+  check_array(a->q, b->q, 2 * m->node_count);
+  check_array(a->v, b->v, 2 * m->node_count);
+  check_array(a->force, b->force, 2 * m->node_count);
+  check_array(a->rest, b->rest, m->members.count);
+  check_array(a->rest_rate, b->rest_rate, m->members.count);
+  if (ledger) check_array(a->work, b->work, STRUT_POWER_COUNT);
+  if (ledger) check_array(a->power, b->power, STRUT_POWER_COUNT);
+}
+
+/* All points through one batch; each has its own length, and makes room for the next. */
+static void run_in_lanes(point *points, int count, int32_t width, bool ledger) {
+  point *in[STRUT_MOST_LANES] = {NULL};
+  strut_batch *b = strut_batch_create(points[0].lane.model, points[0].lane.method, width, ledger);
+  assert_non_null(b);
+  for (int next = 0, left = count; left > 0;) {
+    int64_t stop = INT64_MAX;
+    for (int32_t l = 0; l < width; l++) {
+      if (!in[l] && next < count) {
+        in[l] = &points[next++];
+        strut_batch_fill(b, l, in[l]->lane.model, in[l]->lane.step);
+        strut_batch_put(b, l, in[l]->lane.state);
+      }
+      if (!in[l]) continue;
+      int64_t rest = in[l]->steps - in[l]->lane.state->step;
+      stop = rest < stop ? rest : stop;
+    }
+    strut_batch_advance(b, stop);
+    for (int32_t l = 0; l < width; l++) {
+      if (!in[l]) continue;
+      strut_batch_get(b, l, in[l]->lane.state);
+      if (in[l]->lane.state->step < in[l]->steps) continue;
+      motion_steps(&in[l]->alone, in[l]->steps);
+      check_point(in[l], ledger);
+      strut_batch_empty(b, l);
+      in[l] = NULL;
+      left--;
+    }
+  }
+  strut_batch_free(b);
+}
+
+static void compare_random(uint64_t seed, int32_t width, bool ledger, int *done) {
+  enum { POINTS = 11 };
+  static point points[POINTS];
+  uint64_t r = seed;
+  int count = 0;
+  bool possible = true;
+  for (; count < POINTS && possible; count++) {
+    random_scene(&points[count].scene, seed);
+    if (count) vary(&points[count].scene, &r);
+    begin_point(&points[count], "rk4", random_scale(&r, 1e-4, 1e-3), 3 + random_below(&r, 200),
+                ledger);
+    possible = strut_batch_possible(points[0].lane.model, points[0].lane.method) &&
+               strut_lanes_alike(points[0].lane.model, points[count].lane.model);
+  }
+  if (possible) run_in_lanes(points, count, width, ledger);
+  *done += possible;
+  for (int i = 0; i < count; i++) end_point(&points[i]);
+}
+
+static void test_random_structures(void **unused) {
+  (void)unused;
+  int done = 0, seeds = 150;
+  for (int seed = 1; seed <= seeds; seed++)
+    for (int32_t width = 2; width <= strut_batch_widest(); width *= 2)
+      compare_random((uint64_t)seed, width, seed % 2, &done);
+  assert_true(done > seeds); /* of up to three widths; those with a sparse factor have no lanes */
+}
+
+static void test_crawler(void **unused) {
+  (void)unused;
+  enum { POINTS = 21 };
+  static point points[POINTS];
+  for (int32_t width = 2; width <= strut_batch_widest(); width *= 2)
+    for (int ledger = 0; ledger < 2; ledger++) {
+      uint64_t r = 7;
+      for (int i = 0; i < POINTS; i++) {
+        strut_scene_init(&points[i].scene);
+        structure_crawler(&points[i].scene, random_between(&r, 1, 20),
+                          random_between(&r, 1e-5, 1e-3), random_between(&r, 0.05, 0.6), i % 2);
+        if (i % 5 == 3) points[i].scene.signals[0].kind = STRUT_HALF_SINE;
+        begin_point(&points[i], "rk4", random_between(&r, 5e-5, 1e-4), 200 + random_below(&r, 6000),
+                    ledger);
+        assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
+      }
+      run_in_lanes(points, POINTS, width, ledger);
+      for (int i = 0; i < POINTS; i++) end_point(&points[i]);
+    }
+}
+
+/* What has no kernel, or another topology, is refused. */
+static void test_refusals(void **unused) {
+  (void)unused;
+  strut_scene chain, crawler, other;
+  strut_scene_init(&chain), strut_scene_init(&crawler), strut_scene_init(&other);
+  structure_chain(&chain, 20, STRUT_MASS_CONSISTENT);
+  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
+  structure_crawler(&other, 10, 1e-4, 0.1, false);
+  other.members[3].node[0] = 4;
+  strut_model *a = motion_compile(&chain), *b = motion_compile(&crawler),
+              *c = motion_compile(&other);
+  const strut_integrator *rk4 = strut_integrator_find("rk4");
+  assert_false(strut_batch_possible(a, rk4));
+  assert_true(strut_batch_possible(b, rk4));
+  assert_false(strut_batch_possible(b, strut_integrator_find("adaptive")));
+  assert_true(strut_lanes_alike(b, b));
+  assert_false(strut_lanes_alike(b, c));
+  assert_false(strut_lanes_alike(a, b));
+  strut_model_free(a), strut_model_free(b), strut_model_free(c);
+  strut_scene_free(&chain), strut_scene_free(&crawler), strut_scene_free(&other);
+}
+
+/* The batch asks for memory a handful of times, and says so when there is none. */
+static void test_no_memory(void **unused) {
+  (void)unused;
+  strut_scene crawler;
+  strut_scene_init(&crawler);
+  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
+  strut_model *model = motion_compile(&crawler);
+  strut_batch *batch = NULL;
+  int refused = 0;
+  for (; !batch && refused < 100; refused++) {
+    strut_fail_allocation_after(refused);
+    batch = strut_batch_create(model, strut_integrator_find("rk4"), 2, true);
+    strut_fail_allocation_after(-1);
+  }
+  assert_true(refused > 1 && batch);
+  strut_batch_free(batch);
+  strut_model_free(model);
+  strut_scene_free(&crawler);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_random_structures), cmocka_unit_test(test_crawler),
+      cmocka_unit_test(test_refusals), cmocka_unit_test(test_no_memory)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
