@@ -12,7 +12,7 @@
 #include "engine/base/checksum.h"
 #include "engine/study/slots_parts.h"
 
-enum { BLOCK_BYTES = 1 << 16, BITS = 64 };
+enum { BLOCK_BYTES = 1 << 14, BITS = 64 };
 
 struct strut_slots {
   int descriptor;

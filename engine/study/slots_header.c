@@ -243,28 +243,29 @@ static bool same_columns(const strut_slots_plan *a, const strut_slots_plan *b) {
   return same;
 }
 
+const char *strut_slots_difference(const strut_slots_plan *a, const strut_slots_plan *b) {
+  if (strcmp(a->version, b->version) != 0) return "the version of strut";
+  if (a->points != b->points) return "the number of points";
+  if (!same_columns(a, b)) return "the columns";
+  if (memcmp(a->hash, b->hash, sizeof a->hash) != 0) return "the model, its parameters or the axes";
+  return NULL;
+}
+
 strut_status strut_slots_compare(const char *path, const strut_slots_plan *there,
                                  const strut_slots_plan *wanted, strut_error *error) {
-  static const char advice[] = "give another directory, or remove it to begin anew";
+  const char *difference = strut_slots_difference(there, wanted);
+  char detail[160] = "";
   if (strcmp(there->version, wanted->version) != 0)
-    return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds results of strut %s, and this is strut %s: %s", path,
-                      there->version, wanted->version, advice);
-  if (there->points != wanted->points)
-    return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds results of another study, of %lld points in place of %lld: %s",
-                      path, (long long)there->points, (long long)wanted->points, advice);
-  if (!same_columns(there, wanted))
-    return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds results of another study, with other columns: %s", path, advice);
-  if (memcmp(there->hash, wanted->hash, sizeof there->hash) != 0)
-    return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds results of another study: the model, its parameters or the axes "
-                      "have changed since; %s",
-                      path, advice);
-  if (there->first != wanted->first || there->count != wanted->count ||
-      there->stride != wanted->stride)
-    return strut_fail(error, STRUT_USAGE, "'%s' is for other points of the study: %s", path,
-                      advice);
-  return STRUT_OK;
+    snprintf(detail, sizeof detail, " (%.60s, now %.60s)", there->version, wanted->version);
+  else if (there->points != wanted->points)
+    snprintf(detail, sizeof detail, " (%lld, now %lld)", (long long)there->points,
+             (long long)wanted->points);
+  else if (!difference && (there->first != wanted->first || there->count != wanted->count ||
+                           there->stride != wanted->stride))
+    difference = "which points they are for";
+  if (!difference) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE,
+                    "'%.250s' holds results of another study, which differs in %s%s: give another "
+                    "directory, or remove that file to begin anew",
+                    path, difference, detail);
 }

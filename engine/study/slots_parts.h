@@ -32,6 +32,8 @@ unsigned char *strut_slots_header(const strut_slots_plan *plan, const strut_slot
 strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
                                      strut_slots_plan *plan, strut_slots_layout *layout,
                                      strut_arena *arena, bool *torn, strut_error *error);
+/** What two plans of different studies differ in, such as "the columns"; NULL: nothing. */
+const char *strut_slots_difference(const strut_slots_plan *a, const strut_slots_plan *b);
 /** STRUT_USAGE, saying what differs, unless both are of the same study and for the same points. */
 strut_status strut_slots_compare(const char *path, const strut_slots_plan *there,
                                  const strut_slots_plan *wanted, strut_error *error);

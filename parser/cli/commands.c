@@ -10,6 +10,7 @@
 #include "parser/cli/command_export.h"
 #include "parser/cli/command_form.h"
 #include "parser/cli/command_keys.h"
+#include "parser/cli/command_merge.h"
 #include "parser/cli/command_modes.h"
 #include "parser/cli/command_path.h"
 #include "parser/cli/command_plot.h"
@@ -28,6 +29,7 @@ static const strut_command *const commands[] = {
     &strut_command_form,
     &strut_command_path,
     &strut_command_rigidity,
+    &strut_command_merge,
     &strut_command_tradeoff,
     &strut_command_view,
     &strut_command_export,
