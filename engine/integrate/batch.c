@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/batch.h"
 
-#include <string.h>
+#include <math.h>
 
 int32_t strut_batch_widest(void) {
 #if defined(__x86_64__)
@@ -58,11 +58,13 @@ static void imitate(strut_batch *b, int32_t to, int32_t from) {
   copy_rows(b->work, STRUT_POWER_COUNT, width, to, from);
   b->dt[to] = b->dt[from];
   b->step[to] = b->step[from];
+  b->driven = false;
 }
 
 void strut_batch_fill(strut_batch *b, int32_t lane, const strut_model *model, double dt) {
   strut_lane_tables_fill(&b->tables, lane, model);
   b->dt[lane] = dt;
+  b->driven = false;
   b->filled[lane] = true;
 }
 
@@ -80,17 +82,22 @@ void strut_batch_put(strut_batch *b, int32_t lane, const strut_state *state) {
   }
   for (int32_t p = 0; p < STRUT_POWER_COUNT; p++) b->work[p * width + lane] = state->work[p];
   b->step[lane] = (double)state->step;
+  b->driven = false;
+}
+
+void strut_batch_count(const strut_batch *b, int32_t lane, strut_state *state) {
+  int64_t before = state->step;
+  state->step = (int64_t)b->step[lane];
+  state->evaluations += (state->step - before) * b->method->evaluations;
 }
 
 void strut_batch_look(const strut_batch *b, int32_t lane, strut_state *state) {
   int32_t width = b->tables.width, length = 2 * b->tables.first->node_count;
-  int64_t before = state->step;
   for (int32_t i = 0; i < length; i++) {
     state->q[i] = b->q[i * width + lane];
     state->v[i] = b->v[i * width + lane];
   }
-  state->step = (int64_t)b->step[lane];
-  state->evaluations += (state->step - before) * b->method->evaluations;
+  strut_batch_count(b, lane, state);
 }
 
 void strut_batch_get(const strut_batch *b, int32_t lane, strut_state *state) {
@@ -99,11 +106,11 @@ void strut_batch_get(const strut_batch *b, int32_t lane, strut_state *state) {
   strut_batch_look(b, lane, state);
   for (int32_t i = 0; i < 2 * t->first->node_count; i++)
     state->force[i] = t->force[i * width + lane];
-  for (int32_t j = 0; j < t->first->members.count; j++) {
+  state->drive_time = b->driven ? b->step[lane] * b->dt[lane] : (double)NAN;
+  for (int32_t j = 0; j < t->first->members.count && b->driven; j++) {
     state->rest[j] = t->rest[j * width + lane];
     state->rest_rate[j] = t->rest_rate[j * width + lane];
   }
-  state->drive_time = b->step[lane] * b->dt[lane];
   for (int32_t p = 0; p < STRUT_POWER_COUNT && b->ledger; p++) {
     state->work[p] = b->work[p * width + lane];
     state->power[p] = t->power[p * width + lane];
@@ -116,4 +123,5 @@ void strut_batch_advance(strut_batch *b, int64_t count) {
   for (int32_t l = 0; l < b->tables.width; l++)
     if (!b->filled[l] && !b->tables.model[l]) imitate(b, l, from);
   b->run(b, count);
+  b->driven = true;
 }

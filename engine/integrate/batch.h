@@ -34,7 +34,9 @@ STRUT_API void strut_batch_empty(strut_batch *batch, int32_t lane);
 STRUT_API void strut_batch_put(strut_batch *batch, int32_t lane, const strut_state *state);
 /** The state becomes the lane's: all that the method's advance would have left there. */
 STRUT_API void strut_batch_get(const strut_batch *batch, int32_t lane, strut_state *state);
-/** Positions and velocities only, and the step's number. */
+/** Only the step's number and the count of evaluations. */
+STRUT_API void strut_batch_count(const strut_batch *batch, int32_t lane, strut_state *state);
+/** These and positions and velocities. */
 STRUT_API void strut_batch_look(const strut_batch *batch, int32_t lane, strut_state *state);
 /** Advances all lanes by `count` steps. Allocates nothing. At least one lane must be filled. */
 STRUT_API void strut_batch_advance(strut_batch *batch, int64_t count);
@@ -45,7 +47,7 @@ STRUT_API void strut_batch_advance(strut_batch *batch, int64_t count);
 struct strut_batch {
   strut_lane_tables tables;
   const strut_integrator *method;
-  bool ledger;
+  bool ledger, driven; /* driven: all lanes' drives stand at the present step */
   bool filled[STRUT_MOST_LANES];
   double *dt, *step; /* (width) */
   double *q, *v, *stage_q, *stage_v[4], *a[4];

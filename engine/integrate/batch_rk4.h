@@ -39,7 +39,7 @@ STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledge
   const double *const speed[4] = {v, b->stage_v[1], b->stage_v[2], b->stage_v[3]};
   size_t n = 2 * (size_t)tables.first->node_count;
   lane_real dt = lane_load(b->dt), step = lane_load(b->step), sixth = dt / 6.0;
-  lane_drive(&tables, step * dt);
+  if (!b->driven) lane_drive(&tables, step * dt);
   for (; count > 0; count--, step += 1.0) {
     for (int k = 0; k < 4; k++) {
       /* stages 1 and 3 are at the times of the ones before */

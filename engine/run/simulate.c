@@ -7,42 +7,16 @@
 
 #include "engine/base/subnormals.h"
 #include "engine/integrate/step_limit.h"
-#include "engine/run/balance.h"
-#include "engine/run/guard.h"
-#include "engine/run/measure.h"
-#include "engine/run/recording.h"
 #include "engine/run/settle.h"
 #include "engine/run/shooting.h"
-#include "engine/run/steady.h"
-#include "engine/run/stick_band.h"
+#include "engine/run/simulate_parts.h"
 
 /* Beyond this many times the scene's size a run counts as diverged. */
 static const double BEYOND = 1e10;
 /* Work, in members times steps, between two looks at the state and at the interrupt flag. */
 static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
 
-/* All that belongs to one run. */
-typedef struct run {
-  const strut_model *model;
-  const strut_run_options *options;
-  const strut_integrator *method;
-  strut_summary *summary;
-  strut_error *error;
-  strut_state *state;
-  void *workspace;
-  strut_measure measure;
-  strut_recording recording;
-  strut_guard guard;
-  strut_stick_band band;
-  strut_stored initial;
-  bool watching;
-  strut_watch watch;
-  double dt;
-  int64_t first, steps; /* the step number it begins with, and the one it is to end with */
-  int64_t period_steps; /* of a drive period, where steady motion is watched for */
-  int64_t more_periods; /* to run, and record, once it is steady */
-  int64_t shot_periods; /* drive periods that shooting took */
-} run;
+typedef struct strut_run run;
 
 double strut_run_clock(void) {
   struct timespec t;
@@ -325,43 +299,38 @@ static void step_to(run *r, int64_t stop) {
 }
 
 /* Motion that has died away must not be slow: numbers too small for full speed are zero. */
-static void advance_to(run *r, int64_t stop) {
+void strut_run_step(run *r, int64_t stop) {
   unsigned before = strut_subnormals_off();
   step_to(r, stop);
   strut_subnormals_restore(before);
 }
 
-static strut_status step_all(run *r) {
+strut_status strut_run_look(run *r, int64_t *stop) {
   const strut_run_options *o = r->options;
-  int64_t size = r->model->members.count + r->model->node_count;
-  int64_t chunk = CHUNK_WORK / (size + 1);
-  chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
-  double told = strut_run_clock();
-  for (;;) {
-    int64_t n = r->state->step;
-    int32_t lost = lost_node(r->model, r->state);
-    strut_status guarded = watch_step(r);
-    if (guarded) return guarded;
-    if (lost >= 0) return diverged(r, lost);
-    strut_status watched = r->watching ? watch_motion(r) : STRUT_OK;
-    if (watched) return watched;
-    if (n == strut_measure_first_step(&r->measure))
-      strut_measure_begin(r->model, r->state, &r->measure);
-    if (n == strut_recording_next_step(&r->recording)) {
-      strut_status status = strut_recording_sample(r->model, r->state, &r->recording, r->error);
-      if (status) return status;
-    }
-    if (n >= r->steps) return STRUT_OK;
-    if (o->interrupt && *o->interrupt)
-      return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
-                        (double)n * r->dt);
-    if (r->state->trouble) return stuck(r);
-    if (o->progress && strut_run_clock() - told > 0.1) {
-      o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
-      told = strut_run_clock();
-    }
-    advance_to(r, next_stop(r, chunk));
+  int64_t n = r->state->step;
+  int32_t lost = lost_node(r->model, r->state);
+  strut_status guarded = watch_step(r);
+  *stop = n;
+  if (guarded) return guarded;
+  if (lost >= 0) return diverged(r, lost);
+  strut_status watched = r->watching ? watch_motion(r) : STRUT_OK;
+  if (watched) return watched;
+  if (n == strut_measure_first_step(&r->measure))
+    strut_measure_begin(r->model, r->state, &r->measure);
+  if (n == strut_recording_next_step(&r->recording)) {
+    strut_status status = strut_recording_sample(r->model, r->state, &r->recording, r->error);
+    if (status) return status;
   }
+  if (n >= r->steps) return STRUT_OK;
+  if (o->interrupt && *o->interrupt)
+    return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s", (double)n * r->dt);
+  if (r->state->trouble) return stuck(r);
+  if (o->progress && strut_run_clock() - r->told > 0.1) {
+    o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
+    r->told = strut_run_clock();
+  }
+  *stop = next_stop(r, r->chunk);
+  return STRUT_OK;
 }
 
 /* The end of the run for whoever goes on from it. */
@@ -400,20 +369,26 @@ static void fill_summary(run *r, strut_status status) {
   keep_end(r);
 }
 
-strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
-                            strut_summary *summary, strut_error *error) {
-  strut_error own = {0};
-  if (!error) error = &own;
+strut_status strut_run_begin(const strut_model *model, const strut_run_options *options,
+                             strut_summary *summary, strut_error *error, run *r) {
+  int64_t chunk = CHUNK_WORK / (model->members.count + model->node_count + 1);
   *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
-  run r = {.model = model, .options = options, .summary = summary, .error = error};
-  strut_status status = prepare(&r);
-  if (!status) {
-    double begin = strut_run_clock();
-    status = step_all(&r);
-    summary->wall_time = strut_run_clock() - begin;
-    fill_summary(&r, status);
+  *r = (run){.model = model, .options = options, .summary = summary, .error = error};
+  r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
+  strut_status status = prepare(r);
+  r->begun = !status;
+  r->began = r->told = strut_run_clock();
+  return status;
+}
+
+strut_status strut_run_end(run *r, strut_status status) {
+  strut_summary *summary = r->summary;
+  strut_error *error = r->error;
+  if (r->begun) {
+    summary->wall_time = strut_run_clock() - r->began;
+    fill_summary(r, status);
     strut_error first = *error;
-    strut_status written = strut_recording_finish(&r.recording, status, error);
+    strut_status written = strut_recording_finish(&r->recording, status, error);
     if (written && (!status || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED))
       status = written;
     else if (status)
@@ -422,9 +397,23 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
   summary->status = status;
   for (size_t i = 0; status && i + 1 < sizeof summary->reason; i++)
     if (!(summary->reason[i] = error->message[i])) break;
-  strut_recording_free(&r.recording);
-  strut_measure_free(&r.measure);
-  strut_watch_free(&r.watch);
-  strut_state_free(r.state);
+  strut_recording_free(&r->recording);
+  strut_measure_free(&r->measure);
+  strut_watch_free(&r->watch);
+  strut_state_free(r->state);
   return status;
+}
+
+strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
+                            strut_summary *summary, strut_error *error) {
+  strut_error own = {0};
+  run r;
+  int64_t stop = INT64_MAX;
+  strut_status status = strut_run_begin(model, options, summary, error ? error : &own, &r);
+  while (!status) {
+    status = strut_run_look(&r, &stop);
+    if (status || stop == r.state->step) break;
+    strut_run_step(&r, stop);
+  }
+  return strut_run_end(&r, status);
 }

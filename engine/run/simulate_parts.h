@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A run in parts, for whoever does the stepping: simulate.c one run, simulate_batch.c several at once.
+ */
+#ifndef STRUT_ENGINE_RUN_SIMULATE_PARTS_H
+#define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
+
+#include "engine/run/balance.h"
+#include "engine/run/guard.h"
+#include "engine/run/measure.h"
+#include "engine/run/recording.h"
+#include "engine/run/simulate.h"
+#include "engine/run/steady.h"
+#include "engine/run/stick_band.h"
+
+/** All that belongs to one run. */
+typedef struct strut_run {
+  const strut_model *model;
+  const strut_run_options *options;
+  const strut_integrator *method;
+  strut_summary *summary;
+  strut_error *error;
+  strut_state *state;
+  void *workspace;
+  strut_measure measure;
+  strut_recording recording;
+  strut_guard guard;
+  strut_stick_band band;
+  strut_stored initial;
+  bool watching;
+  strut_watch watch;
+  double dt;
+  int64_t first, steps; /* the step number it begins with, and the one it is to end with */
+  int64_t period_steps; /* of a drive period, where steady motion is watched for */
+  int64_t more_periods; /* to run, and record, once it is steady */
+  int64_t shot_periods; /* drive periods that shooting took */
+  int64_t chunk;        /* the most steps between two looks */
+  double began, told;   /* when stepping began, and when progress was told last */
+  bool begun;           /* the first step may be taken */
+} strut_run;
+
+/**
+ * Everything before the first step. `run` and what is given must stay where they are until
+ * strut_run_end, which must be called whatever is returned.
+ */
+strut_status strut_run_begin(const strut_model *model, const strut_run_options *options,
+                             strut_summary *summary, strut_error *error, strut_run *run);
+/**
+ * Between steps: looks at the state, measures, records. *stop is the step to go on to before the next
+ * look, or the present one where the run is over. May change the state's q, v.
+ */
+strut_status strut_run_look(strut_run *run, int64_t *stop);
+/** From a look to the next one. */
+void strut_run_step(strut_run *run, int64_t stop);
+/** Fills the summary and frees what belongs to the run; `status` is what begin or look returned. */
+strut_status strut_run_end(strut_run *run, strut_status status);
+
+#endif

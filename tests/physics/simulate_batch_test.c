@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Runs in lanes against the same runs alone: summaries, recorded rows and failures, bit for bit, with
+ * runs of all lengths, of other methods and topologies, that become steady, and that fail.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/batch.h"
+#include "engine/run/simulate_batch.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/structures.h"
+
+enum { POINTS = 37 };
+
+/* What a sink saw, as one number, and how much of it. */
+typedef struct trace {
+  size_t width, rows;
+  uint64_t hash;
+  strut_status ended;
+} trace;
+
+static strut_status trace_begin(void *context, const strut_record_layout *layout,
+                                strut_error *error) {
+  (void)error;
+  *(trace *)context = (trace){.width = layout->width, .hash = 14695981039346656037u};
+  return STRUT_OK;
+}
+
+static strut_status trace_rows(void *context, const double *rows, size_t count,
+                               strut_error *error) {
+  trace *t = context;
+  (void)error;
+  for (size_t i = 0; i < count * t->width; i++) {
+    uint64_t bits;
+    memcpy(&bits, &rows[i], sizeof bits);
+    t->hash = (t->hash ^ bits) * 1099511628211u;
+  }
+  t->rows += count;
+  return STRUT_OK;
+}
+
+static strut_status trace_end(void *context, strut_status status, strut_error *error) {
+  (void)error;
+  ((trace *)context)->ended = status;
+  return STRUT_OK;
+}
+
+typedef struct point {
+  strut_scene scene;
+  strut_model *model;
+  strut_run_options options;
+  strut_sink sink, *sinks[1];
+  trace seen;
+  strut_summary summary;
+  strut_status status;
+  int given, back;
+} point;
+
+typedef struct points {
+  point at[POINTS];
+  int next, count;
+} points;
+
+static bool next_point(void *context, strut_batch_point *p) {
+  points *all = context;
+  if (all->next == all->count) return false;
+  point *it = &all->at[all->next++];
+  it->given++;
+  *p = (strut_batch_point){it->model, &it->options, it};
+  return true;
+}
+
+static void take_result(void *context, const strut_batch_point *p, strut_status status,
+                        strut_summary *summary, const strut_error *error) {
+  point *it = p->context;
+  (void)context, (void)error;
+  it->back++;
+  it->status = status;
+  it->summary = *summary;
+  strut_model_free(it->model); /* nobody may ask for it again */
+  it->model = NULL;
+}
+
+static void same_number(double a, double b) {
+  if (!isnan(a) || !isnan(b)) assert_same_bits(a, b);
+}
+
+static void same_energy(const strut_energy *a, const strut_energy *b) {
+  const double *x = (const double *)a, *y = (const double *)b;
+  for (size_t i = 0; i < sizeof *a / sizeof *x; i++) same_number(x[i], y[i]);
+}
+
+static void same_summary(const strut_summary *a, const strut_summary *b) {
+  assert_int_equal(a->status, b->status);
+  assert_string_equal(a->reason, b->reason);
+  same_number(a->velocity, b->velocity);
+  same_number(a->velocity_spread, b->velocity_spread);
+  same_number(a->window_start, b->window_start);
+  same_number(a->duration, b->duration);
+  assert_int_equal(a->steps, b->steps);
+  assert_int_equal(a->force_evaluations, b->force_evaluations);
+  assert_int_equal(a->events, b->events);
+  assert_string_equal(a->method, b->method);
+  same_number(a->step, b->step);
+  same_number(a->step_limit, b->step_limit);
+  same_number(a->limit_fell.limit, b->limit_fell.limit);
+  assert_int_equal(a->limit_fell.steps, b->limit_fell.steps);
+  assert_int_equal(a->node_count, b->node_count);
+  for (size_t i = 0; i < 2 * a->node_count; i++) same_number(a->positions[i], b->positions[i]);
+  assert_int_equal(a->contact_count, b->contact_count);
+  for (size_t i = 0; i < a->contact_count; i++) {
+    same_number(a->contacts[i].duty, b->contacts[i].duty);
+    same_number(a->contacts[i].max_height, b->contacts[i].max_height);
+    same_number(a->contacts[i].band_needed, b->contacts[i].band_needed);
+  }
+  same_energy(&a->energy, &b->energy);
+  assert_int_equal(a->steady.kind, b->steady.kind);
+  assert_int_equal(a->steady.repeats, b->steady.repeats);
+  assert_int_equal(a->steady.periods, b->steady.periods);
+  same_number(a->steady.interval, b->steady.interval);
+  same_number(a->steady.residual, b->steady.residual);
+  assert_int_equal(a->steady.shot, b->steady.shot);
+}
+
+/* The crawler, sometimes as something that no lane takes, or that fails. */
+static void make_scene(strut_scene *scene, int i, uint64_t *r) {
+  strut_scene_init(scene);
+  structure_crawler(scene, random_between(r, 2, 20), random_between(r, 1e-5, 3e-4),
+                    random_between(r, 0.05, 0.6), i % 2);
+  strut_experiment *e = &scene->experiment;
+  e->step = random_between(r, 5e-5, 1e-4);
+  e->duration = random_between(r, 0.02, 0.5);
+  e->measure_last = random_between(r, 0.1, 1.0) * e->duration;
+  if (i % 7 == 2) scene->signals[0].kind = STRUT_HALF_SINE;
+  if (i % 11 == 5) e->integrator = "verlet-events";
+  if (i % 13 == 6) scene->contacts[1].friction.law = STRUT_FRICTION_SMOOTH;
+  if (i % 13 == 6) scene->contacts[1].friction.width = 1e-3;
+  if (i % 17 == 8) scene->members[3].node[0] = 4;       /* another topology */
+  if (i % 17 == 9) e->step = 1e-2;                      /* refused */
+  if (i % 17 == 10) scene->nodes[2].velocity[1] = 1e15; /* diverges */
+  if (i % 5) return;
+  e->steady.wanted = true;
+  e->steady.tolerance = 0.3;
+  e->duration = 0, e->measure_last = 2;
+  e->periods = 30, e->period_signal = 0;
+  e->steady.shooting = i % 2;
+}
+
+static void make_points(points *all, int count, bool without_ledger) {
+  uint64_t r = 20;
+  *all = (points){.count = count};
+  for (int i = 0; i < count; i++) {
+    point *p = &all->at[i];
+    make_scene(&p->scene, i, &r);
+    p->model = motion_compile(&p->scene);
+    p->options.without_ledger = without_ledger;
+    p->sink = (strut_sink){&p->seen, trace_begin, trace_rows, trace_end, 0};
+    p->sinks[0] = &p->sink;
+    if (i % 3) continue;
+    p->options.sinks = p->sinks, p->options.sink_count = 1;
+  }
+}
+
+static void check_alone(point *p) {
+  strut_summary alone;
+  trace seen = p->seen;
+  strut_model *model = motion_compile(&p->scene);
+  assert_int_equal(p->given, 1);
+  assert_int_equal(p->back, 1);
+  assert_int_equal(strut_simulate(model, &p->options, &alone, NULL), p->status);
+  same_summary(&p->summary, &alone);
+  assert_int_equal(p->seen.rows, seen.rows);
+  assert_int_equal(p->seen.hash, seen.hash);
+  assert_int_equal(p->seen.ended, seen.ended);
+  strut_summary_free(&alone);
+  strut_model_free(model);
+}
+
+static void compare(int32_t width, int count, bool without_ledger) {
+  static points all;
+  strut_scene crawler;
+  strut_scene_init(&crawler);
+  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
+  strut_model *example = motion_compile(&crawler);
+  make_points(&all, count, without_ledger);
+  strut_simulate_batch(&(strut_batch_source){.context = &all,
+                                             .next = next_point,
+                                             .result = take_result,
+                                             .example = example,
+                                             .without_ledger = without_ledger,
+                                             .width = width});
+  int failed = 0;
+  for (int i = 0; i < count; i++) {
+    failed += all.at[i].status != STRUT_OK;
+    check_alone(&all.at[i]);
+    strut_summary_free(&all.at[i].summary);
+    strut_scene_free(&all.at[i].scene);
+  }
+  assert_true(count < 20 || (failed > 1 && failed < count / 2));
+  strut_model_free(example);
+  strut_scene_free(&crawler);
+}
+
+static void test_every_width(void **unused) {
+  (void)unused;
+  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2) compare(width, POINTS, false);
+}
+
+static void test_without_ledger(void **unused) {
+  (void)unused;
+  compare(0, POINTS, true);
+}
+
+static void test_few_points(void **unused) {
+  (void)unused;
+  for (int count = 0; count < 4; count++) compare(0, count, false);
+}
+
+/* Lanes are no duty: without memory for them each run is made alone. */
+static void test_no_memory_for_lanes(void **unused) {
+  (void)unused;
+  static points all;
+  strut_scene crawler;
+  strut_scene_init(&crawler);
+  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
+  strut_model *example = motion_compile(&crawler);
+  make_points(&all, 1, false);
+  strut_fail_allocation_after(0);
+  strut_simulate_batch(&(strut_batch_source){
+      .context = &all, .next = next_point, .result = take_result, .example = example});
+  strut_fail_allocation_after(-1);
+  assert_int_equal(all.at[0].back, 1);
+  assert_int_equal(all.at[0].status, STRUT_NO_MEMORY);
+  strut_summary_free(&all.at[0].summary);
+  strut_scene_free(&all.at[0].scene);
+  strut_model_free(example);
+  strut_scene_free(&crawler);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_width), cmocka_unit_test(test_without_ledger),
+      cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_memory_for_lanes)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
