@@ -11,7 +11,7 @@
  * Fills up to three orthonormal rows (3, n) of `motion` with motions that move no held coordinate;
  * returns how many there are.
  */
-int32_t strut_rigid_motions(const strut_potential *potential, const double *q, double *motion);
+STRUT_API int32_t strut_rigid_motions(const strut_potential *potential, const double *q, double *motion);
 
 /**
  * Of the first `count` of them, those combinations that the Hessian meets with no more than
@@ -21,6 +21,6 @@ int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, 
                                  double *motion, double *work);
 
 /** Eigenvalues, ascending, and eigenvectors, in rows, of a symmetric 3 x 3 matrix (Jacobi). */
-void strut_symmetric_3(double matrix[3][3], double value[3], double vector[3][3]);
+STRUT_API void strut_symmetric_3(double matrix[3][3], double value[3], double vector[3][3]);
 
 #endif

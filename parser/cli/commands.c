@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "parser/cli/command_check.h"
+#include "parser/cli/command_compare.h"
 #include "parser/cli/command_equilibria.h"
 #include "parser/cli/command_export.h"
 #include "parser/cli/command_form.h"
@@ -29,6 +30,7 @@ static const strut_command *const commands[] = {
     &strut_command_form,
     &strut_command_path,
     &strut_command_rigidity,
+    &strut_command_compare,
     &strut_command_merge,
     &strut_command_tradeoff,
     &strut_command_view,

@@ -82,11 +82,12 @@ static strut_status take_override(const strut_command *command, int id, char *te
 
 static strut_status take_model(const strut_command *command, const char *text,
                                strut_arguments *to) {
-  if (!command->model || to->model) {
+  if (!command->model || (to->model && !command->many)) {
     fprintf(stderr, "strut %s: what is '%s' for?\n", command->name, text);
     return wrong(command);
   }
-  to->model = text;
+  if (!to->model) to->model = text;
+  to->models[to->model_count++] = text;
   return STRUT_OK;
 }
 
@@ -118,6 +119,15 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
       break;
     case STRUT_OPTION_OWN:
       to->own = true;
+      break;
+    case STRUT_OPTION_CSV:
+      to->csv = true;
+      break;
+    case STRUT_OPTION_NO_MOTION:
+      to->no_motion = true;
+      break;
+    case STRUT_OPTION_NO_STATES:
+      to->no_states = true;
       break;
     case STRUT_OPTION_HELP:
       to->help = true;
@@ -161,7 +171,8 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   *arguments = (strut_arguments){0};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
   arguments->varied = strut_allocate((size_t)argc, sizeof *arguments->varied);
-  if (!arguments->overrides || !arguments->varied) {
+  arguments->models = strut_allocate((size_t)argc, sizeof *arguments->models);
+  if (!arguments->overrides || !arguments->varied || !arguments->models) {
     fprintf(stderr, "strut %s: out of memory\n", command->name);
     return STRUT_NO_MEMORY;
   }
@@ -197,6 +208,7 @@ const char *strut_option_text(const strut_arguments *arguments, strut_option_id 
 void strut_arguments_free(strut_arguments *arguments) {
   strut_release(arguments->overrides);
   strut_release(arguments->varied);
+  strut_release(arguments->models);
   *arguments = (strut_arguments){0};
 }
 

@@ -26,6 +26,9 @@ typedef enum strut_option_id {
   STRUT_OPTION_FORCE,
   STRUT_OPTION_STUCK,
   STRUT_OPTION_OWN,
+  STRUT_OPTION_CSV,
+  STRUT_OPTION_NO_MOTION,
+  STRUT_OPTION_NO_STATES,
   STRUT_OPTION_VARY,
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
@@ -89,9 +92,11 @@ typedef struct strut_option {
 
 /** A command line as read. Texts belong to argv. Zero-initialise. */
 typedef struct strut_arguments {
-  const char *model; /* NULL where the command takes none or none is given */
+  const char *model; /* the first; NULL where the command takes none or none is given */
+  const char **models; /* (model_count) all that are given: several where the command takes many */
+  size_t model_count;
   const char *output;
-  bool help, json, quiet, force, stuck, own;
+  bool help, json, quiet, force, stuck, own, csv, no_motion, no_states;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides; /* (override_count) */
   size_t override_count;
@@ -103,7 +108,7 @@ typedef struct strut_arguments {
 typedef struct strut_command {
   const char *name;
   const char *model; /* its one argument, such as "MODEL"; NULL: none */
-  bool model_optional;
+  bool model_optional, many;   /* many: one or more of them */
   const char *summary;         /* half a sentence for the list of commands */
   const char *details;         /* lines for its own help; may be NULL */
   const strut_option *options; /* besides --help, which every command has */

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""strut compare: its numbers are those of the single commands, its differences those of the texts.
+
+usage: compare_test.py STRUT
+"""
+import csv
+import io
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as tree
+
+import numpy
+
+strut = os.path.abspath(sys.argv[1])
+models = os.path.abspath("models")
+CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
+SQUARE, PENDULUM = f"{models}/basics/x-frame.yaml", f"{models}/basics/pendulum.yaml"
+TWO, SNAP = f"{models}/gallery/two-mass-crawler.yaml", f"{models}/gallery/von-mises.yaml"
+failures = 0
+
+
+def fail(text):
+    global failures
+    failures += 1
+    print("FAILED:", text)
+
+
+def run(*words, code=0, stdin=""):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, input=stdin)
+    if done.returncode != code:
+        fail(f"strut {' '.join(words)}: exit code {done.returncode}, not {code}: {done.stderr}")
+    return done
+
+
+def read(*words):
+    done = run(*words, "--json")
+    return json.loads(done.stdout) if done.returncode == 0 else {}
+
+
+def same(what, found, wanted, relative=1e-12):
+    if found is None or wanted is None:
+        if found is not wanted:
+            fail(f"{what}: {found}, not {wanted}")
+    elif not abs(found - wanted) <= relative * max(abs(found), abs(wanted)):
+        fail(f"{what}: {found!r}, not {wanted!r}")
+
+
+def check_counts(path, v):
+    told = read("check", path)
+    for key in ("nodes", "bars", "springs", "cables", "contacts", "actuators",
+                "degrees_of_freedom", "step_limit"):
+        same(f"{path}: {key}", v[key], told[key])
+    same(f"{path}: members", v["members"], len(told["members"]))
+
+
+def check_rigidity(path, v):
+    drawn = read("rigidity", path)
+    same(f"{path}: self-stress", v["self_stress_states"], drawn["self_stress"]["count"])
+    moves = drawn["mechanisms"]
+    same(f"{path}: rigid", v["rigid_body_motions"], moves["rigid_body"])
+    same(f"{path}: mechanisms", v["mechanisms"], moves["count"] - moves["rigid_body"])
+    same(f"{path}: finite", v["finite_mechanisms"], moves["finite"])
+    told = read("rigidity", path, "--at", "start")["members_at"]
+    force = [m["force"] for m in told.values()]
+    same(f"{path}: tension", v["largest_tension"], max(0, *force), 1e-9)
+    same(f"{path}: compression", v["largest_compression"], max(0, *[-f for f in force]), 1e-9)
+    same(f"{path}: prestress", v["prestress"], math.sqrt(sum(f * f for f in force) / len(force)),
+         1e-9)
+
+
+def check_states(path, model):
+    told, v = read("equilibria", path), model["values"]
+    stands = {e["name"]: (e["rest"] or e)["energy"] for e in told["equilibria"]
+              if e["fate"] == "stands"}
+    if {s["name"]: s["energy"] for s in model["states"]} != stands:
+        fail(f"{path}: states {model['states']}, not {stands}")
+    energies = [s["energy"] for s in model["states"]]
+    if energies != sorted(energies):
+        fail(f"{path}: states are not in the order of their energy")
+    same(f"{path}: number of states", v["stable_states"], len(stands))
+    same(f"{path}: lowest", v["lowest_energy"], min(stands.values()))
+    same(f"{path}: span", v["energy_span"], max(stands.values()) - min(stands.values()))
+    barriers = [(b["from"], b["to"], b["height"]) for b in told["barriers"]]
+    if [(b["from"], b["to"], b["height"]) for b in model["barriers"]] != barriers:
+        fail(f"{path}: barriers differ")
+    return barriers
+
+
+def check_frequencies(path, v):
+    elastic = [m["frequency"] for m in read("modes", path)["modes"] if m["kind"] == "elastic"]
+    for i in range(3):
+        same(f"{path}: frequency {i + 1}", v[f"frequency_{i + 1}"],
+             elastic[i] if i < len(elastic) else None)
+
+
+def check_motion(path, model, *options):
+    """The run and, from it alone, what is made of it."""
+    told, v = read("run", path, "--accuracy", "0.5%", "--steady", "0.5%", *options), model["values"]
+    same(f"{path}: velocity", v["velocity"], told["velocity"])
+    same(f"{path}: error", v["velocity_error"], told["accuracy"]["expected"])
+    spent = told["force_evaluations"] + told["accuracy"]["check_evaluations"]
+    same(f"{path}: evaluations", v["evaluations_per_second"], spent / told["duration"])
+    period = 1 / v["drive_frequency"]
+    same(f"{path}: travel", v["travel_per_period"], told["velocity"] * period)
+    # that run ends with whole periods of the steady motion, by another tolerance
+    work = told["energy"]["drive_work"] / told["steady"]["repeats"]
+    same(f"{path}: energy", v["drive_energy_per_period"], work, 2e-3)
+    same(f"{path}: power", v["drive_power"], v["drive_energy_per_period"] / period)
+    same(f"{path}: transport", v["cost_of_transport"],
+         v["drive_power"] / (v["mass"] * 9.81 * abs(v["velocity"])))
+    duty = {n: c["duty"] for n, c in told["contacts"].items()}
+    for node, c in model["contacts"].items():
+        if abs(c["duty"] - duty[node]) > 0.03:
+            fail(f"{path}: {node} touches {c['duty']}, in the run {duty[node]}")
+    touching = [c["duty"] for c in model["contacts"].values() if c["duty"] > 0]
+    same(f"{path}: duty", v["contact_duty"], sum(touching) / len(touching))
+
+
+def stiffness(scene, at):
+    """Every node under unit loads, from the members' law, for a scene that strut wrote."""
+    names = list(scene["nodes"])
+    index = {n: i for i, n in enumerate(names)}
+    q = numpy.array([at[n]["position"] for n in names])
+    k = numpy.zeros((2 * len(names), 2 * len(names)))
+    for m in scene["members"].values():
+        a, b = (index[n] for n in m["nodes"])
+        d = q[b] - q[a]
+        length = math.hypot(*d)
+        u = d / length
+        t = m["stiffness"] * (length - m["rest_length"])
+        if m["kind"] == "cable" and t <= 0:
+            continue
+        block = m["stiffness"] * numpy.outer(u, u) + t / length * (numpy.eye(2) - numpy.outer(u, u))
+        for i, j, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+            k[2 * i:2 * i + 2, 2 * j:2 * j + 2] += sign * block
+    free = numpy.ones(2 * len(names), bool)
+    for n, node in scene["nodes"].items():
+        fixed = node.get("fixed", "") if isinstance(node, dict) else ""
+        free[2 * index[n]] = fixed not in ("x", "both")
+        free[2 * index[n] + 1] = fixed not in ("y", "both")
+    for n in names:
+        if "ground" in scene and q[index[n], 1] < 0:
+            for d in range(2):
+                k[2 * index[n] + d, 2 * index[n] + d] += scene["ground"]["stiffness"]
+    k = k[numpy.ix_(free, free)]
+    x = q[:, 0] - q[:, 0].mean()
+    y = q[:, 1] - q[:, 1].mean()
+    rigid = numpy.stack([numpy.tile([1, 0], len(names)), numpy.tile([0, 1], len(names)),
+                         numpy.stack([-y, x], 1).ravel()], 1)[free]
+    loose = [r for r in rigid.T if free.all() and abs(r @ k @ r) < 1e-9 * k.max() * (r @ r)]
+    p = numpy.eye(len(k))
+    if loose:
+        basis = numpy.linalg.qr(numpy.stack(loose, 1))[0]
+        p -= basis @ basis.T
+    flexible = p @ numpy.linalg.pinv(k, rcond=1e-11) @ p if loose else numpy.linalg.inv(k)
+    result = numpy.full(2 * len(names), numpy.nan)
+    result[free] = 1 / numpy.diag(flexible)
+    return {n: result[2 * i:2 * i + 2] for n, i in index.items()}
+
+
+def check_stiffness(path, model):
+    import yaml
+    scene = yaml.safe_load(run("write", path).stdout)
+    wanted = stiffness(scene, model["nodes"])
+    for node, told in model["nodes"].items():
+        for d in range(2):
+            here = wanted[node][d]
+            same(f"{path}: stiffness of {node} in {'xy'[d]}", told["stiffness"][d],
+                 None if math.isnan(here) else here, 1e-6)
+    for d in range(2):
+        least = min(w[d] for w in wanted.values() if not math.isnan(w[d]))
+        same(f"{path}: softest", model["values"][f"stiffness_{'xy'[d]}"], least, 1e-6)
+
+
+# ---- numbers ----
+for path in (X, SQUARE, SNAP):
+    model = read("compare", path, "--no-motion")["models"][0]
+    check_counts(path, model["values"])
+    check_rigidity(path, model["values"])
+    check_states(path, model)
+    check_frequencies(path, model["values"])
+try:
+    for path in (X, SQUARE, CRAWLER):
+        check_stiffness(path, read("compare", path, "--no-motion", "--no-states")["models"][0])
+except ImportError:
+    print("no yaml for Python: stiffness is not recomputed")
+
+crawler = read("compare", CRAWLER, "--no-states")["models"][0]
+check_counts(CRAWLER, crawler["values"])
+check_rigidity(CRAWLER, crawler["values"])
+check_frequencies(CRAWLER, crawler["values"])
+check_motion(CRAWLER, crawler)
+same("mass", crawler["values"]["mass"], 0.14)
+if crawler["values"]["lowest_energy"] is not None or \
+        crawler["why_empty"]["lowest_energy"] != "not asked for":
+    fail("states that were not asked for")
+
+# ---- unlike structures, settings, CSV ----
+both = read("compare", CRAWLER, X, TWO, PENDULUM, "--no-states", "--set", "frequency=10.5 Hz",
+            "--set", "start=II")
+by = {m["model"]: m for m in both["models"]}
+if list(by) != ["crawler", "x-frame", "two-mass-crawler", "pendulum"]:
+    fail(f"labels {list(by)}")
+same("frequency set", by["crawler"]["values"]["drive_frequency"], 10.5)
+same("frequency set", by["two-mass-crawler"]["values"]["drive_frequency"], 10.5, 1e-9)
+if by["x-frame"]["without_parameters"] != ["frequency", "start"] or \
+        by["two-mass-crawler"]["without_parameters"] != ["start"]:
+    fail("parameters that a model does not have are not told")
+check_motion(CRAWLER, by["crawler"], "--set", "frequency=10.5 Hz", "--set", "start=II")
+if by["x-frame"]["values"]["velocity"] is not None or "drive" not in \
+        by["x-frame"]["why_empty"]["drive_frequency"]:
+    fail("a structure without drive")
+for model in both["models"]:
+    for key, value in model["values"].items():
+        if (value is None) != (key in model["why_empty"]):
+            fail(f"{model['model']}: {key} is {value}, the reason {model['why_empty'].get(key)}")
+told = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
+rows = list(csv.DictReader(io.StringIO(told)))
+alone = read("compare", CRAWLER, X, "--no-states")["models"]
+for row, model in zip(rows, alone):
+    if row["model"] != model["model"] or row["name"] != model["name"]:
+        fail(f"CSV: {row['model']}")
+    for key, value in model["values"].items():
+        cell = next(c for n, c in row.items() if n.split(" ")[0] == key)
+        if key != "cpu_per_second":
+            same(f"CSV: {key}", float(cell) if cell else None, value, 0)
+if "mass [kg]" not in rows[0] or "contact_duty" not in rows[0]:
+    fail(f"CSV: header {list(rows[0])}")
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    # ---- differences ----
+    text = """strut: 1
+name: one
+parameters: {stiff: 100 N/m, unlike: 1}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1 kg}}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: stiff}
+"""
+    open("one.yaml", "w").write(text)
+    open("two.yaml", "w").write(text.replace("name: one", "name: two").replace(
+        "stiffness: stiff}", "stiffness: 200 N/m}\n  ac: {kind: cable, nodes: [a, b], "
+        "stiffness: 1 N/m}").replace(", unlike: 1", ""))
+    found = read("compare", "one.yaml", "two.yaml", "one.yaml", "--no-states", "--no-motion")
+    told = {d["where"]: (d["change"], d["was"], d["is"]) for d in found["models"][1]["differences"]}
+    if told != {"parameters.unlike": ("removed", "1", None),
+                "members.ab.stiffness": ("changed", "100", "200"),
+                "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, "
+                               "rest_length_ratio: 1}")}:
+        fail(f"differences: {told}")
+    if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
+        fail("the same model twice has differences, or no label of its own")
+    if "differences" in found["models"][0]:
+        fail("the first differs from itself")
+    # stiffer by a factor: a spring from a wall, whose stiffness along it is its own
+    same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
+    if found["models"][0]["why_empty"].get("stiffness_y") is None:
+        fail("a spring without tension resists across")
+    out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
+    for line in ("two against one", "+ members.ac", "- parameters.unlike",
+                 "~ members.ab.stiffness: 100 -> 200"):
+        if line not in out:
+            fail(f"the table lacks '{line}'")
+
+    # ---- files ----
+    run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
+    names = sorted(os.listdir("kept"))
+    if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg",
+                 "model-3.svg"]:
+        fail(f"files: {names}")
+    for name in names:
+        if name.endswith(".svg"):
+            tree.parse(f"kept/{name}")
+    first = {n: open(f"kept/{n}", "rb").read() for n in names}
+    run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
+    for name in names:
+        if open(f"kept/{name}", "rb").read() != first[name]:
+            fail(f"{name} is not the same a second time")
+    run("compare", "one.yaml", "-q", "-o", "kept", "--no-motion")
+    if len(os.listdir("kept")) != 4:
+        fail("a picture of an earlier comparison stays")
+    run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
+    tree.parse("sheet.svg")
+
+    # ---- one, twenty ----
+    for i in range(20):
+        open(f"m{i}.yaml", "w").write(text.replace("100 N/m", f"{100 + i} N/m"))
+    many = read("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states", "--no-motion")
+    for i, model in enumerate(many["models"]):
+        same(f"model {i} of twenty", model["values"]["stiffness_x"], 100 + i)
+    run("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states")
+
+    # ---- bad use ----
+    def refused(code, needle, *words, stdin=""):
+        done = run("compare", *words, code=code, stdin=stdin)
+        if needle not in done.stderr:
+            fail(f"strut compare {' '.join(words)}: stderr lacks '{needle}': {done.stderr}")
+        if done.stdout:
+            fail(f"strut compare {' '.join(words)}: prints something")
+
+    refused(1, "MODEL... is missing")
+    refused(4, "nosuch.yaml", "one.yaml", "nosuch.yaml", "-o", "none")
+    open("bad.yaml", "w").write(text.replace("kind: spring", "kind: sprong"))
+    open("worse.yaml", "w").write("strut: 1\nnods: {}\n")
+    done = run("compare", "one.yaml", "bad.yaml", "worse.yaml", code=2)
+    for needle in ("bad.yaml:6", "spring", "worse.yaml:2", "nodes"):
+        if needle not in done.stderr:
+            fail(f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
+    if os.path.exists("none"):
+        fail("a refused comparison leaves a directory")
+    refused(1, "did you mean 'stiff'", "one.yaml", "two.yaml", "--set", "stif=3")
+    refused(2, "frog", "one.yaml", "two.yaml", "--set", "stiff=frog")
+    refused(1, "--accuracy", "one.yaml", "--accuracy", "0")
+    refused(1, "--accuracy", "one.yaml", "--accuracy", "200%")
+    refused(1, "--csv", "one.yaml", "--csv", "--json")
+    refused(1, "'-' once", "-", "-", stdin=text)
+    done = run("compare", "-", "one.yaml", "--no-states", "--csv", stdin=text)
+    if not done.stdout.split("\n")[1].startswith("stdin,one,2,1,"):
+        fail(f"the standard input: {done.stdout}")
+    run("check", "one.yaml", "two.yaml", code=1)
+
+    # ---- one that fails does not stop the others ----
+    falls = """strut: 1
+nodes: {a: {position: [0, 0], mass: 1 kg}}
+gravity: [0, -1]
+initial: {settle: {limit: 0.1 s}}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 1 s}
+"""
+    open("falls.yaml", "w").write(falls)
+    done = run("compare", "falls.yaml", "one.yaml", "--no-states", "--json", code=3)
+    told = json.loads(done.stdout)["models"]
+    if told[0]["status"] == "completed" or told[1]["status"] != "completed" or \
+            "falls" not in done.stderr or told[0]["values"]["velocity"] is not None:
+        fail(f"a model that fails: {told[0]['status']}, {done.stderr}")
+
+sys.exit(failures > 0)

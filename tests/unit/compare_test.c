@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Comparing: differences of texts, every allocation failing once, an interrupt, what is told. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/study/compare_figure.h"
+#include "engine/study/compare_report.h"
+#include "parser/difference.h"
+#include "parser/read_scene.h"
+
+static const char hopper[] =
+    "strut: 1\n"
+    "name: hopper, of \"one\" leg\n"
+    "nodes: {a: {position: [0, 0], mass: 1 kg}, b: {position: [0, 0.1], mass: 1 kg}}\n"
+    "members: {leg: {kind: spring, nodes: [a, b], stiffness: 4000 N/m, damping: 20 N s/m}}\n"
+    "gravity: [0, -9.81]\n"
+    "ground: {stiffness: 1e5 N/m, damping: 100 N s/m, friction: {mu: 0.1, stick_velocity: 1 "
+    "mm/s}}\n"
+    "actuators: {d: {member: leg, signal: {sine: {amplitude: 1 mm, frequency: 5 Hz}}}}\n"
+    "solver: {step: 0.1 ms}\n"
+    "run: {periods: 20, of: d, measure: {last: 5}}\n";
+
+static void read_hopper(strut_scene *scene) {
+  strut_diagnostics diagnostics = {0};
+  assert_int_equal(strut_scene_read(scene, "hopper", hopper, strlen(hopper), NULL, 0, STRUT_FOR_ANY,
+                                    &diagnostics),
+                   STRUT_OK);
+  strut_diagnostics_free(&diagnostics);
+}
+
+static void differences(void **unused) {
+  (void)unused;
+  static const char first[] = "name: A\na: {b: 1, c: [1, {d: 2}], e: {f: 3}}\ng: 1\nsame: {x: 1}\n";
+  static const char second[] = "name: B\nsame: {x: 1}\nnew: [1]\na: {b: 2, c: [1, {d: 3}]}\n";
+  static const strut_difference wanted[] = {{"a.b", "1", "2"},
+                                            {"a.c", "[1, {d: 2}]", "[1, {d: 3}]"},
+                                            {"a.e", "{f: 3}", NULL},
+                                            {"g", "1", NULL},
+                                            {"new", NULL, "[1]"}};
+  strut_arena arena = {0};
+  strut_difference *list;
+  size_t count;
+  assert_int_equal(strut_text_differences(first, second, &arena, &list, &count), STRUT_OK);
+  assert_int_equal(count, 5);
+  for (size_t i = 0; i < count; i++) {
+    assert_string_equal(list[i].where, wanted[i].where);
+    assert_int_equal(!list[i].was, !wanted[i].was);
+    assert_int_equal(!list[i].is, !wanted[i].is);
+    if (list[i].was) assert_string_equal(list[i].was, wanted[i].was);
+    if (list[i].is) assert_string_equal(list[i].is, wanted[i].is);
+  }
+  assert_int_equal(strut_text_differences(first, first, &arena, &list, &count), STRUT_OK);
+  assert_int_equal(count, 0);
+  assert_int_equal(strut_text_differences(first, "a: [", &arena, &list, &count), STRUT_BAD_SCENE);
+  strut_arena_free(&arena);
+}
+
+static void differences_without_memory(void **unused) {
+  (void)unused;
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status == STRUT_NO_MEMORY && n < 1000; n++) {
+    strut_arena arena = {0};
+    strut_difference *list;
+    size_t count;
+    strut_fail_allocation_after(n);
+    status = strut_text_differences("a: {b: 1, c: 2}\n", "a: {b: 3}\n", &arena, &list, &count);
+    strut_fail_allocation_after(-1);
+    strut_arena_free(&arena);
+  }
+  assert_int_equal(status, STRUT_OK);
+  assert_true(n > 3);
+}
+
+/* Makes and tells; the status of what failed first. */
+static strut_status make(const strut_compare_options *options, bool tell) {
+  static const strut_difference changed = {"members.leg.stiffness", "1", "2"};
+  static const char *const without[] = {"friction"};
+  strut_scene scenes[2];
+  strut_compare result;
+  strut_error error = {0};
+  for (int i = 0; i < 2; i++) read_hopper(&scenes[i]);
+  const strut_compare_input inputs[2] = {{.label = "one", .scene = &scenes[0]},
+                                         {.label = "two",
+                                          .scene = &scenes[1],
+                                          .differences = &changed,
+                                          .difference_count = 1,
+                                          .without = without,
+                                          .without_count = 1}};
+  strut_status status = strut_compare_make(inputs, 2, options, &result, &error);
+  if (status != STRUT_OK) assert_int_equal(error.status, status);
+  if (status == STRUT_OK && tell) {
+    char *texts[] = {strut_compare_table(&result, 60), strut_compare_csv(&result),
+                     strut_compare_json(&result)};
+    for (int i = 0; i < 3; i++) {
+      if (!texts[i]) status = STRUT_NO_MEMORY;
+      strut_release(texts[i]);
+    }
+  }
+  strut_compare_free(&result);
+  for (int i = 0; i < 2; i++) strut_scene_free(&scenes[i]);
+  return status;
+}
+
+static void without_memory(void **unused) {
+  (void)unused;
+  const strut_compare_options options = {.no_states = true, .accuracy = 0.05};
+  strut_status status = STRUT_NO_MEMORY;
+  uint64_t before = strut_allocation_count();
+  assert_int_equal(make(&options, true), STRUT_OK);
+  int64_t all = (int64_t)(strut_allocation_count() - before), refused = 0;
+  for (int64_t n = 0; n < all; n += 1 + all / 400) {
+    strut_scene probe; /* what reading takes is not asked here */
+    uint64_t start = strut_allocation_count();
+    for (int i = 0; i < 2; i++) {
+      read_hopper(&probe);
+      strut_scene_free(&probe);
+    }
+    int64_t reading = (int64_t)(strut_allocation_count() - start);
+    strut_fail_allocation_after(reading + n);
+    status = make(&options, true);
+    strut_fail_allocation_after(-1);
+    assert_true(status == STRUT_OK || status == STRUT_NO_MEMORY);
+    refused += status == STRUT_NO_MEMORY;
+  }
+  assert_true(refused > 50);
+}
+
+static void interrupted(void **unused) {
+  (void)unused;
+  const volatile sig_atomic_t now = 1;
+  const strut_compare_options options = {.interrupt = &now};
+  assert_int_equal(make(&options, false), STRUT_INTERRUPTED);
+}
+
+static void told(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_compare result;
+  strut_error error = {0};
+  read_hopper(&scene);
+  const strut_compare_input input = {.label = "one", .scene = &scene};
+  const strut_compare_options options = {.accuracy = 0.01};
+  assert_int_equal(strut_compare_make(&input, 1, &options, &result, &error), STRUT_OK);
+  char *csv = strut_compare_csv(&result);
+  assert_non_null(csv);
+  assert_non_null(strstr(csv, "\none,\"hopper, of \"\"one\"\" leg\",2,1,0,1,0,2,1,2,4,"));
+  strut_release(csv);
+  for (int i = 0; i < STRUT_COMPARE_QUANTITIES; i++) {
+    const strut_compare_cell *cell = &result.columns[0].cell[i];
+    assert_int_equal(isfinite(cell->value), !cell->reason);
+    assert_non_null(strut_compare_row_of((strut_compare_quantity)i).key);
+  }
+  /* its weight on one foot: the leg carries that of the upper mass */
+  assert_true(fabs(result.columns[0].cell[STRUT_COMPARE_COMPRESSION].value - 9.81) < 1e-6);
+  assert_int_equal(strut_compare_figure("/nowhere/at/all.svg", 200, &result, 0, 1, &error),
+                   STRUT_FILE_TROUBLE);
+  strut_compare_free(&result);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(differences), cmocka_unit_test(differences_without_memory),
+      cmocka_unit_test(without_memory), cmocka_unit_test(interrupted), cmocka_unit_test(told)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
