@@ -26,12 +26,15 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSI
                             STRUT_KEY_EQUILIBRIA_SUPPORTS,   STRUT_KEY_SOLVER_INTEGRATOR,
                             STRUT_KEY_RUN_DURATION,          STRUT_KEY_MEASURE_LAST,
                             STRUT_KEY_STEADY_TOLERANCE,
-                            STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_COUNT};
+                            STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_STUDY_VERSION,
+                            STRUT_KEY_RANGE_FROM,            STRUT_KEY_CHECK_HALF_STEP,
+                            STRUT_KEY_FIGURE_KIND,           STRUT_KEY_COUNT};
 
 static const char *const room_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
-    "initial", "settle", "equilibria", "solver",    "run",      "measure", "steady", "output"};
+    "initial", "settle", "equilibria", "solver",    "run",      "measure", "steady", "output",
+    "study",   "range",  "check",      "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
 _Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");
@@ -150,6 +153,8 @@ static const char *expected_shape(strut_key_type type) {
       return "true, or a mapping such as {limit: 100 s}";
     case STRUT_TYPE_STEADY:
       return "true, or a mapping such as {tolerance: 0.5 %}";
+    case STRUT_TYPE_AXES:
+      return "a list of axes such as [{friction: [0.1, 0.2]}]";
     case STRUT_TYPE_MAP:
       return "a mapping {key: value, ...}";
     default:
@@ -159,7 +164,7 @@ static const char *expected_shape(strut_key_type type) {
 
 const char *strut_key_expected(int key, char *buffer, size_t size) {
   const strut_key *k = strut_key_at(key);
-  char text[200];
+  char text[400];
   const char *example;
   switch (k->type) {
     case STRUT_TYPE_NUMBER:

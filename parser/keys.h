@@ -37,6 +37,10 @@ typedef enum strut_room {
   STRUT_ROOM_MEASURE,
   STRUT_ROOM_STEADY,
   STRUT_ROOM_OUTPUT,
+  STRUT_ROOM_STUDY,
+  STRUT_ROOM_RANGE,
+  STRUT_ROOM_CHECK,
+  STRUT_ROOM_FIGURE,
   STRUT_ROOM_COUNT
 } strut_room;
 
@@ -58,6 +62,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_TABLE,         /* a list of [t, value] */
   STRUT_TYPE_SETTLE,        /* true, false or the keys of settle */
   STRUT_TYPE_STEADY,        /* true, false or the keys of steady */
+  STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_MAP,           /* the keys of the room that has the key's name */
   STRUT_TYPE_THINGS         /* a mapping from names to what `words` says */
 } strut_key_type;

@@ -42,7 +42,13 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
     [STRUT_ROOM_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
     [STRUT_ROOM_MEASURE] = "`run: {measure: {...}}`.",
     [STRUT_ROOM_STEADY] = "`run: {measure: {steady: {...}}}`.",
-    [STRUT_ROOM_OUTPUT] = "`output: {...}`."};
+    [STRUT_ROOM_OUTPUT] = "`output: {...}`.",
+    [STRUT_ROOM_STUDY] =
+        "A study is a file of its own: what `strut sweep` runs. Expressions may use the model's "
+        "parameters in `set` and `derive`.",
+    [STRUT_ROOM_RANGE] = "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
+    [STRUT_ROOM_CHECK] = "`check: {...}` of a study.",
+    [STRUT_ROOM_FIGURE] = "`figures: {NAME: {...}}` of a study."};
 
 /* "none, x, y or both", each in code style. */
 static void put_words(strut_writer *writer, const char *words) {
@@ -81,6 +87,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
       [STRUT_TYPE_SIGNALS] = "list of signals",
       [STRUT_TYPE_TABLE] = "list of `[t, value]`",
+      [STRUT_TYPE_AXES] = "list of axes",
       [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
       [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
       [STRUT_TYPE_THINGS] = "names, each with "};

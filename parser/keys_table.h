@@ -129,7 +129,32 @@
   X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, false, 0, "no", "no|yes", "Finish a periodic motion by Newton's method on its period, and give the Floquet multipliers; of structures with up to 48 free coordinates.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, false, 0, "a thousandth", "", "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "Record the last so many periods, or the last so much time.") \
-  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, false, 0, "[position, length, force]", "position|velocity|length|force|contact|energy", "A list of what to record.")
+  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, false, 0, "[position, length, force]", "position|velocity|length|force|contact|energy", "A list of what to record.") \
+  X(STUDY, VERSION, "strut", VERSION, NONE, ANY, true, 0, "", "1", "Version of the language.") \
+  X(STUDY, NAME, "study", TEXT, NONE, ANY, true, 0, "", "", "What the study is called.") \
+  X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, false, 0, "", "", "What it is for.") \
+  X(STUDY, MODEL, "model", TEXT, NONE, ANY, true, 0, "", "", "The file of the model, from the study's own folder.") \
+  X(STUDY, SET, "set", THINGS, NONE, ANY, false, 0, "", "an expression or a text", "Values of the model's parameters at every point, as by `--set`, which wins.") \
+  X(STUDY, AXES, "axes", AXES, NONE, ANY, true, 0, "", "", "A list; each gives one parameter values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several together, `{zip: {NAME: ..., NAME: ...}}`. Axes cross; the last is the fastest.") \
+  X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, false, 0, "", "an expression", "Parameters that follow from others at each point, such as `{step: 1/(1000*frequency)}`.") \
+  X(STUDY, SOLVER, "solver", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
+  X(STUDY, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
+  X(STUDY, KEEP, "keep", WORDS, NONE, ANY, false, 0, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome]", "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome", "What of each run stands in the table: velocity [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of a run that stops when steady; `distance` travelled in a drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses`, `residual` of the balance; `contacts` (duty and height of each), `positions` (of each node at the end), `outcome` (the nearest configuration); and the rest of the summary.") \
+  X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, false, 0, "no", "no|yes", "Write each run into a folder of its own, `runs/POINT`, as `strut run -o` does.") \
+  X(STUDY, CHECK, "check", MAP, NONE, ANY, false, 0, "", "", "Run each point again, more exactly, and mark those that end elsewhere.") \
+  X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, false, 0, "", "the keys of a [figure](#figure)", "Drawings of the table.") \
+  X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, true, 0, "", "", "The first value.") \
+  X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, true, 0, "", "", "The last value, where the steps meet it.") \
+  X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, false, 4, "", "", "From one value to the next; or") \
+  X(RANGE, COUNT, "count", NUMBER, NONE, ABOVE_ZERO, false, 4, "", "", "so many values, both ends among them.") \
+  X(RANGE, SCALE, "scale", WORD, NONE, ANY, false, 0, "linear", "linear|log", "`log`: equal ratios instead of equal steps; needs `count`.") \
+  X(CHECK, HALF_STEP, "half_step", WORD, NONE, ANY, false, 5, "no", "no|yes", "With half the step, or of a model with `accuracy` half of that.") \
+  X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, false, 5, "", "", "With this accuracy.") \
+  X(FIGURE, KIND, "kind", WORD, NONE, ANY, false, 0, "lines", "lines|map", "Curves, or a colour for each point.") \
+  X(FIGURE, AT_X, "x", NAME, NONE, ANY, true, 0, "", "", "A column of the table.") \
+  X(FIGURE, AT_Y, "y", NAME, NONE, ANY, true, 0, "", "", "Another; of a map the second axis.") \
+  X(FIGURE, SERIES, "series", NAME, NONE, ANY, false, 0, "", "", "Of lines: the column that tells them apart.") \
+  X(FIGURE, COLOR, "color", NAME, NONE, ANY, false, 0, "", "", "Of a map: the column that is coloured.")
 /* clang-format on */
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameters: evaluated on demand, in any order; --set; circles. See reader.h. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "parser/quantity.h"
@@ -18,7 +19,10 @@ strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *na
 
 /* The place of the expression that is being evaluated, for errors that its text does not show. */
 static strut_place asking_place(strut_reader *reader) {
-  if (reader->asking_set) return strut_parameter_find(reader, reader->asking_set)->key->place;
+  if (reader->asking_set) {
+    const strut_parameter_state *p = strut_parameter_find(reader, reader->asking_set);
+    return p->set->place.line ? p->set->place : p->key->place;
+  }
   return reader->asking->place;
 }
 
@@ -40,37 +44,52 @@ static void report_circle(strut_reader *reader, const strut_parameter_state *p) 
             strut_circle(reader, stacked_name, first, reader->parameter_depth));
 }
 
-/* An expression of a parameter: from the file, or from --set. */
-static bool evaluate(strut_reader *reader, strut_parameter_state *p, const char *set,
-                     strut_quantity *quantity) {
-  if (!set)
-    return strut_read_quantity(reader, p->value, p->name, (strut_owner){"the parameters", NULL},
-                               quantity);
+/* Reports about what was given from outside: where a study gives it, else where it is declared. */
+static void object(strut_reader *reader, const strut_setting *set, strut_place declared,
+                   const char *message) {
+  if (set->place.line)
+    strut_say(reader, set->place, "in '%s' of the study: %s", strut_shown(reader, set->name),
+              message);
+  else
+    strut_say(reader, declared, "--set %s=%s: %s", strut_shown(reader, set->name),
+              strut_shown(reader, set->text), message);
+}
+
+/* The expression of a parameter in the file. */
+static bool evaluate(strut_reader *reader, strut_parameter_state *p, strut_quantity *quantity) {
+  return strut_read_quantity(reader, p->value, p->name, (strut_owner){"the parameters", NULL},
+                             quantity);
+}
+
+/* The value that is given from outside. */
+static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
+  if (p->set->known) {
+    p->quantity = (strut_quantity){p->set->value, p->set->dimension, p->set->bare};
+    return true;
+  }
   strut_expression_error error = {0};
   strut_scope scope = strut_parameter_scope(reader);
   const char *before = reader->asking_set;
   reader->asking_set = p->name;
-  bool fine = strut_expression_evaluate(set, &scope, quantity, &error);
+  bool fine = strut_expression_evaluate(p->set->text, &scope, &p->quantity, &error);
   reader->asking_set = before;
-  if (!fine && error.message[0])
-    strut_say(reader, p->key->place, "--set %s=%s: %s", p->name, strut_shown(reader, set),
-              error.message);
+  if (!fine && error.message[0]) object(reader, p->set, p->key->place, error.message);
   return fine;
 }
 
-/* Does what --set gives fit what the file declares? A bare value takes the declared dimension. */
+/* Does what is given fit what the file declares? A bare value takes the declared dimension. */
 static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_quantity *declared) {
-  char expected[200], found[80];
+  char expected[200], found[80], message[320];
   if (declared->bare) return true;
   if (p->quantity.bare) {
     p->quantity.bare = false;
     p->quantity.dimension = declared->dimension;
   }
   if (strut_dimension_equal(p->quantity.dimension, declared->dimension)) return true;
-  strut_say(reader, p->key->place, "--set %s=%s: expected %s, found %s", p->name,
-            strut_shown(reader, p->override),
-            strut_expected_number(declared->dimension, expected, sizeof expected),
-            strut_dimension_name(p->quantity.dimension, found, sizeof found));
+  snprintf(message, sizeof message, "expected %s, found %s",
+           strut_expected_number(declared->dimension, expected, sizeof expected),
+           strut_dimension_name(p->quantity.dimension, found, sizeof found));
+  object(reader, p->set, p->key->place, message);
   return false;
 }
 
@@ -85,9 +104,9 @@ static void resolve(strut_reader *reader, strut_parameter_state *p) {
   reader->parameter_stack[reader->parameter_depth++] = p;
   p->state = STRUT_READING;
   strut_quantity declared;
-  bool fine = evaluate(reader, p, NULL, &declared);
-  if (p->override) {
-    fine = evaluate(reader, p, p->override, &p->quantity) && fine;
+  bool fine = evaluate(reader, p, &declared);
+  if (p->set) {
+    fine = evaluate_set(reader, p) && fine;
     fine = fine && adopt(reader, p, &declared);
   } else if (fine) {
     p->quantity = declared;
@@ -156,21 +175,24 @@ static void declare(strut_reader *reader, const strut_tree *key, strut_parameter
   p->state = fine ? (p->text ? STRUT_READ : STRUT_UNREAD) : STRUT_FAILED;
 }
 
-static void override(strut_reader *reader, const strut_override *set) {
-  strut_parameter_state *p = strut_parameter_find(reader, set->name);
+static void set(strut_reader *reader, const strut_setting *setting) {
+  strut_parameter_state *p = strut_parameter_find(reader, setting->name);
+  char message[300];
   if (!p) {
-    strut_say(reader, section_place(reader), "--set %s=%s: the scene has no parameter '%s'%s",
-              strut_shown(reader, set->name), strut_shown(reader, set->value),
-              strut_shown(reader, set->name),
-              strut_hint(reader, set->name, strut_parameter_name, reader, reader->parameter_count));
-  } else if (p->override) {
-    strut_say(reader, p->key->place, "--set %s is given twice", p->name);
+    snprintf(message, sizeof message, "the scene has no parameter '%s'%s",
+             strut_shown(reader, setting->name),
+             strut_hint(reader, setting->name, strut_parameter_name, reader,
+                        reader->parameter_count));
+    object(reader, setting, section_place(reader), message);
+  } else if (p->set) {
+    strut_say(reader, setting->place.line ? setting->place : p->key->place, "%s%s is given twice",
+              setting->place.line ? "" : "--set ", p->name);
   } else {
-    p->override = set->value;
+    p->set = setting;
   }
 }
 
-void strut_read_parameters(strut_reader *reader, const strut_override *overrides, size_t count) {
+void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count) {
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   bool known = slot->state != STRUT_BROKEN;
   const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
@@ -181,7 +203,7 @@ void strut_read_parameters(strut_reader *reader, const strut_override *overrides
     declare(reader, key, &reader->parameters[reader->parameter_count]);
     strut_add_name(reader, &reader->parameter_names, key->text, reader->parameter_count++);
   }
-  for (size_t i = 0; known && i < count; i++) override(reader, &overrides[i]);
+  for (size_t i = 0; known && i < count; i++) set(reader, &settings[i]);
   for (size_t i = 0; i < reader->parameter_count; i++) resolve(reader, &reader->parameters[i]);
 }
 
@@ -192,7 +214,7 @@ void strut_keep_parameters(strut_reader *reader) {
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
     const strut_parameter_state *p = &reader->parameters[i];
     if (p->value->kind != STRUT_TREE_SCALAR) return; /* reported */
-    const char *text = p->override ? p->override : p->value->text;
+    const char *text = p->set ? p->set->text : p->value->text;
     strut_parameter *kept = &scene->parameters[scene->parameter_count++];
     kept->name = strut_arena_text(&scene->arena, p->name, strlen(p->name));
     kept->text = strut_arena_text(&scene->arena, text, strlen(text));
@@ -201,11 +223,12 @@ void strut_keep_parameters(strut_reader *reader) {
   }
 }
 
-void strut_report_idle_overrides(strut_reader *reader) {
+void strut_report_idle_settings(strut_reader *reader) {
   for (size_t i = 0; i < reader->parameter_count; i++) {
     const strut_parameter_state *p = &reader->parameters[i];
-    if (p->override && !p->used)
-      strut_say(reader, p->key->place, "--set %s=%s: nothing in the scene uses parameter '%s'",
-                p->name, strut_shown(reader, p->override), p->name);
+    if (!p->set || p->used) continue;
+    char message[120];
+    snprintf(message, sizeof message, "nothing in the scene uses parameter '%s'", p->name);
+    object(reader, p->set, p->key->place, message);
   }
 }

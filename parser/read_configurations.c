@@ -184,9 +184,9 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
     return -1;
   }
   p->used = true;
-  const char *text = p->override ? p->override : p->value->text;
+  const char *text = p->set ? p->set->text : p->value->text;
   int32_t index = strut_name_map_find(&reader->configuration_names, text);
-  strut_place place = p->override ? p->key->place : p->value->place;
+  strut_place place = !p->set ? p->value->place : p->set->place.line ? p->set->place : p->key->place;
   if (index < 0)
     strut_say(reader, place, "unknown configuration '%s' in parameter '%s'%s",
               strut_shown(reader, text), p->name,

@@ -57,7 +57,7 @@ int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_r
 
 /* The words of a key, each with its end, for suggestions. */
 typedef struct words_context {
-  char word[12][24];
+  char word[32][24];
   int count;
 } words_context;
 
@@ -68,13 +68,13 @@ static const char *name_of_words(const void *context, size_t i) {
 
 static bool read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
                       strut_owner owner, int *word) {
-  char expected[200];
+  char expected[400];
   strut_words_text(key->words, expected, sizeof expected);
   if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
   *word = strut_word_find(key->words, value->text);
   if (*word >= 0) return true;
   words_context words = {.count = 0};
-  while (words.count < 12 &&
+  while (words.count < 32 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
   strut_say(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
@@ -126,6 +126,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
   switch (type) {
     case STRUT_TYPE_WORDS:
     case STRUT_TYPE_SIGNALS:
+    case STRUT_TYPE_AXES:
     case STRUT_TYPE_TABLE:
     case STRUT_TYPE_NODE_SETS:
       return value->kind == STRUT_TREE_LIST;

@@ -30,8 +30,8 @@ static void read_head(strut_reader *reader) {
     gravity->state = STRUT_BROKEN;
 }
 
-static void read_sections(strut_reader *reader, const strut_override *overrides, size_t count) {
-  strut_read_parameters(reader, overrides, count);
+static void read_sections(strut_reader *reader, const strut_setting *settings, size_t count) {
+  strut_read_parameters(reader, settings, count);
   read_head(reader);
   strut_read_groups(reader);
   strut_read_nodes(reader);
@@ -46,7 +46,7 @@ static void read_sections(strut_reader *reader, const strut_override *overrides,
   strut_keep_signals(reader);
   strut_keep_parameters(reader);
   strut_report_unused_groups(reader);
-  if (!reader->failed) strut_report_idle_overrides(reader);
+  if (!reader->failed) strut_report_idle_settings(reader);
 }
 
 /* The mappings of which there is one: before they are read, and where they are not there. */
@@ -71,7 +71,7 @@ static bool speaks_of_a_run(strut_reader *reader) {
 }
 
 /* Everything that can be said once there is a tree. */
-static void read_tree(strut_reader *reader, const strut_override *overrides, size_t count) {
+static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
   strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
@@ -80,7 +80,7 @@ static void read_tree(strut_reader *reader, const strut_override *overrides, siz
   if (reader->purpose == STRUT_FOR_ANY)
     reader->purpose = speaks_of_a_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
-  read_sections(reader, overrides, count);
+  read_sections(reader, settings, count);
   if (reader->out_of_memory) return;
   if (strut_scene_check(reader->scene, reader->purpose, &findings) == STRUT_NO_MEMORY)
     reader->out_of_memory = true;
@@ -100,12 +100,13 @@ static void free_reader(strut_reader *reader) {
   strut_document_free(&reader->document);
 }
 
-strut_status strut_scene_read(strut_scene *scene, const char *file, const char *text, size_t length,
-                              const strut_override *overrides, size_t override_count,
-                              strut_purpose purpose, strut_diagnostics *diagnostics) {
+/* From a tree that belongs to somebody else, or from the text where there is none yet. */
+static strut_status read_from(const strut_document *document, const strut_setting *settings,
+                              size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
+                              strut_scene *scene) {
   strut_reader *reader = strut_allocate(1, sizeof *reader);
+  strut_status status = STRUT_OK;
   strut_scene_init(scene);
-  strut_diagnostics_source(diagnostics, file, text, length);
   if (!reader) {
     strut_scene_free(scene);
     return STRUT_NO_MEMORY;
@@ -115,10 +116,12 @@ strut_status strut_scene_read(strut_scene *scene, const char *file, const char *
   reader->purpose = purpose;
   prepare(reader);
   strut_c_locale locale = strut_c_locale_enter();
-  strut_status status = strut_document_read(&reader->document, diagnostics);
+  if (document)
+    reader->document.root = document->root;
+  else
+    status = strut_document_read(&reader->document, diagnostics);
   reader->holes = status == STRUT_BAD_SCENE;
-  if (status != STRUT_NO_MEMORY && reader->document.root)
-    read_tree(reader, overrides, override_count);
+  if (status != STRUT_NO_MEMORY && reader->document.root) read_tree(reader, settings, count);
   strut_c_locale_leave(locale);
   if (!status && reader->failed) status = STRUT_BAD_SCENE;
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
@@ -126,4 +129,110 @@ strut_status strut_scene_read(strut_scene *scene, const char *file, const char *
   strut_release(reader);
   if (status) strut_scene_free(scene);
   return status;
+}
+
+strut_status strut_scene_read(strut_scene *scene, const char *file, const char *text, size_t length,
+                              const strut_override *overrides, size_t override_count,
+                              strut_purpose purpose, strut_diagnostics *diagnostics) {
+  strut_setting *settings = strut_allocate(override_count, sizeof *settings);
+  strut_scene_init(scene);
+  strut_diagnostics_source(diagnostics, file, text, length);
+  if (!settings) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < override_count; i++)
+    settings[i] = (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
+  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, scene);
+  strut_release(settings);
+  return status;
+}
+
+struct strut_scene_source {
+  strut_document document;
+  strut_arena arena;
+  const char *file, *text;
+  size_t length, count;
+  strut_declared *declared; /* (count) */
+};
+
+static strut_status keep_declared(strut_reader *reader, strut_scene_source *source) {
+  source->count = reader->parameter_count;
+  source->declared = strut_arena_allocate(&source->arena, source->count, sizeof *source->declared);
+  if (!source->declared) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < source->count; i++) {
+    const strut_parameter_state *p = &reader->parameters[i];
+    source->declared[i] = (strut_declared){.name = p->name, /* the tree's */
+                                           .text = p->text,
+                                           .bare = p->quantity.bare,
+                                           .dimension = p->quantity.dimension};
+  }
+  return STRUT_OK;
+}
+
+/* The parameters only. */
+static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
+  strut_scene scene;
+  strut_reader *reader = strut_allocate(1, sizeof *reader);
+  if (!reader) return STRUT_NO_MEMORY;
+  strut_scene_init(&scene);
+  reader->scene = &scene;
+  reader->diagnostics = diagnostics;
+  prepare(reader);
+  reader->document.root = source->document.root;
+  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root,
+                    (strut_owner){"the scene", NULL}, &reader->top);
+  if (reader->document.root->kind == STRUT_TREE_MAP) strut_read_parameters(reader, NULL, 0);
+  strut_status status = reader->failed ? STRUT_BAD_SCENE : keep_declared(reader, source);
+  if (reader->out_of_memory) status = STRUT_NO_MEMORY;
+  free_reader(reader);
+  strut_release(reader);
+  strut_scene_free(&scene);
+  return status;
+}
+
+strut_status strut_scene_source_open(const char *file, const char *text, size_t length,
+                                     strut_diagnostics *diagnostics, strut_scene_source **result) {
+  strut_scene_source *source = strut_allocate(1, sizeof *source);
+  strut_diagnostics unused = {0};
+  strut_diagnostics_source(diagnostics, file, text, length);
+  strut_diagnostics_source(&unused, file, text, length);
+  *result = source;
+  if (!source) return STRUT_NO_MEMORY;
+  source->file = file, source->text = text, source->length = length;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_status status = strut_document_read(&source->document, &unused);
+  if (status == STRUT_OK) status = declare_parameters(source, &unused);
+  strut_c_locale_leave(locale);
+  strut_diagnostics_free(&unused);
+  if (status == STRUT_OK) return status;
+  strut_scene scene; /* once more, for everything that can be said */
+  if (status == STRUT_BAD_SCENE)
+    status = strut_scene_read(&scene, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
+  if (status == STRUT_OK) strut_scene_free(&scene);
+  strut_scene_source_free(source);
+  *result = NULL;
+  return status == STRUT_OK ? STRUT_BAD_SCENE : status;
+}
+
+void strut_scene_source_free(strut_scene_source *source) {
+  if (!source) return;
+  strut_document_free(&source->document);
+  strut_arena_free(&source->arena);
+  strut_release(source);
+}
+
+const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
+                                                    size_t *count) {
+  *count = source->count;
+  return source->declared;
+}
+
+strut_document *strut_scene_source_document(strut_scene_source *source) {
+  return &source->document;
+}
+
+strut_status strut_scene_source_read(const strut_scene_source *source,
+                                     const strut_setting *settings, size_t setting_count,
+                                     strut_purpose purpose, strut_diagnostics *diagnostics,
+                                     strut_scene *scene) {
+  strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
+  return read_from(&source->document, settings, setting_count, purpose, diagnostics, scene);
 }

@@ -62,7 +62,8 @@ typedef struct strut_group {
 
 /** A parameter while parameters are being evaluated. */
 typedef struct strut_parameter_state {
-  const char *name, *override; /* override: text of --set, or NULL */
+  const char *name;
+  const strut_setting *set; /* given from outside, or NULL */
   const strut_tree *key, *value;
   enum { STRUT_UNREAD, STRUT_READING, STRUT_READ, STRUT_FAILED } state;
   bool text;
@@ -119,7 +120,7 @@ typedef struct strut_reader {
   strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
   const strut_tree *asking; /* the value whose expression is being evaluated */
-  const char *asking_set;   /* or the parameter whose --set is */
+  const char *asking_set;   /* or the parameter whose setting is */
   size_t suggestions;       /* names compared so far, to bound the effort */
   bool holes;               /* the text lacks what was refused in it: nothing is missing */
   bool ends_unknown;        /* some member or load could not be tied to its nodes */
@@ -215,11 +216,11 @@ void strut_report_unused_groups(strut_reader *reader);
 
 /* parameters.c */
 
-void strut_read_parameters(strut_reader *reader, const strut_override *overrides, size_t count);
+void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count);
 /** The record of what was used, for the scene. */
 void strut_keep_parameters(strut_reader *reader);
-/** A --set that changes nothing is an error: it cannot be what was meant. */
-void strut_report_idle_overrides(strut_reader *reader);
+/** A setting that changes nothing is an error: it cannot be what was meant. */
+void strut_report_idle_settings(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
 /** The parameter of that name, or NULL. */
 strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name);

@@ -17,6 +17,7 @@
 #include "parser/cli/command_plot.h"
 #include "parser/cli/command_rigidity.h"
 #include "parser/cli/command_run.h"
+#include "parser/cli/command_sweep.h"
 #include "parser/cli/command_tradeoff.h"
 #include "parser/cli/command_view.h"
 #include "parser/cli/command_write.h"
@@ -32,6 +33,7 @@ static const strut_command *const commands[] = {
     &strut_command_rigidity,
     &strut_command_compare,
     &strut_command_merge,
+    &strut_command_sweep,
     &strut_command_tradeoff,
     &strut_command_view,
     &strut_command_export,

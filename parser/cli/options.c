@@ -129,6 +129,12 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     case STRUT_OPTION_NO_STATES:
       to->no_states = true;
       break;
+    case STRUT_OPTION_TALLY:
+      to->tally = true;
+      break;
+    case STRUT_OPTION_STATUS:
+      to->status = true;
+      break;
     case STRUT_OPTION_HELP:
       to->help = true;
       break;

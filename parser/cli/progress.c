@@ -33,7 +33,7 @@ strut_progress strut_progress_begin(bool quiet) {
   };
 }
 
-static void write_time(char *text, size_t size, double seconds) {
+void strut_progress_time(char *text, size_t size, double seconds) {
   double whole = ceil(seconds);
   if (!(whole < 1e7)) {
     snprintf(text, size, "?");
@@ -57,7 +57,7 @@ static void write_simulated(char *text, size_t size, double fraction, double spa
 }
 
 /* A bar of so many columns: in blocks down to an eighth of one, or in ASCII. */
-static void write_bar(char *bar, int width, double fraction, bool unicode) {
+void strut_progress_bar(char *bar, int width, double fraction, bool unicode) {
   double part = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
   int done = (int)(part * width * PARTS);
   for (int i = 0; i < width; i++) {
@@ -78,7 +78,7 @@ void strut_progress_show(void *context, double fraction) {
   char bar[BAR_ROOM], left[32], simulated[48], text[TEXT];
   double elapsed = now() - progress->start;
   if (elapsed < PATIENCE) return;
-  write_time(left, sizeof left, fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
+  strut_progress_time(left, sizeof left, fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
   write_simulated(simulated, sizeof simulated, fraction, progress->span);
   double percent = floor(100.0 * fraction);
   int length = snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
@@ -88,7 +88,7 @@ void strut_progress_show(void *context, double fraction) {
     room = progress->columns - 1 - length;
   }
   int width = room > WIDTH ? WIDTH : room > 0 ? room : 0;
-  write_bar(bar, width, fraction, progress->unicode);
+  strut_progress_bar(bar, width, fraction, progress->unicode);
   const char *on = progress->colour ? "\033[36m" : "", *off = progress->colour ? "\033[0m" : "";
   int blank = room - width < 6 ? room - width : 6; /* over what a longer line has left */
   fprintf(stderr, "\r%s%s%s%.*s", on, bar, off, progress->columns - 1, text);

@@ -7,6 +7,7 @@
 #define STRUT_PARSER_CLI_PROGRESS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct strut_progress {
   bool wanted;  /* stderr is a terminal and nobody asked for quiet */
@@ -21,6 +22,10 @@ typedef struct strut_progress {
 strut_progress strut_progress_begin(bool quiet);
 /** Draws; `context` is the strut_progress, fraction 0 to 1. */
 void strut_progress_show(void *context, double fraction);
+/** "2 min 03 s" */
+void strut_progress_time(char *text, size_t size, double seconds);
+/** A bar of so many columns into 3 * width + 1 bytes: in blocks down to an eighth, or in ASCII. */
+void strut_progress_bar(char *bar, int width, double fraction, bool unicode);
 /** Erases the bar. */
 void strut_progress_end(strut_progress *progress);
 

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A study: one model at many points, as a plain description.
+ *
+ * Points are the grid of all axes crossed, the last axis fastest. An axis gives one parameter of the
+ * model or several together, each by a list or by a range that is never written out, so that a billion
+ * points need no memory. All texts and arrays are owned by whoever filled the study.
+ */
+#ifndef STRUT_ENGINE_SCENE_STUDY_H
+#define STRUT_ENGINE_SCENE_STUDY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/export.h"
+
+/** Most points of a study, and most values of one list. */
+#define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
+
+/** How an axis gives a parameter its values. */
+typedef enum strut_range_kind {
+  STRUT_RANGE_LIST, /* number, or word where the parameter is a text */
+  STRUT_RANGE_EVEN, /* count values from `from` to `to`, both among them */
+  STRUT_RANGE_STEP, /* from + i * step: `to` is not one of them */
+  STRUT_RANGE_RATIO /* as EVEN, of the logarithms */
+} strut_range_kind;
+
+/** One parameter along its axis. */
+typedef struct strut_study_column {
+  const char *name, *unit; /* unit "1": none */
+  bool word;               /* a text parameter: a LIST of words */
+  strut_range_kind kind;
+  double from, to, step;    /* SI */
+  const double *number;     /* (count of the axis) of a LIST */
+  const char *const *words; /* (count of the axis) of a LIST of words */
+} strut_study_column;
+
+/** What a parameter is at a point. */
+typedef struct strut_study_value {
+  double number;    /* SI */
+  const char *word; /* of a text parameter, else NULL */
+} strut_study_value;
+
+typedef struct strut_study_axis {
+  int64_t count; /* values, >= 1 */
+  size_t column_count;
+  strut_study_column *columns; /* (column_count) they go together */
+} strut_study_axis;
+
+/** What of a run's summary is kept: X(NAME, word of the language). The table's order. */
+#define STRUT_KEEP_TABLE(X)                                                                        \
+  X(VELOCITY, "velocity")                                                                          \
+  X(SPREAD, "velocity_spread")                                                                     \
+  X(INTERVAL, "velocity_interval")                                                                 \
+  X(MOTION, "motion")                                                                              \
+  X(REPEATS, "repeats")                                                                            \
+  X(PERIODS, "periods")                                                                            \
+  X(DISTANCE, "distance")                                                                          \
+  X(DURATION, "duration")                                                                          \
+  X(SETTLE_TIME, "settle_time")                                                                    \
+  X(STEPS, "steps")                                                                                \
+  X(EVALUATIONS, "force_evaluations")                                                              \
+  X(CHECKS, "check_evaluations")                                                                   \
+  X(EVENTS, "events")                                                                              \
+  X(METHOD, "method")                                                                              \
+  X(STEP, "step")                                                                                  \
+  X(STEP_LIMIT, "step_limit")                                                                      \
+  X(EXPECTED, "expected_error")                                                                    \
+  X(ENERGY, "energy")                                                                              \
+  X(WORK, "work")                                                                                  \
+  X(LOSSES, "losses")                                                                              \
+  X(RESIDUAL, "residual")                                                                          \
+  X(CONTACTS, "contacts")                                                                          \
+  X(POSITIONS, "positions")                                                                        \
+  X(OUTCOME, "outcome")
+
+typedef enum strut_keep {
+#define STRUT_KEEP_ENUM(name, word) STRUT_KEEP_##name,
+  STRUT_KEEP_TABLE(STRUT_KEEP_ENUM)
+#undef STRUT_KEEP_ENUM
+      STRUT_KEEP_COUNT
+} strut_keep;
+
+/** A drawing of the table. */
+typedef struct strut_study_figure {
+  const char *name;
+  bool map;          /* x, y, color; else lines: x, y, by */
+  const char *x, *y; /* columns of the table */
+  const char *series,
+      *color; /* of lines, what tells them apart; of a map, what is coloured; or NULL */
+} strut_study_figure;
+
+typedef struct strut_study {
+  const char *name, *description, *model; /* model: its file, from the study's folder */
+  size_t axis_count, figure_count;
+  strut_study_axis *axes;
+  unsigned keep;         /* bits 1 << strut_keep; 0: what is usual */
+  bool trajectories;     /* a directory of results for each run */
+  bool half_step;        /* run each point again with half the step */
+  double check_accuracy; /* or with this accuracy; 0: not */
+  strut_study_figure *figures;
+} strut_study;
+
+#endif

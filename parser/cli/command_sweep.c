@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/command_sweep.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/output/file.h"
+#include "engine/study/shard.h"
+#include "engine/study/study_table.h"
+#include "parser/cli/interrupt.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+#include "parser/cli/sweep_report.h"
+#include "parser/cli/sweep_study.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "where the results are, and go on"},
+    {STRUT_OPTION_THREADS, "threads", "N", "points at a time; as many as there are processors"},
+    {STRUT_OPTION_SHARD, "shard", "K/N",
+     "only every N-th point from K on, counted from 0; or slurm"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_TALLY, "count", NULL, "only tell how many points and which columns there are"},
+    {STRUT_OPTION_STATUS, "status", NULL, "only tell what is done, missing and failed in DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
+    {STRUT_OPTION_QUIET, "quiet", NULL, "print nothing and show no progress"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+enum { MOST_THREADS = 4096 };
+static const char table_name[] = "table.csv";
+
+/* DIR/name in the study's memory; NULL: memory is out. */
+static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
+  return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
+}
+
+static strut_status complain(strut_status status, const strut_error *error) {
+  if (status != STRUT_OK) strut_complain(error);
+  return status;
+}
+
+/* Which part of the study is meant, and the file of its slots. */
+static strut_status find_shard(const strut_arguments *arguments, strut_sweep_study *study,
+                               strut_shard *shard, const char **path) {
+  const strut_array_task task = {
+      .id = getenv("SLURM_ARRAY_TASK_ID"),
+      .min = getenv("SLURM_ARRAY_TASK_MIN"),
+      .max = getenv("SLURM_ARRAY_TASK_MAX"),
+      .step = getenv("SLURM_ARRAY_TASK_STEP"),
+      .count = getenv("SLURM_ARRAY_TASK_COUNT"),
+  };
+  const char *text = strut_option_text(arguments, STRUT_OPTION_SHARD);
+  strut_error error = {0};
+  *shard = (strut_shard){0};
+  strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
+  if (status) return complain(status, &error);
+  if (shard->count) strut_shard_points(*shard, &study->slots);
+  *path = strut_shard_path(arguments->output, *shard, &study->plan.arena);
+  return *path ? STRUT_OK : strut_complain_of_memory();
+}
+
+static strut_status show_status(const strut_arguments *arguments, strut_sweep_study *study) {
+  strut_slots *slots = NULL;
+  strut_slots_plan there;
+  strut_error error = {0};
+  strut_shard shard;
+  const char *path;
+  strut_status status = find_shard(arguments, study, &shard, &path);
+  if (status) return status;
+  status = strut_slots_read(path, &slots, &there, &error);
+  if (status) return complain(status, &error);
+  status = strut_sweep_print_status(slots, arguments->json);
+  strut_slots_close(slots);
+  return status;
+}
+
+/* The study and its model as they were, for the record. */
+static strut_status keep_texts(const strut_arguments *arguments, const strut_sweep_study *study,
+                               strut_error *error) {
+  strut_status status =
+      strut_file_write_text(arguments->output, "study.yaml", study->file.text, error);
+  return status ? status
+                : strut_file_write_text(arguments->output, "model.yaml", study->file.model_text,
+                                        error);
+}
+
+static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
+                               int threads, strut_slots *slots, strut_sweep_state *state,
+                               strut_error *error) {
+  strut_sweep_progress progress = strut_sweep_progress_begin(&study->plan, arguments->quiet);
+  const strut_sweep_options how = {.threads = threads,
+                                   .interrupt = strut_interrupt_watch(),
+                                   .directory = arguments->output,
+                                   .progress = strut_sweep_progress_show,
+                                   .progress_context = &progress};
+  strut_status status = keep_texts(arguments, study, error);
+  if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
+  strut_sweep_progress_end(&progress);
+  strut_error late = {0};
+  strut_status synced = strut_slots_sync(slots, &late);
+  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status == STRUT_INTERRUPTED)
+    strut_fail(error, status,
+               "interrupted with %lld of %lld points done; the same command goes on from there",
+               (long long)state->done, (long long)state->points);
+  return status;
+}
+
+/* Points that failed are no reason to stop, but the exit code tells of them. */
+static strut_status finish(const strut_arguments *arguments, strut_sweep_study *study,
+                           strut_shard shard, strut_slots *slots, const strut_sweep_state *state) {
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  const char *table = shard.count ? "one shard: 'strut merge' makes the table of all"
+                                  : inside(study, arguments->output, table_name);
+  if (!table) return strut_complain_of_memory();
+  strut_status status =
+      shard.count ? STRUT_OK
+                  : strut_study_table_write(arguments->output, table_name, sources, 1, &error);
+  if (status) return complain(status, &error);
+  if (!arguments->quiet || arguments->json)
+    status = strut_sweep_print_end(state, table, arguments->json);
+  if (status || !state->failed) return status;
+  fprintf(stderr,
+          "strut: %lld of %lld points failed; the table's columns status and message say "
+          "why\n",
+          (long long)state->failed, (long long)state->points);
+  return STRUT_DIVERGED;
+}
+
+static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study, int threads) {
+  strut_slots *slots = NULL;
+  strut_sweep_state state = {0};
+  strut_error error = {0};
+  strut_shard shard;
+  const char *path;
+  strut_status status = find_shard(arguments, study, &shard, &path);
+  if (status) return status;
+  status = strut_directory_create(arguments->output, &error);
+  if (!status) status = strut_shard_begin(arguments->output, shard, &error);
+  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status) status = run_points(arguments, study, threads, slots, &state, &error);
+  complain(status, &error);
+  if (!status) status = finish(arguments, study, shard, slots, &state);
+  strut_slots_close(slots);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_sweep_study study = {0};
+  int64_t threads = 0;
+  strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
+                                             1, MOST_THREADS, &threads);
+  if (status) return status;
+  if (!arguments->output && !arguments->tally) {
+    fputs("strut sweep: -o DIR is missing, where the results go\n", stderr);
+    return STRUT_USAGE;
+  }
+  status = strut_sweep_study_open(arguments, &study);
+  if (!status && arguments->tally)
+    status = strut_sweep_print_count(&study.plan, arguments->json);
+  else if (!status && arguments->status)
+    status = show_status(arguments, &study);
+  else if (!status)
+    status = sweep(arguments, &study, (int)threads);
+  strut_sweep_study_close(&study);
+  return status;
+}
+
+const strut_command strut_command_sweep = {
+    .name = "sweep",
+    .model = "STUDY",
+    .summary = "runs a model at many points",
+    .details =
+        "\nA study is a file that names a model, axes over its parameters and what to keep of "
+        "each\n"
+        "run ('strut keys' explains it). DIR gets table.csv, a row for each point, and "
+        "points.slots,\n"
+        "where results are as soon as a point is done: whatever stops the program, the same "
+        "command\n"
+        "goes on where it was, and the table has the same bytes in the end, whatever the number "
+        "of\n"
+        "threads. Remove points.slots to begin anew.\n"
+        "A point that fails is a row that says why; the exit code is 3 then. Ctrl-C stops soon.\n",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/sweep_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/buffer.h"
+#include "parser/cli/streams.h"
+
+enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300, MOST_FAILURES = 20, MOST_GAPS = 20 };
+
+/* Between two lines where there is no terminal, and before the first bar [s]. */
+static const double NOW_AND_THEN = 30.0, PATIENCE = 0.5;
+
+strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet) {
+  return (strut_sweep_progress){.bar = strut_progress_begin(quiet), .plan = plan, .quiet = quiet};
+}
+
+/* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
+static void tell_row(const strut_sweep_plan *plan, const strut_slot *row, char *text, size_t room) {
+  size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
+  *text = '\0';
+  for (size_t i = 0; i < plan->column_count && i < most && used < room; i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    const char *unit = strcmp(c->unit, "1") == 0 ? "" : c->unit;
+    int n = c->word ? snprintf(text + used, room - used, "%s%s %s", i ? ", " : "", c->name,
+                               row->words[word++])
+                    : snprintf(text + used, room - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
+                               row->numbers[number++], *unit ? " " : "", unit);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  if (row->status != STRUT_OK && used < room)
+    snprintf(text + used, room - used, ": %s", strut_status_text(row->status));
+}
+
+/* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
+static void tell_state(const strut_sweep_state *state, char *text, size_t room) {
+  char left[32], failed[40] = "";
+  double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
+  strut_progress_time(left, sizeof left,
+                      rate > 0.0 ? (double)(state->points - state->done) / rate : HUGE_VAL);
+  if (state->failed) snprintf(failed, sizeof failed, " (%lld failed)", (long long)state->failed);
+  snprintf(text, room, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
+           (long long)state->points, failed, rate, left);
+}
+
+void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
+  strut_sweep_progress *progress = context;
+  strut_progress *bar = &progress->bar;
+  char text[TEXT], row[TEXT], all[2 * TEXT + 8], blocks[BAR_ROOM];
+  if (progress->quiet || state->seconds < PATIENCE) return;
+  if (!bar->wanted && state->seconds - progress->told < NOW_AND_THEN) return;
+  progress->told = state->seconds;
+  tell_state(state, text, sizeof text);
+  tell_row(progress->plan, state->row, row, sizeof row);
+  snprintf(all, sizeof all, "%s; %s", text, row);
+  if (!bar->wanted) {
+    fprintf(stderr, "strut: %s\n", all);
+    return;
+  }
+  int room = bar->columns - 1, width = room > 3 * WIDTH ? WIDTH : 0;
+  strut_progress_bar(blocks, width, (double)state->done / (double)state->points, bar->unicode);
+  const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
+  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, room - width - 1, room - width - 1, all);
+  fflush(stderr);
+  bar->shown = true;
+}
+
+void strut_sweep_progress_end(strut_sweep_progress *progress) {
+  strut_progress_end(&progress->bar);
+}
+
+static strut_status print_buffer(strut_buffer *b) {
+  char *text = strut_buffer_take(b);
+  if (!text) return strut_complain_of_memory();
+  strut_status status = strut_print(text);
+  strut_release(text);
+  return status;
+}
+
+/* A text as a JSON string. */
+static void add_string(strut_buffer *b, const char *text) {
+  strut_buffer_add(b, "\"");
+  for (; *text; text++) {
+    unsigned char c = (unsigned char)*text;
+    if (c == '"' || c == '\\')
+      strut_buffer_add(b, "\\%c", c);
+    else if (c < 0x20)
+      strut_buffer_add(b, "\\u%04x", c);
+    else
+      strut_buffer_add(b, "%c", c);
+  }
+  strut_buffer_add(b, "\"");
+}
+
+strut_status strut_sweep_print_count(const strut_sweep_plan *plan, bool json) {
+  strut_buffer b = {0};
+  strut_buffer_add(&b, json ? "{\"points\": %lld, \"columns\": [" : "%lld points; the table has",
+                   (long long)plan->points);
+  for (size_t i = 0; i < plan->column_count; i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    bool unit = strcmp(c->unit, "1") != 0;
+    strut_buffer_add(&b, "%s", i == 0 ? json ? "" : " " : ", ");
+    if (json)
+      add_string(&b, c->name);
+    else
+      strut_buffer_add(&b, unit ? "%s [%s]" : "%s", c->name, c->unit);
+  }
+  strut_buffer_add(&b, json ? "]}\n" : "\n");
+  return print_buffer(&b);
+}
+
+/* Ranges of missing points, the first few. */
+static void add_gaps(strut_buffer *b, strut_slots *slots, bool json) {
+  int64_t count = strut_slots_plan_of(slots)->count;
+  int gaps = 0;
+  for (int64_t i = 0; i < count && gaps < MOST_GAPS;) {
+    int64_t first = i;
+    while (i < count && !strut_slots_done(slots, strut_slots_point(slots, i))) i++;
+    if (i > first) {
+      long long from = strut_slots_point(slots, first), to = strut_slots_point(slots, i - 1);
+      if (json)
+        strut_buffer_add(b, "%s[%lld, %lld]", gaps ? ", " : "", from, to);
+      else if (from == to)
+        strut_buffer_add(b, "%s%lld", gaps ? ", " : "missing: ", from);
+      else
+        strut_buffer_add(b, "%s%lld to %lld", gaps ? ", " : "missing: ", from, to);
+      gaps++;
+    }
+    i++;
+  }
+  if (!json && gaps) strut_buffer_add(b, gaps == MOST_GAPS ? ", ...\n" : "\n");
+}
+
+static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
+  int64_t count = strut_slots_plan_of(slots)->count;
+  int told = 0;
+  for (int64_t i = 0; i < count && told < MOST_FAILURES && strut_slots_failed(slots); i++) {
+    strut_slot row;
+    long long point = strut_slots_point(slots, i);
+    if (!strut_slots_get(slots, point, &row) || row.status == STRUT_OK) continue;
+    if (json) {
+      strut_buffer_add(b, "%s{\"point\": %lld, \"status\": ", told ? ", " : "", point);
+      add_string(b, strut_status_text(row.status));
+      strut_buffer_add(b, ", \"message\": ");
+      add_string(b, row.message ? row.message : "");
+      strut_buffer_add(b, "}");
+    } else {
+      strut_buffer_add(b, "failed: point %lld: %s: %s\n", point, strut_status_text(row.status),
+                       row.message ? row.message : "");
+    }
+    told++;
+  }
+  if (!json && told == MOST_FAILURES && strut_slots_failed(slots) > told)
+    strut_buffer_add(b, "... and %lld more; the table has all\n",
+                     (long long)strut_slots_failed(slots) - told);
+}
+
+strut_status strut_sweep_print_status(strut_slots *slots, bool json) {
+  strut_buffer b = {0};
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
+  strut_buffer_add(&b,
+                   json ? "{\"points\": %lld, \"done\": %lld, \"missing\": %lld, \"failed\": %lld, "
+                          "\"gaps\": ["
+                        : "%lld points: %lld done, %lld missing, %lld of the done failed\n",
+                   (long long)plan->count, (long long)plan->count - missing, missing, failed);
+  add_gaps(&b, slots, json);
+  if (json) strut_buffer_add(&b, "], \"failures\": [");
+  add_failures(&b, slots, json);
+  if (json) strut_buffer_add(&b, "]}\n");
+  return print_buffer(&b);
+}
+
+strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json) {
+  strut_buffer b = {0};
+  char time[32];
+  strut_progress_time(time, sizeof time, state->seconds);
+  if (json) {
+    strut_buffer_add(&b, "{\"points\": %lld, \"failed\": %lld, \"computed\": %lld, \"table\": ",
+                     (long long)state->points, (long long)state->failed,
+                     (long long)state->computed);
+    add_string(&b, table);
+    strut_buffer_add(&b, "}\n");
+  } else {
+    strut_buffer_add(&b, "%lld points, %lld failed; %lld computed now, in %s\n%s\n",
+                     (long long)state->points, (long long)state->failed, (long long)state->computed,
+                     time, table);
+  }
+  return print_buffer(&b);
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the parts of the study reader share. Internal to parser/.
+ */
+#ifndef STRUT_PARSER_STUDY_READER_H
+#define STRUT_PARSER_STUDY_READER_H
+
+#include "parser/read_study.h"
+#include "parser/reader.h"
+
+typedef struct strut_study_reader {
+  strut_reader *reader; /* of the study's text: its messages and its tree */
+  strut_study_file *file;
+  const strut_declared *declared; /* (declared_count) the model's parameters */
+  size_t declared_count;
+  strut_name_map given; /* parameters that the study gives: their declared index */
+} strut_study_reader;
+
+/** The parameter of the model that a key names; NULL where that was reported. */
+const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key);
+/** Reads the axes into the study, and their columns. */
+void strut_study_read_axes(strut_study_reader *r, const strut_tree *list);
+
+#endif
