@@ -170,19 +170,38 @@ static strut_status limits(const strut_model *model, const double *q, const doub
   return STRUT_OK;
 }
 
-strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
-                                       strut_error *error) {
-  strut_arena arena = {0};
-  strut_step_limit implicit;
+static bool ground_damps(const strut_model *model) {
   bool damped = false;
   for (int32_t i = 0; i < model->contacts.count; i++)
     damped = damped || model->contacts.entry[i].damping > 0.0 ||
              model->contacts.entry[i].dissipation > 0.0;
+  return damped;
+}
+
+strut_status strut_step_limit_for(const strut_model *model, const strut_integrator *method,
+                                  double *limit, strut_error *error) {
+  strut_arena arena = {0};
+  strut_step_limit found;
+  *limit = HUGE_VAL;
+  if (method->region == STRUT_REGION_ALL) return STRUT_OK;
+  bool undamped = method->implicit_damper && ground_damps(model);
+  strut_status status = limits(model, model->start, model->members.rest,
+                               undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
+                               method->region == STRUT_REGION_RK4, &arena, &found);
+  *limit = found.of[method->region];
+  strut_arena_free(&arena);
+  return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+}
+
+strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
+                                       strut_error *error) {
+  strut_arena arena = {0};
+  strut_step_limit implicit;
   const double *q = model->start, *rest = model->members.rest;
   strut_status status = limits(model, q, rest, STRUT_CLOSED_ALL, true, &arena, limit);
   implicit = *limit;
   strut_arena_free(&arena);
-  if (!status && damped)
+  if (!status && ground_damps(model))
     status = limits(model, q, rest, STRUT_CLOSED_UNDAMPED, false, &arena, &implicit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = implicit.of[region];

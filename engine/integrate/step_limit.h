@@ -30,6 +30,11 @@ STRUT_API strut_status strut_step_limit_at(const strut_model *model, const doubl
                                            const double *rest, strut_closed closed,
                                            strut_step_limit *limit, strut_error *error);
 
+/** The largest stable step of one method alone [s], for less work than all of them are. */
+STRUT_API strut_status strut_step_limit_for(const strut_model *model,
+                                            const strut_integrator *method, double *limit,
+                                            strut_error *error);
+
 /** The largest stable step of a method [s]. */
 STRUT_API double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method);
 

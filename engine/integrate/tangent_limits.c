@@ -2,6 +2,7 @@
 #include "engine/integrate/tangent_limits.h"
 
 #include <gsl/gsl_eigen.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -39,18 +40,38 @@ static void symmetric_free(symmetric *s) {
   gsl_eigen_symmv_free(s->w);
 }
 
-/* The largest eigenvalue of a K + b D with its vector. */
+/*
+ * Fills in a K + b D, times a power of two that makes the largest entry about 1. Returns by which
+ * power they are too small then; INT_MAX where some entry is no finite number: GSL would not end.
+ */
+static int fill(symmetric *s, const strut_tangent_space *space, double a, double b) {
+  size_t m = s->m, row = (size_t)space->most;
+  double most = 0.0, poison = 0.0;
+  int power = 0;
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < m; j++) {
+      double x = a * space->stiffness[i * row + j] + b * space->damping[i * row + j];
+      poison += x - x;
+      most = fmax(most, fabs(x));
+      gsl_matrix_set(s->matrix, i, j, x);
+    }
+  if (poison != 0.0) return INT_MAX;
+  frexp(most, &power);
+  for (size_t i = 0; i < m * m; i++) s->matrix->data[i] = ldexp(s->matrix->data[i], -power);
+  return power;
+}
+
+/* The largest eigenvalue of a K + b D with its vector; infinite where the matrix is. */
 static double largest(symmetric *s, const strut_tangent_space *space, double a, double b,
                       double *x) {
-  size_t m = s->m, row = (size_t)space->most;
-  for (size_t i = 0; i < m; i++)
-    for (size_t j = 0; j < m; j++)
-      gsl_matrix_set(s->matrix, i, j,
-                     a * space->stiffness[i * row + j] + b * space->damping[i * row + j]);
+  size_t m = s->m, top = 0;
+  for (size_t i = 0; i < m; i++) x[i] = i == 0;
+  int power = fill(s, space, a, b);
+  if (power == INT_MAX) return HUGE_VAL;
   if (gsl_eigen_symmv(s->matrix, s->values, s->vectors, s->w)) return 0.0;
-  size_t top = gsl_vector_max_index(s->values);
+  top = gsl_vector_max_index(s->values);
   for (size_t i = 0; i < m; i++) x[i] = gsl_matrix_get(s->vectors, i, top);
-  return gsl_vector_get(s->values, top);
+  return ldexp(gsl_vector_get(s->values, top), power);
 }
 
 static double quotient(const double *small, size_t row, const double *x, size_t m) {
@@ -139,6 +160,13 @@ static void take_pairs(const gsl_vector_complex *values, const gsl_matrix_comple
   }
 }
 
+static bool is_finite(const gsl_matrix *matrix) {
+  double poison = 0.0;
+  for (size_t i = 0; i < matrix->size1 * matrix->tda; i++)
+    poison += matrix->data[i] - matrix->data[i];
+  return poison == 0.0;
+}
+
 /* All eigenvalues of [0 w; -K/w, -D] / w: scaled so that its two halves are of one size. */
 static bool find_rk4(const strut_tangent_space *space, double omega, strut_tangent_limits *limits) {
   size_t m = (size_t)space->count, row = (size_t)space->most;
@@ -154,7 +182,7 @@ static bool find_rk4(const strut_tangent_space *space, double omega, strut_tange
       gsl_matrix_set(system, m + i, m + j, -space->damping[i * row + j] / omega);
     }
   }
-  limits->solved = room && !gsl_eigen_nonsymmv(system, values, vectors, w);
+  limits->solved = room && is_finite(system) && !gsl_eigen_nonsymmv(system, values, vectors, w);
   if (limits->solved) take_pairs(values, vectors, omega, limits);
   gsl_eigen_nonsymmv_free(w);
   gsl_matrix_complex_free(vectors);

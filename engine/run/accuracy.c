@@ -37,13 +37,12 @@ static strut_status refuse_exact_friction(const strut_accuracy *a, const strut_m
 /* Verlet from event to event, or what takes rigid bars, with as large a step as it bears. */
 static strut_status choose_cheap(strut_accuracy *a) {
   strut_model *model = NULL;
-  strut_step_limit limit;
+  double limit = 0.0;
   strut_span span = strut_scene_span(a->scene);
   strut_status status = strut_model_compile(a->scene, &model, a->error);
   if (!status && !model->mass)
     status = strut_fail(a->error, STRUT_SINGULAR, "some node that can move has no mass");
   if (!status && (model->plan & STRUT_TERM_RIGID)) status = refuse_exact_friction(a, model);
-  if (!status) status = strut_step_limit_estimate(model, &limit, a->error);
   if (!status) {
     strut_experiment *e = &a->cheap;
     double unit = span.period > 0.0 ? span.period : span.duration;
@@ -51,8 +50,8 @@ static strut_status choose_cheap(strut_accuracy *a) {
     e->accuracy = 0.0;
     a->halving = model->plan & STRUT_TERM_RIGID; /* which one method keeps */
     e->integrator = a->halving ? "rk4" : "verlet-events";
-    e->step = OF_LIMIT * strut_step_limit_of(&limit, strut_integrator_find(e->integrator));
-    e->step = fmin(e->step, unit / LEAST_STEPS);
+    status = strut_step_limit_for(model, strut_integrator_find(e->integrator), &limit, a->error);
+    e->step = fmin(OF_LIMIT * limit, unit / LEAST_STEPS);
     e->refine = e->refine_time = 0.0;
     a->scale = STANDING * model->size / unit;
   }

@@ -55,4 +55,26 @@ void strut_run_step(strut_run *run, int64_t stop);
 /** Fills the summary and frees what belongs to the run; `status` is what begin or look returned. */
 strut_status strut_run_end(strut_run *run, strut_status status);
 
+/* ---- parts of these, in run_*.c ---- */
+
+/** All but the fields that strut_run_begin fills itself: no memory is asked for after this. */
+strut_status strut_run_prepare(strut_run *r);
+
+/** Every so many steps: does the step still suit the structure? */
+strut_status strut_run_watch_step(strut_run *r);
+/** The first node that is nowhere or too far away, or -1. */
+int32_t strut_run_lost_node(const strut_model *model, const strut_state *state);
+/** Fails for a lost node. */
+strut_status strut_run_diverged(const strut_run *r, int32_t node);
+/** Fails for a method that could not go on. */
+strut_status strut_run_stuck(const strut_run *r);
+
+/** A place within the period that no symmetry of the drive prefers. */
+int64_t strut_run_middle(int64_t period);
+/**
+ * At the ends of periods, and once within each. When the motion has become steady the run goes on
+ * for the periods that are recorded, at least one, over which contacts are measured.
+ */
+strut_status strut_run_watch(strut_run *r);
+
 #endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What comes before the first step of a run. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/step_limit.h"
+#include "engine/run/simulate_parts.h"
+#include "engine/run/settle.h"
+
+static strut_status refuse_large_step(const strut_run *r) {
+  double limit = r->summary->step_limit;
+  if (r->dt <= limit || r->options->force) return STRUT_OK;
+  return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                    "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
+                    "closed); use solver.step <= %.2g s, or --force to run all the same",
+                    r->dt, r->method->name, limit, 0.9 * limit);
+}
+
+static strut_status fill_names(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_summary *s = r->summary;
+  size_t contacts = (size_t)r->model->contacts.count;
+  s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
+  s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
+  s->contacts = strut_allocate(contacts, sizeof *s->contacts);
+  if (!s->node_names || !s->positions || !s->contacts)
+    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  s->node_count = scene->node_count;
+  s->contact_count = contacts;
+  for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
+  for (size_t i = 0; i < contacts; i++)
+    s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
+  return STRUT_OK;
+}
+
+/* The step, made to divide the drive's period where that is watched; first and last step. */
+static void choose_steps(strut_run *r, const strut_span *span) {
+  const strut_experiment *e = &r->model->scene->experiment;
+  double last = e->output_last;
+  r->dt = e->step;
+  if (r->watching) {
+    r->period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
+    r->dt = span->period / (double)r->period_steps;
+    r->more_periods = r->options->sink_count && last > 1.0 ? (int64_t)ceil(last - 1e-9) : 1;
+  }
+  r->summary->step = r->dt;
+  r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
+  r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
+}
+
+/* Where the run begins: as the scene says, settled, or where another one ended. */
+static strut_status place_state(strut_run *r) {
+  const strut_snapshot *from = r->options->from;
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  r->state->step = r->first;
+  if (from) {
+    memcpy(r->state->q, from->q, bytes);
+    memcpy(r->state->v, from->v, bytes);
+    r->state->refined_until = from->time + from->refined;
+    return STRUT_OK;
+  }
+  if (!r->model->scene->settle.wanted) return STRUT_OK;
+  return strut_settle_state(r->model, r->state, r->options->interrupt, &r->summary->settle_time,
+                            r->error);
+}
+
+strut_status strut_run_prepare(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_span span = strut_scene_span(scene);
+  r->watching = scene->experiment.steady.wanted && span.period > 0.0;
+  choose_steps(r, &span);
+  strut_status status = strut_integrator_check(r->model, r->error);
+  if (status) return status;
+  r->method = strut_integrator_find(scene->experiment.integrator);
+  for (size_t i = 0; i + 1 < sizeof r->summary->method && r->method->name[i]; i++)
+    r->summary->method[i] = r->method->name[i];
+  if (scene->start_equilibrium >= 0)
+    return strut_fail(r->error, STRUT_USAGE,
+                      "the run wants to start at the equilibrium of configuration '%s'; resolve it "
+                      "into positions first (strut_stand_resolve)",
+                      scene->configurations[scene->start_equilibrium].name);
+  if (!r->model->mass)
+    return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
+  status = strut_step_limit_for(r->model, r->method, &r->summary->step_limit, r->error);
+  if (status) return status;
+  if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||
+      (status = strut_state_create(r->model, &r->state, r->error)))
+    return status;
+  r->workspace = r->method->create(r->model, r->state);
+  double begin = (double)r->first * r->dt;
+  if (!r->workspace ||
+      strut_measure_create(r->model, r->dt, begin, (size_t)r->more_periods + 1, &r->measure) ||
+      (r->watching && strut_watch_create(r->model, span.period, begin, &r->watch)))
+    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  if ((status = place_state(r))) return status;
+  r->state->ledger = !r->options->without_ledger;
+  r->state->interrupt = r->options->interrupt;
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard) ||
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
+    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  strut_energy_mark(r->model, r->state);
+  r->initial = strut_energy_stored(r->model, r->state, begin);
+  return strut_recording_create(r->model, r->dt, begin, r->options->sinks, r->options->sink_count,
+                                &r->recording, r->error);
+}

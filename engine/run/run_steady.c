@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Watching a run for steady motion, and finishing it there. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/run/simulate_parts.h"
+#include "engine/run/shooting.h"
+
+int64_t strut_run_middle(int64_t period) { return (int64_t)(0.382 * (double)period); }
+
+/* The state becomes the orbit's; what the change does to the stored energies is no error of the run. */
+static void take_orbit(strut_run *r, const double *y) {
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  double t = (double)r->state->step * r->dt;
+  strut_stored before = strut_energy_stored(r->model, r->state, t);
+  memcpy(r->state->q, y, bytes);
+  memcpy(r->state->v, y + r->model->length, bytes);
+  r->state->refined_until = t + y[2 * r->model->length];
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  strut_stored after = strut_energy_stored(r->model, r->state, t);
+  r->initial.kinetic += after.kinetic - before.kinetic;
+  r->initial.elastic += after.elastic - before.elastic;
+  r->initial.gravity += after.gravity - before.gravity;
+  r->initial.contact += after.contact - before.contact;
+}
+
+/* Finishes the motion that was found to be periodic; it goes on as it is where that fails. */
+static strut_status shoot(strut_run *r) {
+  size_t length = (size_t)r->model->length;
+  strut_steady_summary *found = &r->watch.result;
+  strut_period_map map = {.model = NULL};
+  double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
+  if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = strut_period_map_create(r->model->scene, &r->model->scene->experiment,
+                                                found->repeats, &map, r->error);
+  if (!status) {
+    map.time = (double)r->state->step * r->dt;
+    memcpy(y, r->state->q, length * sizeof *y);
+    memcpy(y + length, r->state->v, length * sizeof *y);
+    y[2 * length] = fmax(0.0, r->state->refined_until - map.time);
+    status = strut_shoot(&map, y, &travel, found);
+    if (status) strut_fail(r->error, status, "out of memory");
+  }
+  if (!status && found->shot) {
+    take_orbit(r, y);
+    r->watch.velocity = travel / (map.period * found->repeats);
+  }
+  r->shot_periods = map.applied;
+  found->periods += map.applied;
+  r->state->evaluations += map.evaluations;
+  strut_period_map_free(&map);
+  strut_release(y);
+  return status;
+}
+
+strut_status strut_run_watch(strut_run *r) {
+  int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
+  if (past == strut_run_middle(r->period_steps)) strut_watch_middle(r->state, &r->watch);
+  if (past != 0) return STRUT_OK;
+  double x, v;
+  bool before = r->watch.known;
+  strut_measure_track(r->model, r->state, &r->measure, &x, &v);
+  if (!strut_watch_period(r->state, x, &r->watch) || before) return STRUT_OK;
+  strut_status status = r->model->scene->experiment.steady.shooting ? shoot(r) : STRUT_OK;
+  if (status) return status;
+  double now = (double)n * r->dt, period = r->watch.period;
+  r->steps = n + r->more_periods * r->period_steps;
+  strut_measure_window(r->model, r->state, now, period, (size_t)r->more_periods, &r->measure);
+  if (r->model->scene->experiment.output_last > 0.0) r->recording.start = now;
+  return STRUT_OK;
+}
