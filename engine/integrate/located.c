@@ -7,8 +7,9 @@
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;
-/* After so many switches without a step one is taken whatever the modes say. */
-enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60 };
+/* After so many switches without a step, or within one step of the grid, one is taken whatever the
+   modes say: switches may follow each other faster and faster without end (Zeno). */
+enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
 
 static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
   size_t length = (size_t)model->length, members = (size_t)model->members.count;
@@ -90,7 +91,7 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
   l->h = 0.0;
   l->fastest = 0.0;
   l->done = 0.0;
-  l->at_once = 0;
+  l->at_once = l->switches = 0;
   l->tried = false;
   strut_modes_start(model, state, l, t);
   l->started = true;
@@ -181,7 +182,7 @@ static bool try_step(const strut_model *model, strut_state *state, strut_located
 static double step(const strut_model *model, strut_state *state, strut_located *l, double t,
                    double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
-  bool force = l->at_once >= MOST_AT_ONCE;
+  bool force = l->at_once >= MOST_AT_ONCE || l->switches >= MOST_SWITCHES;
   if (l->stepper->predict && !l->tried) {
     l->stepper->predict(model, l, h);
     if (!force) event = strut_event_predict(model, state, l, h);
@@ -210,6 +211,7 @@ static double step(const strut_model *model, strut_state *state, strut_located *
   if (event.kind) {
     strut_event_apply(model, state, l, event, t + h);
     state->events++;
+    l->switches++;
   } else if (force) {
     strut_modes_start(model, state, l, t + h);
   } else if (strut_modes_after_step(model, l)) {

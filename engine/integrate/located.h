@@ -116,6 +116,7 @@ struct strut_located {
   bool started;
   double done;              /* of the grid step under way [s] */
   int at_once;              /* switches since the latest step */
+  int switches;             /* since the latest grid point */
   bool tried;               /* next is the end of the step that is due */
 };
 

@@ -206,6 +206,7 @@ STRUT_INLINE void located_go_on(strut_state *state, strut_located *l, double gon
   l->done = gone == rest ? dt : l->done + gone;
   if (dt - l->done > 1e-12 * dt) return;
   l->done = 0.0;
+  l->switches = 0;
   state->step++;
 }
 
