@@ -143,43 +143,6 @@ static double earliest_dip(const strut_model *model, const strut_located *l, dou
   return first;
 }
 
-/*
- * A band entered just now has its edge, but for rounding, where the step begins: an end beyond either
- * edge then tells nothing of where it was left. Part of the step that ends amidst the band; 0 where
- * all is well.
- */
-static double part_within_band(const strut_model *model, const strut_located *l) {
-  double least = 0.0;
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
-    if (l->mode[i] != STRUT_MODE_BAND && l->mode[i] != STRUT_MODE_PUSH) continue;
-    double edge = model->contacts.entry[i].stick_velocity, from = l->now->touch[i].slip;
-    double to = l->next->touch[i].slip, outwards = from * l->now->touch[i].slip_rate;
-    if (fabs(from) < edge * (1.0 - 1e-9) || fabs(to) <= edge) continue;
-    if (outwards > 0.0 || (outwards == 0.0 && from * to > 0.0)) continue;
-    double part = from * to < 0.0 ? fabs(from) / fabs(to - from) : 0.5;
-    if (least == 0.0 || part < least) least = part;
-  }
-  return least;
-}
-
-/*
- * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
- * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
- */
-static void settle_ties(const strut_model *model, const strut_located *l) {
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    int32_t i = l->closed[k];
-    const strut_contact_entry *e = &model->contacts.entry[i];
-    strut_touch *o = &l->next->touch[i];
-    double faint = 1e-10 * o->normal, edge = e->stick_velocity;
-    if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
-      o->friction = -o->applied + l->side[i] * faint; /* creep ends */
-    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= 1e-10 * edge)
-      o->slip = o->slip < 0.0 ? -edge : edge;
-  }
-}
-
 /* The error that makes the next step end there. */
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
@@ -202,10 +165,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   }
   located_finish(model, state, l, t + h, l->next, ledger);
   l->error = error_of(model, l, h, v, a);
-  settle_ties(model, l);
   if (!(l->error <= 1.0) || model->contacts.count == 0) return;
-  double part = part_within_band(model, l);
-  if (part == 0.0) part = earliest_dip(model, l, h);
+  double part = earliest_dip(model, l, h);
   if (part > 0.0) l->error = error_to_reach(part);
 }
 

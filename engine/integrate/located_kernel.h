@@ -125,6 +125,23 @@ STRUT_INLINE void located_acceleration(const strut_model *model, strut_state *st
   located_close(model, state, l, q, v, a, end, ledger);
 }
 
+/*
+ * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
+ * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
+ */
+STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_located *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    strut_touch *o = &l->next->touch[i];
+    double faint = 1e-10 * o->normal, edge = e->stick_velocity;
+    if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
+      o->friction = -o->applied + l->side[i] * faint; /* creep ends */
+    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= 1e-10 * edge)
+      o->slip = o->slip < 0.0 ? -edge : edge;
+  }
+}
+
 /* The same at the end of a step, with all that belongs to that end. */
 STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, strut_located *l,
                                  double t, strut_step_end *end, bool ledger) {
@@ -132,6 +149,7 @@ STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, s
   located_keep(model, state, end, ledger);
   located_close(model, state, l, end->q, end->v, end->a, end, ledger);
   located_rates(model, l, end->a, end->touch);
+  if (end == l->next && !l->plain) located_settle_ties(model, l);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
 }
 

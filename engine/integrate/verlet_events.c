@@ -50,6 +50,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
     implicit_ground_leave(model, state, l, ledger);
   else if (l->closed_count)
     implicit_ground_finish(model, state, l, ledger);
+  if (!l->plain) located_settle_ties(model, l);
   for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
     strut_lanes power = strut_lanes_load(state->power + p);
     strut_lanes_store(l->next->power + p, power);
