@@ -11,10 +11,14 @@ static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
   return q[c->at[i]] * c->normal[0] + (q[c->at[i] + 1] - c->height) * c->normal[1];
 }
 
-/* The edge of the band by which contact i leaves: that of the step's end, which may be beyond the one
-   by which it came in, where the step begins. */
-static double way_out(const strut_located *l, int32_t i) {
-  return l->next->touch[i].slip < 0.0 ? -1.0 : 1.0;
+/*
+ * The edge of the band by which contact i leaves: that of the step's end, which may be beyond the one
+ * by which it came in, where the step begins. Steppers that are not exact take each end's own: a band
+ * narrower than a step they pass in a step of its own, which smooths their period map.
+ */
+static double way_out(const strut_located *l, const strut_touch *o, int32_t i) {
+  double slip = l->stepper->exact ? l->next->touch[i].slip : o->slip;
+  return slip < 0.0 ? -1.0 : 1.0;
 }
 
 double strut_event_value(const strut_model *model, const strut_located *l,
@@ -37,7 +41,7 @@ double strut_event_value(const strut_model *model, const strut_located *l,
     case STRUT_EVENT_SLOW:
       return s * o->slip - located_edge(e);
     case STRUT_EVENT_LEAVE:
-      return located_edge(e) - way_out(l, i) * o->slip;
+      return located_edge(e) - way_out(l, o, i) * o->slip;
     case STRUT_EVENT_RELEASE:
       return e->mu_static * o->normal - fabs(o->friction);
     case STRUT_EVENT_CREEP_OUT:
@@ -67,7 +71,7 @@ bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_e
       *rate = l->side[i] * o->slip_rate;
       return true;
     case STRUT_EVENT_LEAVE:
-      *rate = -way_out(l, i) * o->slip_rate;
+      *rate = -way_out(l, o, i) * o->slip_rate;
       return true;
     case STRUT_EVENT_DAMPER:
       *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate;
@@ -99,7 +103,7 @@ static double fraction_of(const strut_model *model, const strut_located *l, stru
                           int32_t i, double h) {
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
-  if (kind == STRUT_EVENT_LEAVE) {
+  if (kind == STRUT_EVENT_LEAVE && l->stepper->exact) {
     /* a band entered just now has its edge, but for rounding, where the step begins */
     double faint = 1e-9 * located_edge(&model->contacts.entry[i]);
     strut_event_rate(l, l->now, kind, i, &d0);
