@@ -105,9 +105,12 @@ const char *strut_word_at(const char *words, int i, char *buffer, size_t size) {
 }
 
 int strut_word_find(const char *words, const char *word) {
-  char buffer[40];
-  for (int i = 0; strut_word_at(words, i, buffer, sizeof buffer); i++)
-    if (strcmp(buffer, word) == 0) return i;
+  size_t wanted = strlen(word);
+  for (int i = 0; *words; i++) {
+    size_t length = strcspn(words, "|");
+    if (length == wanted && memcmp(words, word, length) == 0) return i;
+    words += length + (words[length] != '\0');
+  }
   return -1;
 }
 

@@ -69,10 +69,10 @@ static const char *name_of_words(const void *context, size_t i) {
 static bool read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
                       strut_owner owner, int *word) {
   char expected[400];
+  if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
+    return true; /* scenes of a study are read by the million */
   strut_words_text(key->words, expected, sizeof expected);
   if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
-  *word = strut_word_find(key->words, value->text);
-  if (*word >= 0) return true;
   words_context words = {.count = 0};
   while (words.count < 32 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))

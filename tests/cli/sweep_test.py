@@ -1,0 +1,323 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# strut sweep from outside: points against numpy, rows against single runs, the same bytes whatever
+# the threads, shards and kills, points that fail, studies that have changed.
+#
+#   python3 sweep_test.py STRUT [KILLS]      KILLS: 10 if not given
+import csv
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+try:
+    import numpy as np
+except ImportError:
+    print("numpy is missing: nothing tested")
+    sys.exit(77)
+
+strut = os.path.realpath(sys.argv[1])
+kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
+models = os.path.realpath("models")
+work = tempfile.mkdtemp()
+failures = 0
+
+
+def check(good, text):
+    global failures
+    if not good:
+        failures += 1
+        print("FAILED:", text)
+
+
+def run(*words, code=0):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work)
+    check(done.returncode == code,
+          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
+def write(name, text):
+    with open(os.path.join(work, name), "w") as file:
+        file.write(text)
+
+
+def read(name):
+    with open(os.path.join(work, name), "rb") as file:
+        return file.read()
+
+
+def rows(name):
+    with open(os.path.join(work, name), newline="") as file:
+        return list(csv.DictReader(file))
+
+
+BLOCK = """strut: 1
+name: Block
+parameters: {stiffness: 100 N/m, mass: 1 kg, seconds: 0.5 s, step: 1 ms, place: "near"}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  block: {position: [1, 0], mass: mass, fixed: y}
+members:
+  spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}
+configurations: {near: {}, far: {block: [1.2, 0]}}
+initial: {configuration: place}
+solver: {step: step}
+run: {duration: seconds, measure: {node: block}}
+"""
+write("block.yaml", BLOCK)
+
+
+def points_are_those_of_numpy():
+    write("grid.yaml", """strut: 1
+study: grid
+model: block.yaml
+axes:
+  - place: [near, far]
+  - stiffness: {from: 1 N/m, to: 1000 N/m, count: 7, scale: log}
+  - zip: {mass: {from: 1 kg, to: 2 kg, step: 0.1 kg}, step: {from: 1 ms, to: 2 ms, count: 11}}
+  - seconds: {from: 5 ms, to: 16 ms, step: 2 ms}
+keep: [duration]
+""")
+    count = json.loads(run("sweep", "grid.yaml", "--count", "--json").stdout)
+    stiffness = np.geomspace(1, 1000, 7)
+    mass = np.linspace(1, 2, 11)
+    step = np.linspace(1e-3, 2e-3, 11)
+    seconds = np.arange(5e-3, 16e-3, 2e-3)
+    total = 2 * 7 * 11 * len(seconds)
+    check(count["points"] == total, f"{count['points']} points, expected {total}")
+    run("sweep", "grid.yaml", "-o", "grid", "--quiet")
+    table = rows("grid/table.csv")
+    check(len(table) == total, "the table's length")
+    for n, row in enumerate(table):
+        i = np.unravel_index(n, (2, 7, 11, len(seconds)))
+        wanted = [stiffness[i[1]], mass[i[2]], step[i[2]], seconds[i[3]]]
+        found = [float(row[k]) for k in
+                 ("stiffness [N/m]", "mass [kg]", "step [s]", "seconds [s]")]
+        good = (np.allclose(found, wanted, rtol=1e-14, atol=0) and
+                row["place"] == ("near", "far")[i[0]] and int(row["point"]) == n)
+        check(good, f"point {n}: {row}, expected {wanted}")
+        if not good:
+            return
+    # Ends and steps have the bits of what was written.
+    check(table[-1]["mass [kg]"] == "2" and table[5]["seconds [s]"] == "0.015", "bits of the ends")
+
+
+CRAWLER = f"""strut: 1
+study: crawler
+model: {models}/crawler/crawler.yaml
+axes:
+  - start: [I, II]
+  - frequency: {{from: 8 Hz, to: 16 Hz, count: 9}}
+run: {{periods: 12, measure: {{last: 4}}}}
+keep: [velocity, force_evaluations, residual, work, contacts, positions, outcome]
+"""
+
+
+def rows_are_single_runs():
+    write("crawler.yaml", CRAWLER)
+    run("sweep", "crawler.yaml", "-o", "one", "--threads", "1", "--quiet")
+    table = rows("one/table.csv")
+    write("single.yaml", open(f"{models}/crawler/crawler.yaml").read().replace(
+        "run: {periods: 1100, of: drive, measure: {last: 100}}",
+        "run: {periods: 12, of: drive, measure: {last: 4}}"))
+    for n in (0, 4, 13):
+        row = table[n]
+        single = json.loads(run("run", "single.yaml", "--json", "--set", f"start={row['start']}",
+                                "--set", f"frequency={row['frequency [Hz]']} Hz").stdout)
+        pairs = [(row["velocity [m/s]"], single["velocity"]),
+                 (row["force_evaluations"], single["force_evaluations"]),
+                 (row["drive_work [J]"], single["energy"]["drive_work"]),
+                 (row["residual [J]"], single["energy"]["residual"]),
+                 (row["duty_n4"], single["contacts"]["n4"]["duty"]),
+                 (row["x_n5 [m]"], single["nodes"]["n5"]["position"][0])]
+        for found, wanted in pairs:
+            check(float(found) == wanted, f"point {n}: {found}, a run by itself gives {wanted}")
+        check(row["outcome"] == row["start"], f"point {n} ends as {row['outcome']}")
+    check(len({row["velocity [m/s]"] for row in table}) == len(table), "velocities are all alike")
+
+
+def the_same_bytes():
+    for threads in ("2", "4"):
+        run("sweep", "crawler.yaml", "-o", threads, "--threads", threads, "--quiet")
+        check(read(f"{threads}/table.csv") == read("one/table.csv"), f"{threads} threads: table")
+        check(read(f"{threads}/points.slots") == read("one/points.slots"),
+              f"{threads} threads: slots")
+    for shard in ("0/2", "1/2"):
+        run("sweep", "crawler.yaml", "-o", "shards", "--shard", shard, "--quiet")
+    run("merge", "shards")
+    check(read("shards/table.csv") == read("one/table.csv"), "shards: table")
+
+
+def killed_and_resumed():
+    before = 0
+    for n in range(kills):
+        child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "killed", "--threads", "2",
+                                  "--quiet"], cwd=work)
+        time.sleep(random.uniform(0.0, 0.25))
+        child.send_signal(signal.SIGKILL)
+        if child.wait() == 0:  # over before: once more from the beginning
+            check(read("killed/table.csv") == read("one/table.csv"), f"after {n} kills: table")
+            shutil.rmtree(f"{work}/killed")
+            before = 0
+            continue
+        if not os.path.exists(f"{work}/killed/points.slots"):
+            continue
+        seen = subprocess.run([strut, "sweep", "crawler.yaml", "-o", "killed", "--status",
+                               "--json"], cwd=work, capture_output=True, text=True)
+        if seen.returncode:  # killed before the header was whole
+            continue
+        done = json.loads(seen.stdout)["done"]
+        check(done >= before, f"{before} points were done, now {done}")
+        before = done
+    end = json.loads(run("sweep", "crawler.yaml", "-o", "killed", "--json").stdout)
+    check(end["computed"] == end["points"] - before,
+          f"{end['computed']} computed at the end, {before} were done of {end['points']}")
+    check(read("killed/table.csv") == read("one/table.csv"), "after kills: table")
+    again = json.loads(run("sweep", "crawler.yaml", "-o", "killed", "--json").stdout)
+    check(again["computed"] == 0, "a finished sweep computes again")
+
+
+def interrupted():
+    child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "stopped", "--threads", "1"],
+                             cwd=work, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    path = f"{work}/stopped/points.slots"
+    while child.poll() is None and not (os.path.exists(path) and os.path.getsize(path) > 6000):
+        time.sleep(0.001)
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate()
+    if child.returncode == 0:
+        return  # it was over before
+    check(child.returncode == 130, f"interrupted: exit code {child.returncode}")
+    check("the same command goes on from there" in err, f"interrupted: {err}")
+    run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
+    check(read("stopped/table.csv") == read("one/table.csv"), "after an interrupt: table")
+
+
+def points_that_fail():
+    write("fails.yaml", """strut: 1
+study: fails
+model: block.yaml
+set: {seconds: 5 s}
+axes:
+  - step: [1 ms, 1, 2 ms]
+  - stiffness: [100, 200]
+keep: [velocity]
+""")
+    said = run("sweep", "fails.yaml", "-o", "fails", code=3)
+    check("2 of 6 points failed" in said.stderr, said.stderr)
+    table = rows("fails/table.csv")
+    check([row["status"] for row in table].count("completed") == 4, "four complete")
+    check(all("above the largest stable step" in row["message"] and not row["velocity [m/s]"]
+              for row in table[2:4]), "why they failed")
+    status = json.loads(run("sweep", "fails.yaml", "-o", "fails", "--status", "--json").stdout)
+    check([f["point"] for f in status["failures"]] == [2, 3] and status["missing"] == 0, "status")
+
+
+def checked_again():
+    write("check.yaml", """strut: 1
+study: check
+model: block.yaml
+axes:
+  - seconds: [0.1 s, 0.157 s]
+  - place: [near, far]
+check: {half_step: yes}
+""")
+    run("sweep", "check.yaml", "-o", "check", "--quiet")
+    for row in rows("check/table.csv"):
+        check(row["check_outcome"] == row["outcome"] and row["flips"] == "0", f"{row}")
+        v, w = float(row["velocity [m/s]"]), float(row["check_velocity [m/s]"])
+        check(abs(v - w) < 1e-6, "half the step, about the same velocity")
+        check(v == 0 or v != w, "the second run has another step")
+
+
+def trajectories():
+    write("motion.yaml", """strut: 1
+study: motion
+model: block.yaml
+axes: [{mass: [1 kg, 2 kg]}]
+set: {place: far}
+trajectories: yes
+""")
+    run("sweep", "motion.yaml", "-o", "motion", "--threads", "2", "--quiet")
+    for n in range(2):
+        run("run", "block.yaml", "-o", "alone", "--set", f"mass={n + 1} kg", "--set", "place=far",
+            "--quiet")
+        folder = f"motion/runs/{n:09d}"
+        check(sorted(os.listdir(f"{work}/{folder}")) ==
+              ["scene.yaml", "summary.json", "trajectory.h5"], "files of a run")
+        # The scene's text names a parameter as it was given; the rest has the same bytes.
+        there, alone = (json.loads(read(f"{d}/summary.json")) for d in (folder, "alone"))
+        check(there == alone, f"{folder}/summary.json")
+
+
+def what_has_changed_is_refused():
+    run("sweep", "fails.yaml", "-o", "other", code=3)
+    table = read("other/table.csv")
+    write("block.yaml", BLOCK.replace("damping: 1 N s/m", "damping: 2 N s/m"))
+    said = run("sweep", "fails.yaml", "-o", "other", code=1)
+    check("another study" in said.stderr, said.stderr)
+    write("block.yaml", "# A comment changes nothing.\n" + BLOCK.replace("name: Block", "name:  Block"))
+    run("sweep", "fails.yaml", "-o", "other", "--quiet", code=3)
+    check(read("other/table.csv") == table, "a comment: table")
+    run("sweep", "fails.yaml", "-o", "other", "--set", "seconds=1", code=1)
+    write("block.yaml", BLOCK)
+
+
+def wrong_use():
+    check("-o DIR is missing" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
+    run("sweep", "fails.yaml", "-o", "other", "--threads", "0", code=1)
+    run("sweep", "nowhere.yaml", "-o", "other", code=4)
+    run("sweep", "fails.yaml", "-o", "nothing", "--status", code=4)
+    check(not os.path.exists(f"{work}/nothing"), "--status makes no directory")
+    write("bad.yaml", "strut: 1\nstudy: x\nmodel: block.yaml\naxes:\n  - masss: [1 kg]\n")
+    said = run("sweep", "bad.yaml", "-o", "other", code=2).stderr
+    check("bad.yaml:5:5: error: the model has no parameter 'masss'; did you mean 'mass'?" in said
+          and "^~~~~" in said, said)
+
+
+def memory_is_flat():
+    write("many.yaml", """strut: 1
+study: many
+model: block.yaml
+set: {seconds: 1 ms}
+axes:
+  - mass: {from: 1 kg, to: 2 kg, count: 100}
+  - stiffness: {from: 10, to: 20, count: COUNT}
+keep: [velocity]
+""")
+    text = read("many.yaml").decode()
+    peak = []
+    for n, count in enumerate((5, 300)):
+        write("many.yaml", text.replace("COUNT", str(count)))
+        child = subprocess.Popen([strut, "sweep", "many.yaml", "-o", f"many{n}", "--quiet"],
+                                 cwd=work)
+        most = 0
+        while child.poll() is None:
+            try:
+                with open(f"/proc/{child.pid}/status") as file:
+                    most = max([most] + [int(line.split()[1]) for line in file
+                                         if line.startswith("VmHWM")])
+            except (OSError, ValueError):
+                pass
+            time.sleep(0.002)
+        check(child.returncode == 0, "many points")
+        peak.append(most)
+    print(f"memory of 500 and 30000 points: {peak[0]} and {peak[1]} kB")
+    check(peak[1] < peak[0] + 3000, f"memory grows with the points: {peak} kB")
+
+
+try:
+    for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes,
+                 killed_and_resumed, interrupted, points_that_fail, checked_again, trajectories,
+                 what_has_changed_is_refused, wrong_use, memory_is_flat):
+        began = time.time()
+        test()
+        print(f"{test.__name__}: {time.time() - began:.1f} s")
+finally:
+    shutil.rmtree(work)
+sys.exit(failures > 0)

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Studies that are read, and studies that are refused with exactly the messages they announce. */
+#include <dirent.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "engine/study/grid.h"
+#include "parser/keys.h"
+#include "parser/read_study.h"
+
+#define FOLDER STRUT_TESTS_DIR "/language/studies/"
+
+enum { MOST_LINES = 40, MOST_SETS = 4 };
+
+/* What a file announces: "# expect: [model ]LINE:COLUMN: message", "# set: name=value". */
+typedef struct announcement {
+  size_t count, sets;
+  char *expected[MOST_LINES];
+  strut_override set[MOST_SETS];
+  char *text;
+} announcement;
+
+static char *read_text(const char *path) {
+  FILE *file = fopen(path, "rb");
+  if (!file) return NULL;
+  char *text = calloc(1, 1 << 16);
+  if (fread(text, 1, (1 << 16) - 1, file) == 0) text[0] = '\0';
+  fclose(file);
+  return text;
+}
+
+static announcement read_announcement(const char *path) {
+  announcement a = {.text = read_text(path)};
+  assert_non_null(a.text);
+  for (char *line = strtok(a.text, "\n"); line; line = strtok(NULL, "\n")) {
+    if (strncmp(line, "# expect: ", 10) == 0) {
+      assert_true(a.count < MOST_LINES);
+      a.expected[a.count++] = line + 10;
+    } else if (strncmp(line, "# set: ", 7) == 0) {
+      char *equals = strchr(line, '=');
+      *equals = '\0';
+      a.set[a.sets++] = (strut_override){line + 7, equals + 1};
+    }
+  }
+  return a;
+}
+
+/* As `strut sweep` does: the first point, then the ends of each axis. */
+static strut_status try_ends(strut_study_file *file) {
+  strut_study_value values[16];
+  assert_true(file->column_count <= 16);
+  strut_grid_values(&file->study, 0, values);
+  strut_status status = strut_study_try(file, values);
+  int64_t stride = 1;
+  for (size_t a = file->study.axis_count; a-- > 0 && !status;) {
+    strut_grid_values(&file->study, stride * (file->study.axes[a].count - 1), values);
+    status = strut_study_try(file, values);
+    stride *= file->study.axes[a].count;
+  }
+  return status;
+}
+
+/* Strikes a message off those expected. */
+static size_t strike(announcement *a, const char *name, const char *where,
+                     const strut_diagnostics *found) {
+  size_t wrong = 0;
+  for (size_t i = 0; i < found->count; i++) {
+    char line[1200];
+    bool expected = false;
+    const strut_diagnostic *d = &found->items[i];
+    snprintf(line, sizeof line, "%s%u:%u: %s", where, d->place.line, d->place.column, d->message);
+    for (size_t k = 0; k < a->count && !expected; k++)
+      if (a->expected[k] && strcmp(a->expected[k], line) == 0) {
+        a->expected[k] = NULL;
+        expected = true;
+      }
+    if (expected) continue;
+    print_error("%s: said: %s\n", name, line);
+    wrong++;
+  }
+  return wrong;
+}
+
+static size_t check_bad(const char *name) {
+  char path[600];
+  size_t wrong = 0;
+  strut_study_file file;
+  strut_error error = {0};
+  snprintf(path, sizeof path, FOLDER "bad/%s", name);
+  announcement a = read_announcement(path);
+  strut_status status = strut_study_open(path, a.set, a.sets, &file, &error);
+  if (status == STRUT_OK) status = try_ends(&file);
+  if (status != STRUT_BAD_SCENE || a.count == 0) {
+    print_error("%s: status %d, %s\n", name, status, error.message);
+    wrong++;
+  }
+  wrong += strike(&a, name, "", &file.diagnostics);
+  wrong += strike(&a, name, "model ", &file.model_diagnostics);
+  for (size_t i = 0; i < a.count; i++)
+    if (a.expected[i]) {
+      print_error("%s: did not say: %s\n", name, a.expected[i]);
+      wrong++;
+    }
+  assert_non_null(strut_study_messages(&file, 50));
+  strut_study_close(&file);
+  free(a.text);
+  return wrong;
+}
+
+static void bad_studies_are_refused(void **state) {
+  (void)state;
+  DIR *folder = opendir(FOLDER "bad");
+  size_t wrong = 0, count = 0;
+  assert_non_null(folder);
+  for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
+    if (!strstr(entry->d_name, ".yaml")) continue;
+    wrong += check_bad(entry->d_name);
+    count++;
+  }
+  closedir(folder);
+  assert_true(count > 10);
+  assert_int_equal(wrong, 0);
+}
+
+static void open_good(const char *name, strut_study_file *file) {
+  char path[600];
+  strut_error error = {0};
+  snprintf(path, sizeof path, FOLDER "good/%s", name);
+  strut_status status = strut_study_open(path, NULL, 0, file, &error);
+  if (status == STRUT_OK) status = try_ends(file);
+  if (status != STRUT_OK)
+    print_error("%s: %s\n%s", name, error.message, strut_study_messages(file, 50));
+  assert_int_equal(status, STRUT_OK);
+}
+
+static void every_key_stands_in_a_good_study(void **state) {
+  (void)state;
+  char *one = read_text(FOLDER "good/every-key.yaml"), *two = read_text(FOLDER "good/accuracy.yaml");
+  for (int key = strut_room_first(STRUT_ROOM_STUDY); key < STRUT_KEY_COUNT; key++) {
+    char with_colon[60];
+    snprintf(with_colon, sizeof with_colon, "%s:", strut_key_at(key)->name);
+    if (!strstr(one, with_colon) && !strstr(two, with_colon))
+      fail_msg("no good study has the key '%s'", strut_key_at(key)->name);
+  }
+  free(one);
+  free(two);
+}
+
+/* The words of `keep` are bits of the study, in one order. */
+static void keep_is_one_table(void **state) {
+  (void)state;
+  static const char *const words[] = {
+#define WORD(name, word) word,
+      STRUT_KEEP_TABLE(WORD)
+#undef WORD
+  };
+  char word[40];
+  for (int i = 0; i < STRUT_KEEP_COUNT; i++) {
+    assert_non_null(strut_word_at(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, i, word, sizeof word));
+    assert_string_equal(word, words[i]);
+  }
+  assert_null(strut_word_at(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, STRUT_KEEP_COUNT, word,
+                            sizeof word));
+}
+
+static void a_study_is_what_it_says(void **state) {
+  (void)state;
+  strut_study_file file;
+  strut_scene scene;
+  strut_error error = {0};
+  strut_study_value values[4];
+  open_good("every-key.yaml", &file);
+  assert_int_equal(strut_grid_points(&file.study), 3 * 2 * 3);
+  assert_int_equal(file.study.figure_count, 2);
+  assert_true(file.study.half_step);
+  assert_int_equal(file.study.keep,
+                   1 << STRUT_KEEP_VELOCITY | 1 << STRUT_KEEP_WORK | 1 << STRUT_KEEP_POSITIONS);
+  strut_grid_values(&file.study, 2 * 6 + 1 * 3 + 1, values);
+  assert_int_equal(strut_study_scene(&file, values, &scene, &error), STRUT_OK);
+  assert_true(scene.loads[0].force[0] == 0.25);
+  assert_true(scene.nodes[1].mass == 0.5);
+  assert_true(scene.members[0].stiffness == 200);
+  assert_true(scene.signals[scene.actuators[0].signal].amplitude == 2e-3);
+  double f = scene.signals[scene.actuators[0].signal].frequency;
+  assert_true(f > 3.16227766 && f < 3.16227767);
+  assert_true(scene.experiment.step == 1 / (500 * f)); /* derived from the axis */
+  assert_string_equal(scene.experiment.integrator, "verlet");
+  assert_true(scene.experiment.duration == 2 && scene.experiment.periods == 0);
+  assert_int_equal(scene.experiment.measure_node, 1); /* kept below the study's own keys */
+  assert_true(scene.nodes[1].start[0] == 1.01);
+  strut_scene_free(&scene);
+  strut_study_close(&file);
+}
+
+/* Comments and blanks change nothing; what decides results does. */
+static void identity(void **state) {
+  (void)state;
+  static const strut_override stiff[] = {{"stiffness", "101 N/m"}};
+  strut_study_file a, b, c;
+  strut_error error = {0};
+  open_good("accuracy.yaml", &a);
+  open_good("accuracy.yaml", &b);
+  assert_int_equal(strut_study_open(FOLDER "good/accuracy.yaml", stiff, 1, &c, &error), STRUT_OK);
+  char *one = strut_study_identity(&a), *two = strut_study_identity(&b),
+       *other = strut_study_identity(&c);
+  assert_string_equal(one, two);
+  assert_string_not_equal(one, other);
+  strut_release(one);
+  strut_release(two);
+  strut_release(other);
+  strut_study_close(&a);
+  strut_study_close(&b);
+  strut_study_close(&c);
+}
+
+/* Every allocation fails once: an answer, and nothing left behind. */
+static void no_memory(void **state) {
+  (void)state;
+  strut_status status = STRUT_NO_MEMORY;
+  for (int64_t n = 0; status == STRUT_NO_MEMORY; n++) {
+    strut_study_file file;
+    strut_error error = {0};
+    assert_true(n < 10000);
+    strut_fail_allocation_after(n);
+    status = strut_study_open(FOLDER "good/every-key.yaml", NULL, 0, &file, &error);
+    strut_fail_allocation_after(-1);
+    strut_study_close(&file);
+  }
+  assert_int_equal(status, STRUT_OK);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_studies_are_refused),
+      cmocka_unit_test(every_key_stands_in_a_good_study),
+      cmocka_unit_test(keep_is_one_table),
+      cmocka_unit_test(a_study_is_what_it_says),
+      cmocka_unit_test(identity),
+      cmocka_unit_test(no_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
