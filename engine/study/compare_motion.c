@@ -66,8 +66,9 @@ static strut_status put_contacts(strut_compare_work *work, const strut_summary *
   return STRUT_OK;
 }
 
-/* What the drives do, and what that is for the way. */
-static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period) {
+/* What the drives do, and what that is for the way. `uncertain`: error of the velocity [m/s]. */
+static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period,
+                       double uncertain) {
   const strut_compare_cell *cell = work->column->cell;
   const strut_scene *scene = work->column->input->scene;
   if (scene->actuator_count == 0) {
@@ -85,11 +86,13 @@ static void put_energy(strut_compare_work *work, double drive_work, double secon
   double gravity = hypot(scene->gravity[0], scene->gravity[1]);
   double weight = cell[STRUT_COMPARE_MASS].value * gravity;
   double speed = fabs(cell[STRUT_COMPARE_VELOCITY].value);
-  if (weight > 0.0 && speed > 0.0 && power > 0.0)
+  if (weight > 0.0 && speed > uncertain && power > 0.0)
     strut_compare_put(work, STRUT_COMPARE_TRANSPORT, power / (weight * speed));
   else
     strut_compare_leave(work, STRUT_COMPARE_TRANSPORT, STRUT_COMPARE_TRANSPORT,
-                        weight > 0.0 ? "nothing is carried" : "there is no weight");
+                        !(weight > 0.0)      ? "there is no weight"
+                        : speed <= uncertain ? "the velocity may as well be 0"
+                                             : "the drives do no work");
 }
 
 static void put_velocity(strut_compare_work *work, const strut_summary *s, double period) {
@@ -127,7 +130,8 @@ static strut_status tell(strut_compare_work *work, const strut_summary *run,
                                         &error, status, true);
   } else {
     const strut_summary *told = period > 0.0 ? &window : run;
-    put_energy(work, told->energy.drive_work, seconds, period);
+    double size = fmax(fabs(run->velocity), run->accuracy.scale);
+    put_energy(work, told->energy.drive_work, seconds, period, run->accuracy.expected * size);
     status = put_contacts(work, told);
   }
   strut_summary_free(&window);

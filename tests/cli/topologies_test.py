@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""models/topologies: comparable, as fast as their heads say, and by another method too; and the page.
+
+usage: topologies_test.py STRUT
+"""
+import glob
+import json
+import os
+import re
+import subprocess
+import sys
+
+strut = os.path.abspath(sys.argv[1])
+failures = 0
+
+
+def fail(text):
+    global failures
+    failures += 1
+    print("FAILED:", text)
+
+
+def run(*words):
+    return subprocess.run([strut, *words], capture_output=True, text=True, check=True).stdout
+
+
+files = sorted(glob.glob("models/topologies/*.yaml"))
+models = json.loads(run("compare", *files, "--no-states", "--json"))["models"]
+ours = 0
+for path, model in zip(files, models):
+    v, text = model["values"], open(path, encoding="utf-8").read()
+    for key, wanted in (("mass", 0.14), ("friction", 0.1), ("drive_frequency", 10),
+                        ("drive_amplitude", 1e-4)):
+        if not abs(v[key] - wanted) < 1e-9:
+            fail(f"{path}: {key} is {v[key]}: it cannot be compared with the others")
+    found = 1e-3 * float(re.search(r"^# Found: ([-+\d.]+) mm/s", text, re.M).group(1))
+    if abs(v["velocity"] - found) > 0.01 * abs(found) + 1e-5:
+        fail(f"{path}: {v['velocity']} m/s, its head says {found}")
+    if model["motion"] != "periodic":
+        fail(f"{path}: its motion is {model['motion']}")
+    if "nine-member.yaml" not in path and found > 5e-3:
+        ours += 1
+        # The classical method with small steps, which shares only the forces with what was used.
+        by_rk4 = json.loads(run("run", path, "--integrator", "rk4", "--step", "20 us", "--json",
+                                "--quiet"))
+        if abs(by_rk4["velocity"] - v["velocity"]) > 0.02 * found:
+            fail(f"{path}: {by_rk4['velocity']} m/s by rk4, not {v['velocity']}")
+if len(files) < 4 or ours < 2:
+    fail(f"{len(files)} topologies, {ours} of them ours that crawl")
+
+# The symmetric one cannot know a direction, and says nothing of a cost of transport.
+gull = models[[os.path.basename(f) for f in files].index("gull.yaml")]
+if gull["values"]["cost_of_transport"] is not None:
+    fail(f"the gull has a cost of transport: {gull['values']['cost_of_transport']}")
+
+# docs/compare.md shows what the program prints: its rows but for states, which take long, what is
+# measured, and the last column, the velocity of which is nothing but its error.
+LAST = 12
+page = open("docs/compare.md", encoding="utf-8").read()
+names = re.search(r"^strut compare (nine.*) -o five$", page, re.M).group(1).split()
+shown = page.split("```text\n")[1].split("```")[0].splitlines()
+os.environ["COLUMNS"] = "120"
+printed = {line[:-LAST] for line in run("compare", *[f"models/topologies/{n}" for n in names],
+                                        "--no-states").splitlines()}
+ROWS = ("states", "  stable", "  lowest energy", "  up to", "  lowest way", "  CPU")
+for line in shown:
+    if line[:-LAST] not in printed and not line.startswith(ROWS):
+        fail(f"docs/compare.md: the program does not print '{line}'")
+if len(shown) < 30:
+    fail("docs/compare.md shows no table")
+
+sys.exit(failures > 0)
