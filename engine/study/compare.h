@@ -109,6 +109,7 @@ typedef struct strut_compare_column {
   double (*stiffness)[2]; /* (nodes) under unit loads in x and y [N/m]; NAN: none. Or NULL */
   int32_t softest[2];     /* node of STIFFNESS_X and _Y, or -1 */
   strut_contact_summary *contacts; /* (contact_count) in the steady motion */
+  bool still;                      /* its velocity is 0 within its error */
   const char *motion;              /* "periodic", "irregular", ... or NULL */
   int32_t repeats;                 /* drive periods of a periodic one */
   const char *how;                 /* how the velocity was found, in words; or NULL */

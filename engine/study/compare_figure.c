@@ -102,7 +102,9 @@ static void words_of(const strut_compare_column *c, char words[LINES][WORDS]) {
     snprintf(words[1] + used, WORDS - (size_t)used, "%s%s", used ? ", from " : "from ",
              strut_drawn_quantity(lowest, 3, "Hz").text);
   used = 0;
-  if (isfinite(v[STRUT_COMPARE_VELOCITY].value))
+  if (c->still)
+    snprintf(words[2], WORDS, "moves on the spot");
+  else if (isfinite(v[STRUT_COMPARE_VELOCITY].value))
     used = snprintf(words[2], WORDS, "%s",
                     strut_drawn_quantity(v[STRUT_COMPARE_VELOCITY].value, 3, "m/s").text);
   if (isfinite(v[STRUT_COMPARE_TRANSPORT].value))

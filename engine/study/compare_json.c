@@ -64,6 +64,7 @@ static void add_shape(strut_json *json, struct cJSON *to, const strut_compare_co
 static void add_motion(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
   strut_json_text(json, to, "motion", c->motion);
   if (c->repeats > 0) strut_json_integer(json, to, "repeats", c->repeats);
+  if (c->motion) strut_json_bool(json, to, "still", c->still);
   strut_json_text(json, to, "how", c->how);
   struct cJSON *contacts = strut_json_object(json, to, "contacts");
   for (size_t i = 0; i < c->contact_count; i++) {

@@ -66,9 +66,8 @@ static strut_status put_contacts(strut_compare_work *work, const strut_summary *
   return STRUT_OK;
 }
 
-/* What the drives do, and what that is for the way. `uncertain`: error of the velocity [m/s]. */
-static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period,
-                       double uncertain) {
+/* What the drives do, and what that is for the way. */
+static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period) {
   const strut_compare_cell *cell = work->column->cell;
   const strut_scene *scene = work->column->input->scene;
   if (scene->actuator_count == 0) {
@@ -86,13 +85,13 @@ static void put_energy(strut_compare_work *work, double drive_work, double secon
   double gravity = hypot(scene->gravity[0], scene->gravity[1]);
   double weight = cell[STRUT_COMPARE_MASS].value * gravity;
   double speed = fabs(cell[STRUT_COMPARE_VELOCITY].value);
-  if (weight > 0.0 && speed > uncertain && power > 0.0)
+  if (weight > 0.0 && !work->column->still && speed > 0.0 && power > 0.0)
     strut_compare_put(work, STRUT_COMPARE_TRANSPORT, power / (weight * speed));
   else
     strut_compare_leave(work, STRUT_COMPARE_TRANSPORT, STRUT_COMPARE_TRANSPORT,
-                        !(weight > 0.0)      ? "there is no weight"
-                        : speed <= uncertain ? "the velocity may as well be 0"
-                                             : "the drives do no work");
+                        !(weight > 0.0)       ? "there is no weight"
+                        : work->column->still ? "the velocity may as well be 0"
+                                              : "the drives do no work");
 }
 
 static void put_velocity(strut_compare_work *work, const strut_summary *s, double period) {
@@ -120,6 +119,8 @@ static strut_status tell(strut_compare_work *work, const strut_summary *run,
   c->repeats = run->steady.kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
   c->how = strut_arena_format(work->arena, "%s", run->accuracy.why);
   if (!c->how) return STRUT_NO_MEMORY;
+  double uncertain = run->accuracy.expected * fmax(fabs(run->velocity), run->accuracy.scale);
+  c->still = fabs(run->velocity) <= uncertain;
   put_velocity(work, run, period);
   put_cost(work, run, cpu);
   strut_summary window = {0};
@@ -130,8 +131,7 @@ static strut_status tell(strut_compare_work *work, const strut_summary *run,
                                         &error, status, true);
   } else {
     const strut_summary *told = period > 0.0 ? &window : run;
-    double size = fmax(fabs(run->velocity), run->accuracy.scale);
-    put_energy(work, told->energy.drive_work, seconds, period, run->accuracy.expected * size);
+    put_energy(work, told->energy.drive_work, seconds, period);
     status = put_contacts(work, told);
   }
   strut_summary_free(&window);

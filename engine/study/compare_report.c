@@ -127,6 +127,7 @@ static void add_motion(strut_buffer *to, const strut_compare_column *c) {
                    : c->motion[0] == 'i' ? "irregularly"
                                          : "and is not steady yet");
   if (c->repeats > 1) strut_buffer_add(to, ", every %d periods alike", (int)c->repeats);
+  if (c->still) strut_buffer_add(to, ", on the spot");
   const char *between = "; touches the ground with";
   for (size_t i = 0; i < c->contact_count; i++) {
     if (!(c->contacts[i].duty > 0.0)) continue;
