@@ -9,7 +9,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/base/export.h"
+
 /** XXH64 of the bytes with a seed; the same on every machine. */
-uint64_t strut_checksum(const void *bytes, size_t length, uint64_t seed);
+STRUT_API uint64_t strut_checksum(const void *bytes, size_t length, uint64_t seed);
 
 #endif

@@ -43,6 +43,6 @@ STRUT_API strut_status strut_simulate(const strut_model *model, const strut_run_
                                       strut_summary *summary, strut_error *error);
 
 /** A clock that never goes back [s]; for how long things take, never for results. */
-double strut_run_clock(void);
+STRUT_API double strut_run_clock(void);
 
 #endif

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sweep itself: each point is computed once whatever kills it, and what a point costs besides. */
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "engine/study/sweep.h"
+
+enum { POINTS = 400, MOST_KILLS = 30, THREADS = 2, MANY = 1000000 };
+
+/* Scenes that there are none of: the point fails at once, and nothing but the sweep costs time. */
+typedef struct log {
+  int file; /* -1: none */
+} log_t;
+
+static strut_status no_scene(void *context, const strut_study_value *values, strut_scene *scene,
+                             strut_error *error) {
+  log_t *log = context;
+  (void)scene;
+  if (log->file >= 0) {
+    int32_t point = (int32_t)values[0].number;
+    struct timespec pause = {0, 500000};
+    if (write(log->file, &point, sizeof point) != sizeof point) abort();
+    nanosleep(&pause, NULL);
+  }
+  return strut_fail(error, STRUT_NOT_SETTLED, "point %g", values[0].number);
+}
+
+static strut_study_column column = {.name = "a", .unit = "m", .kind = STRUT_RANGE_STEP, .step = 1};
+static strut_study_axis axis = {.column_count = 1, .columns = &column};
+static const strut_study study = {.name = "test", .axis_count = 1, .axes = &axis};
+static strut_slot_column columns[] = {{"a", "m", false}, {"velocity", "m/s", false}};
+
+static strut_sweep_plan plan_of(int64_t points, log_t *log) {
+  axis.count = points;
+  return (strut_sweep_plan){.study = &study,
+                            .scenes = {no_scene, NULL, log},
+                            .points = points,
+                            .axis_columns = 1,
+                            .column_count = 2,
+                            .columns = columns};
+}
+
+static strut_status sweep(const char *path, int64_t points, log_t *log, strut_sweep_state *state) {
+  strut_sweep_plan plan = plan_of(points, log);
+  const strut_slots_plan file = {.version = "0",
+                                 .name = "test",
+                                 .points = points,
+                                 .count = points,
+                                 .columns = columns,
+                                 .column_count = 2};
+  const strut_sweep_options options = {.threads = THREADS};
+  strut_slots *slots;
+  strut_error error = {0};
+  strut_status status = strut_slots_open(path, &file, &slots, &error);
+  if (status) return status;
+  status = strut_sweep_run(&plan, slots, &options, state, &error);
+  strut_slots_close(slots);
+  return status;
+}
+
+/* Runs in a child that is killed after some milliseconds. True where it had come to its end. */
+static bool run_and_kill(const char *path, log_t *log, int milliseconds) {
+  struct timespec pause = {0, milliseconds * 1000000L};
+  int status = 0;
+  pid_t child = fork();
+  assert_true(child >= 0);
+  if (child == 0) {
+    strut_sweep_state state;
+    _exit(sweep(path, POINTS, log, &state) == STRUT_OK ? 0 : 1);
+  }
+  nanosleep(&pause, NULL);
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/* First of all tests: a process that has threads of its own may not fork into more. */
+static void nothing_is_computed_twice(void **state) {
+  (void)state;
+  char folder[] = "/tmp/strut-sweep-XXXXXX", path[64], record[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/slots", folder);
+  snprintf(record, sizeof record, "%s/log", folder);
+  log_t log = {open(record, O_RDWR | O_CREAT | O_APPEND, 0600)};
+  assert_true(log.file >= 0);
+  int kills = 0;
+  bool done = false;
+  srand(7);
+  for (; kills < MOST_KILLS && !done; kills++) done = run_and_kill(path, &log, 2 + rand() % 20);
+  while (!done) done = run_and_kill(path, &log, 900);
+  int32_t seen[POINTS] = {0}, point, again = 0;
+  for (off_t at = 0; pread(log.file, &point, sizeof point, at) == sizeof point;
+       at += (off_t)sizeof point)
+    seen[point]++;
+  for (int i = 0; i < POINTS; i++) {
+    assert_true(seen[i] >= 1);
+    again += seen[i] - 1;
+  }
+  print_message("%d kills, %d points computed again\n", kills, again);
+  assert_true(kills > 3);
+  assert_true(again <= THREADS * kills); /* those in flight */
+  close(log.file);
+  unlink(path);
+  unlink(record);
+  rmdir(folder);
+}
+
+static double cpu_time(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+/* A bound that a busy machine keeps; what it is stands in the message. */
+static void a_million_points_cost_little(void **state) {
+  (void)state;
+  char folder[] = "/tmp/strut-sweep-XXXXXX", path[64];
+  log_t log = {-1};
+  strut_sweep_state end;
+  struct rusage before, after;
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/slots", folder);
+  getrusage(RUSAGE_SELF, &before);
+  double began = cpu_time();
+  assert_int_equal(sweep(path, MANY, &log, &end), STRUT_OK);
+  double cost = (cpu_time() - began) / MANY;
+  getrusage(RUSAGE_SELF, &after);
+  assert_true(end.done == MANY && end.failed == MANY && end.computed == MANY);
+  print_message("%.2f us of CPU a point, %ld kB more\n", 1e6 * cost,
+                after.ru_maxrss - before.ru_maxrss);
+  assert_true(cost < 20e-6);
+  assert_true(after.ru_maxrss - before.ru_maxrss < 4000); /* a bit each is 122 kB */
+  began = cpu_time();
+  assert_int_equal(sweep(path, MANY, &log, &end), STRUT_OK);
+  assert_true(end.computed == 0 && end.failed == MANY);
+  print_message("%.2f us of CPU a point that is done\n", 1e6 * (cpu_time() - began) / MANY);
+  unlink(path);
+  rmdir(folder);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nothing_is_computed_twice),
+      cmocka_unit_test(a_million_points_cost_little),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
