@@ -5,6 +5,7 @@
  *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
  *                                            X-frames of 10 to N (default 1000000) members
  *   strut_bench lanes                        the crawler in 1, 2, 4 and 8 lanes alone
+ *   strut_bench terms                        what each term costs, alone
  *   strut_bench chain MEMBERS [lumped|consistent]   writes such a chain as a scene file to stdout
  *   strut_bench load FILE                    reads and compiles a scene file; seconds and memory
  *
@@ -24,6 +25,7 @@
 #include "tests/bench/lanes.h"
 #include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
+#include "tests/bench/terms.h"
 
 enum { MOST_RIVALS = 16, MOST_REPEATS = 1001 };
 
@@ -187,6 +189,7 @@ static int usage(void) {
   fprintf(stderr,
           "usage: strut_bench [--repeats N] [--members N]\n"
           "       strut_bench lanes\n"
+          "       strut_bench terms\n"
           "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
           "       strut_bench load FILE\n");
   return 1;
@@ -195,6 +198,10 @@ static int usage(void) {
 int main(int argc, char **argv) {
   if (argc == 2 && strcmp(argv[1], "lanes") == 0) {
     bench_lanes(15);
+    return 0;
+  }
+  if (argc == 2 && strcmp(argv[1], "terms") == 0) {
+    bench_terms(51);
     return 0;
   }
   if (argc == 3 && strcmp(argv[1], "load") == 0) return load(argv[2]);
@@ -217,6 +224,7 @@ int main(int argc, char **argv) {
   if (repeats < 1 || repeats > MOST_REPEATS) return usage();
   compare_crawlers(repeats);
   bench_lanes(repeats);
+  bench_terms(repeats);
   compare_chains(members, repeats);
   return 0;
 }
