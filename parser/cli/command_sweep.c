@@ -10,6 +10,7 @@
 #include "parser/cli/interrupt.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
+#include "parser/cli/sweep_emit.h"
 #include "parser/cli/sweep_report.h"
 #include "parser/cli/sweep_study.h"
 
@@ -17,7 +18,12 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "where the results are, and go on"},
     {STRUT_OPTION_THREADS, "threads", "N", "points at a time; as many as there are processors"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
-     "only every N-th point from K on, counted from 0; or slurm"},
+     "only every N-th point from K on, counted from 0; or slurm/N"},
+    {STRUT_OPTION_EMIT, "emit", "slurm", "only print the script for a cluster with Slurm"},
+    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: tasks of the job array"},
+    {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors of a task; 1 if not given"},
+    {STRUT_OPTION_TIME, "time", "TIME", "with --emit: of a task, such as 12:00:00"},
+    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit: of a task, such as 2G"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_TALLY, "count", NULL, "only tell how many points and which columns there are"},
     {STRUT_OPTION_STATUS, "status", NULL, "only tell what is done, missing and failed in DIR"},
@@ -159,6 +165,8 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_sweep_study_open(arguments, &study);
   if (!status && arguments->tally)
     status = strut_sweep_print_count(&study.plan, arguments->json);
+  else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
+    status = strut_sweep_emit(arguments, study.plan.study->name);
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status)

@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A study in shards, merged, and the script for a cluster.
+. "$(dirname "$0")/lib.sh"
+cp "$here/hopper.yaml" model.yaml
+cat >study.yaml <<'END'
+strut: 1
+study: hops
+model: model.yaml
+set: {seconds: 10 ms}
+axes:
+  - stiffness: {from: 100 N/m, to: 800 N/m, count: 9}
+  - friction: [1, 2]
+keep: [velocity, steps]
+END
+sed -i 's/^  seconds: 0.5/&\n  friction: 1/; s/mu: 0.3/mu: 0.3*friction/' model.yaml
+expect 0 sweep study.yaml -o whole --quiet
+[ "$(wc -l <whole/table.csv)" -eq 19 ] || fail "not a row for each point"
+
+# In any order, each twice; more shards than points; all tables are the same.
+for count in 1 2 5 20; do
+  shard=$((count - 1))
+  while [ $shard -ge 0 ]; do
+    expect 0 sweep study.yaml -o "in-$count" --shard "$shard/$count" --quiet
+    shard=$((shard - 1))
+  done
+  expect 0 sweep study.yaml -o "in-$count" --shard "0/$count"
+  out_has "0 computed now"
+  absent "in-$count/table.csv"
+  expect 0 merge "in-$count"
+  out_has "in-$count/table.csv: 18 points of $count shards"
+  same "in-$count/table.csv" whole/table.csv
+done
+rm whole/table.csv
+expect 0 merge whole --quiet
+out_empty
+same in-5/table.csv whole/table.csv
+
+# What is wrong is said.
+expect 1 sweep study.yaml -o in-5 --shard 1/4
+err_has "shards of 5, and this would be one of 4"
+expect 1 sweep study.yaml -o in-5
+err_has "holds shards of the study"
+expect 1 sweep study.yaml -o in-5 --shard 0/5 --set seconds=0.02
+err_has "another study"
+expect 1 sweep study.yaml -o new --shard 5/5
+err_has "numbered 0 to 4"
+expect 1 sweep study.yaml -o new --shard slurm/5
+err_has "no task of a Slurm job array"
+absent new
+rm in-5/shards/shard-0001-of-0005.slots in-5/shards/shard-0003-of-0005.slots
+rm in-5/table.csv
+expect 4 merge in-5
+err_has "2 of 5 shards are missing (1, 3)"
+absent in-5/table.csv
+expect 0 sweep study.yaml -o in-5 --shard 1/5 --quiet --set seconds=0.02
+expect 1 merge in-5
+err_has "shards 0 and 1 are not of one study, they differ in the model"
+expect 4 merge nowhere
+expect 1 merge
+
+# A task of an array.
+SLURM_ARRAY_TASK_ID=3 "$strut" sweep study.yaml -o in-5 --shard slurm/5 --quiet >out 2>err ||
+  fail "a task of Slurm"
+[ -s in-5/shards/shard-0003-of-0005.slots ] || fail "not the task's shard"
+
+# The script: a shell can read it, and texts arrive as they were given.
+expect 0 sweep study.yaml -o "it's here" --emit slurm --shards 7 --cpus 3 --time 1-02:00:00 \
+  --memory 1500M --set 'seconds=0.02'
+for line in --array=0-6 --cpus-per-task=3 --time=1-02:00:00 --mem=1500M --job-name=hops; do
+  grep -qx -- "#SBATCH $line" out || fail "the script lacks $line"
+done
+sh -n out || fail "the script is none"
+absent "it's here"
+mkdir bin
+printf '#!/bin/sh\nprintf "%%s\\n" "$@" >>%s\necho 12\n' "$work/sent" >bin/sbatch
+chmod +x bin/sbatch
+cp out job.sh
+PATH=$work/bin:$PATH sh job.sh --array=2,5 >out 2>err || fail "the script fails"
+out_has "the shards are job 12, their table is job 12"
+for word in "--array=2,5" "--dependency=afterany:12" "--output=it's here/slurm-%A-%a.log"; do
+  grep -qxF -- "$word" sent || fail "sbatch was not told $word"
+done
+(SLURM_ARRAY_TASK_ID=6 sh job.sh) >out 2>err || fail "a task of the script fails"
+[ -s "it's here/shards/shard-0006-of-0007.slots" ] || fail "the script computes nothing"
+for wrong in "--time soon" "--memory much" "--shards 0" "--cpus 0"; do
+  # shellcheck disable=SC2086
+  expect 1 sweep study.yaml -o x --emit slurm --shards 7 $wrong
+done
+expect 1 sweep study.yaml -o x --emit slurm
+err_has "--shards"
+expect 1 sweep study.yaml -o x --emit pbs --shards 3
+done_testing
