@@ -142,7 +142,7 @@
   X(STUDY, KEEP, "keep", WORDS, NONE, ANY, false, 0, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome]", "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome", "What of each run stands in the table: velocity [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of a run that stops when steady; `distance` travelled in a drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses`, `residual` of the balance; `contacts` (duty and height of each), `positions` (of each node at the end), `outcome` (the nearest configuration); and the rest of the summary.") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, false, 0, "no", "no|yes", "Write each run into a folder of its own, `runs/POINT`, as `strut run -o` does.") \
   X(STUDY, CHECK, "check", MAP, NONE, ANY, false, 0, "", "", "Run each point again, more exactly, and mark those that end elsewhere.") \
-  X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, false, 0, "", "the keys of a [figure](#figure)", "Drawings of the table.") \
+  X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, false, 0, "", "the keys of a [figure](#figure)", "Drawings of the table, NAME.svg each.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, true, 0, "", "", "The first value.") \
   X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, true, 0, "", "", "The last value, where the steps meet it.") \
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, false, 4, "", "", "From one value to the next; or") \
@@ -154,7 +154,9 @@
   X(FIGURE, AT_X, "x", NAME, NONE, ANY, true, 0, "", "", "A column of the table.") \
   X(FIGURE, AT_Y, "y", NAME, NONE, ANY, true, 0, "", "", "Another; of a map the second axis.") \
   X(FIGURE, SERIES, "series", NAME, NONE, ANY, false, 0, "", "", "Of lines: the column that tells them apart.") \
-  X(FIGURE, COLOR, "color", NAME, NONE, ANY, false, 0, "", "", "Of a map: the column that is coloured.")
+  X(FIGURE, COLOR, "color", NAME, NONE, ANY, false, 0, "", "", "Of a map: the column that is coloured; hatched where `flips` is 1.") \
+  X(FIGURE, PANELS, "panels", NAME, NONE, ANY, false, 0, "", "", "The column that has a panel for each of its values.") \
+  X(FIGURE, TITLE, "title", TEXT, NONE, ANY, false, 0, "", "", "What stands above it.")
 /* clang-format on */
 
 #endif

@@ -103,6 +103,8 @@ static void read_figures(strut_study_reader *r, const strut_slot *slot) {
     figure->y = name_in(r, &fields, STRUT_KEY_FIGURE_AT_Y);
     figure->series = name_in(r, &fields, STRUT_KEY_FIGURE_SERIES);
     figure->color = name_in(r, &fields, STRUT_KEY_FIGURE_COLOR);
+    figure->panels = name_in(r, &fields, STRUT_KEY_FIGURE_PANELS);
+    figure->title = name_in(r, &fields, STRUT_KEY_FIGURE_TITLE);
     if (figure->map && !figure->color && !fields.broken)
       strut_say(r->reader, key->place, "map '%s' lacks 'color', expected a column of the table",
                 key->text);

@@ -85,10 +85,10 @@ typedef enum strut_keep {
 /** A drawing of the table. */
 typedef struct strut_study_figure {
   const char *name;
-  bool map;          /* x, y, color; else lines: x, y, by */
-  const char *x, *y; /* columns of the table */
-  const char *series,
-      *color; /* of lines, what tells them apart; of a map, what is coloured; or NULL */
+  bool map; /* x, y, color; else lines: x, y, series */
+  /* columns of the table; NULL where none is named */
+  const char *x, *y, *series, *color, *panels;
+  const char *title; /* or NULL */
 } strut_study_figure;
 
 typedef struct strut_study {

@@ -11,6 +11,7 @@
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/sweep_emit.h"
+#include "parser/cli/sweep_figures.h"
 #include "parser/cli/sweep_report.h"
 #include "parser/cli/sweep_study.h"
 
@@ -124,6 +125,8 @@ static strut_status finish(const strut_arguments *arguments, strut_sweep_study *
       shard.count ? STRUT_OK
                   : strut_study_table_write(arguments->output, table_name, sources, 1, &error);
   if (status) return complain(status, &error);
+  if (!shard.count) status = strut_sweep_figures_draw(&study->file.study, arguments->output, table);
+  if (status) return status;
   if (!arguments->quiet || arguments->json)
     status = strut_sweep_print_end(state, table, arguments->json);
   if (status || !state->failed) return status;

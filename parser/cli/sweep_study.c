@@ -7,6 +7,7 @@
 #include "engine/base/checksum.h"
 #include "engine/study/grid.h"
 #include "parser/cli/streams.h"
+#include "parser/cli/sweep_figures.h"
 #include "parser/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
@@ -70,6 +71,7 @@ strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_swee
   if (!status) status = try_ends(file);
   if (status) return complain(file, status, &error);
   status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, &error);
+  if (!status) status = strut_sweep_figures_check(&study->plan, &error);
   if (!status && !identify(file, study->slots.hash)) status = STRUT_NO_MEMORY;
   if (status) return complain(file, status, &error);
   study->slots.version = STRUT_VERSION;

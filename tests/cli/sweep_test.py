@@ -235,6 +235,31 @@ check: {half_step: yes}
         check(v == 0 or v != w, "the second run has another step")
 
 
+def figures():
+    study = """strut: 1
+study: figures
+model: block.yaml
+axes:
+  - mass: [1 kg, 2 kg, 3 kg]
+  - seconds: [0.1 s, 0.2 s]
+figures:
+  lines: {x: mass, y: velocity, series: seconds, title: All lines}
+  map: {kind: map, x: mass, y: seconds, color: outcome}
+"""
+    write("figures.yaml", study)
+    run("sweep", "figures.yaml", "-o", "figures", "--quiet")
+    check(b"<svg" in read("figures/lines.svg"), "lines.svg")
+    check(b"<svg" in read("figures/map.svg"), "map.svg")
+    os.remove(f"{work}/figures/map.svg")
+    write("figures.yaml", study.replace("  lines:", "  curves:"))
+    end = json.loads(run("sweep", "figures.yaml", "-o", "figures", "--json").stdout)
+    check(end["computed"] == 0, "another figure is no other study")
+    check(b"<svg" in read("figures/map.svg") and b"<svg" in read("figures/curves.svg"), "anew")
+    write("figures.yaml", study.replace("y: velocity", "y: velocitie"))
+    said = run("sweep", "figures.yaml", "-o", "figures", code=2).stderr
+    check("figure 'lines'" in said and "did you mean 'velocity'?" in said, said)
+
+
 def trajectories():
     write("motion.yaml", """strut: 1
 study: motion
@@ -313,7 +338,7 @@ keep: [velocity]
 
 try:
     for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes,
-                 killed_and_resumed, interrupted, points_that_fail, checked_again, trajectories,
+                 killed_and_resumed, interrupted, points_that_fail, checked_again, figures, trajectories,
                  what_has_changed_is_refused, wrong_use, memory_is_flat):
         began = time.time()
         test()

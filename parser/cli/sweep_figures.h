@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The figures of a study, drawn of its table.
+ */
+#ifndef STRUT_PARSER_CLI_SWEEP_FIGURES_H
+#define STRUT_PARSER_CLI_SWEEP_FIGURES_H
+
+#include "engine/study/sweep.h"
+
+/** Do all figures name columns of the table? STRUT_BAD_SCENE with the reason. */
+strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error);
+/** Draws each as directory/NAME.svg, of the table at `path`. Messages go to stderr. */
+strut_status strut_sweep_figures_draw(const strut_study *study, const char *directory,
+                                      const char *path);
+
+#endif
