@@ -171,19 +171,35 @@ STRUT_LANE_INLINE lane_real lane_tension(const strut_lane_tables *t, size_t j, u
   return tension;
 }
 
-STRUT_LANE_INLINE void lane_member(const strut_lane_tables *t, const double *restrict q,
-                                   const double *restrict v, double *restrict force, size_t j,
-                                   unsigned terms, bool ledger, lane_powers *powers) {
-  size_t a = t->first->members.from[j], b = t->first->members.to[j];
-  lane_real dx = lane_row(q, b) - lane_row(q, a), dy = lane_row(q, b + 1) - lane_row(q, a + 1);
-  lane_real length = lane_root(dx * dx + dy * dy), zero = {0}, rate = zero;
-  lane_real inverse = lane_choose(length > zero, 1.0 / length, zero);
+/* Roots and quotients take long and wait for nothing: they are begun so many members ahead. */
+enum { LANE_AHEAD = 2 };
+
+/* Vector from the first to the second node, length, and its inverse or 0. */
+typedef struct lane_span {
+  lane_real x, y, length, inverse;
+} lane_span;
+
+STRUT_LANE_INLINE void lane_measure(const strut_member_table *m, const double *restrict q, size_t j,
+                                    lane_span *d) {
+  size_t a = m->from[j], b = m->to[j];
+  lane_real zero = {0};
+  d->x = lane_row(q, b) - lane_row(q, a), d->y = lane_row(q, b + 1) - lane_row(q, a + 1);
+  d->length = lane_root(d->x * d->x + d->y * d->y);
+  d->inverse = lane_choose(d->length > zero, 1.0 / d->length, zero);
+}
+
+STRUT_LANE_INLINE void lane_pull(const strut_lane_tables *t, const strut_member_table *m,
+                                 const lane_span *d, const double *restrict v,
+                                 double *restrict force, size_t j, unsigned terms, bool ledger,
+                                 lane_powers *powers) {
+  size_t a = m->from[j], b = m->to[j];
+  lane_real rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
     lane_real wx = lane_row(v, b) - lane_row(v, a), wy = lane_row(v, b + 1) - lane_row(v, a + 1);
-    rate = (wx * dx + wy * dy) * inverse;
+    rate = (wx * d->x + wy * d->y) * d->inverse;
   }
-  lane_real tension = lane_tension(t, j, terms, ledger, length, rate, powers);
-  lane_real density = tension * inverse, px = density * dx, py = density * dy;
+  lane_real tension = lane_tension(t, j, terms, ledger, d->length, rate, powers);
+  lane_real density = tension * d->inverse, px = density * d->x, py = density * d->y;
   lane_put(force, a, lane_row(force, a) + px);
   lane_put(force, a + 1, lane_row(force, a + 1) + py);
   lane_put(force, b, lane_row(force, b) - px);
@@ -193,8 +209,15 @@ STRUT_LANE_INLINE void lane_member(const strut_lane_tables *t, const double *res
 STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *restrict q,
                                   const double *restrict v, double *restrict force, int32_t begin,
                                   int32_t end, unsigned terms, bool ledger, lane_powers *powers) {
-  for (int32_t j = begin; j < end; j++)
-    lane_member(t, q, v, force, (size_t)j, terms, ledger, &powers[ledger ? j % STRUT_LANES : 0]);
+  const strut_member_table m = t->first->members;
+  lane_span spans[LANE_AHEAD];
+  for (int32_t j = begin; j < end && j < begin + LANE_AHEAD; j++)
+    lane_measure(&m, q, (size_t)j, &spans[j % LANE_AHEAD]);
+  for (int32_t j = begin; j < end; j++) {
+    lane_span *d = &spans[j % LANE_AHEAD];
+    lane_pull(t, &m, d, v, force, (size_t)j, terms, ledger, &powers[ledger ? j % STRUT_LANES : 0]);
+    if (j + LANE_AHEAD < end) lane_measure(&m, q, (size_t)(j + LANE_AHEAD), d);
+  }
 }
 
 /* Slots of padding pull with no force, and no one asks for the place where they do. */
@@ -202,7 +225,9 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
                                     const double *restrict v, bool ledger) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   const strut_member_table *m = &t->first->members;
-  lane_powers powers[STRUT_LANES] = {0};
+  lane_powers powers[STRUT_LANES];
+  lane_real none = {0};
+  for (int l = 0; l < STRUT_LANES && ledger; l++) powers[l] = (lane_powers){none, none, none};
   for (int32_t b = 0; b < m->blocks; b++) {
     int32_t begin = b * STRUT_BLOCK,
             end = begin + STRUT_BLOCK < m->count ? begin + STRUT_BLOCK : m->count;

@@ -209,6 +209,70 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
   return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
 }
 
+/* Takes bytes, a whole number of words, into both hashes. */
+static void digest(uint64_t key[2], const void *data, size_t bytes) {
+  for (size_t i = 0; i + sizeof(uint64_t) <= bytes; i += sizeof(uint64_t)) {
+    uint64_t word;
+    memcpy(&word, (const char *)data + i, sizeof word);
+    key[0] = (key[0] ^ word) * 1099511628211u;
+    key[0] ^= key[0] >> 29;
+    key[1] = (key[1] + word) * 0x9e3779b97f4a7c15u;
+    key[1] ^= key[1] >> 32;
+  }
+}
+
+static void digest_number(uint64_t key[2], double x) { digest(key, &x, sizeof x); }
+
+/* All that an estimate reads of a model. */
+static void digest_model(const strut_model *m, uint64_t key[2]) {
+  const strut_member_table *t = &m->members;
+  const strut_contact_table *c = &m->contacts;
+  const size_t slots = (size_t)t->slots * sizeof(double), both = (size_t)m->length * sizeof(double);
+  key[0] = 14695981039346656037u, key[1] = 1;
+  const double counts[] = {m->plan,  m->length,   t->slots,     t->count,
+                           c->count, m->scene->mass_model, m->scene->bar_model};
+  digest(key, counts, sizeof counts);
+  for (int32_t j = 0; j < t->count; j++) {
+    digest_number(key, t->from[j]);
+    digest_number(key, t->to[j]);
+  }
+  const double *const of_members[] = {t->stiffness, t->damping, t->rest, t->slack, t->mass};
+  for (size_t i = 0; i < sizeof of_members / sizeof of_members[0]; i++)
+    digest(key, of_members[i], slots);
+  digest(key, m->start, both);
+  digest(key, m->point_mass, (size_t)m->node_count * sizeof(double));
+  for (int32_t i = 0; i < m->length; i++) digest_number(key, m->fixed[i]);
+  digest(key, m->scene->gravity, sizeof m->scene->gravity);
+  for (int32_t i = 0; i < c->count; i++) {
+    const strut_contact_entry *e = &c->entry[i];
+    bool smooth = e->law == STRUT_FRICTION_SMOOTH; /* the other laws have no slope */
+    const double entry[] = {e->node,        e->stiffness,       e->damping,
+                            e->dissipation, smooth ? e->width : 0.0, smooth ? e->mu_kinetic : 0.0};
+    digest(key, entry, sizeof entry);
+  }
+  const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed};
+  digest(key, ground, sizeof ground);
+}
+
+strut_status strut_step_limit_recall(const strut_model *model, const strut_integrator *method,
+                                     strut_step_limits *kept, double *limit, strut_error *error) {
+  uint64_t key[2];
+  digest_model(model, key);
+  digest_number(key, method->region);
+  digest_number(key, method->implicit_damper);
+  for (int i = 0; i < STRUT_LIMITS_KEPT && i < kept->count; i++)
+    if (kept->key[i][0] == key[0] && kept->key[i][1] == key[1]) {
+      *limit = kept->limit[i];
+      return STRUT_OK;
+    }
+  strut_status status = strut_step_limit_for(model, method, limit, error);
+  if (status) return status;
+  int64_t at = kept->count++ % STRUT_LIMITS_KEPT;
+  kept->key[at][0] = key[0], kept->key[at][1] = key[1];
+  kept->limit[at] = *limit;
+  return STRUT_OK;
+}
+
 strut_status strut_step_limit_at(const strut_model *model, const double *q, const double *rest,
                                  strut_closed closed, strut_step_limit *limit, strut_error *error) {
   strut_arena arena = {0};

@@ -81,7 +81,9 @@ strut_status strut_run_prepare(strut_run *r) {
                       scene->configurations[scene->start_equilibrium].name);
   if (!r->model->mass)
     return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
-  status = strut_step_limit_for(r->model, r->method, &r->summary->step_limit, r->error);
+  double *limit = &r->summary->step_limit;
+  status = r->limits ? strut_step_limit_recall(r->model, r->method, r->limits, limit, r->error)
+                     : strut_step_limit_for(r->model, r->method, limit, r->error);
   if (status) return status;
   if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))

@@ -116,10 +116,15 @@ static void fill_summary(strut_run *r, strut_status status) {
 }
 
 strut_status strut_run_begin(const strut_model *model, const strut_run_options *options,
-                             strut_summary *summary, strut_error *error, strut_run *r) {
+                             strut_step_limits *limits, strut_summary *summary, strut_error *error,
+                             strut_run *r) {
   int64_t chunk = CHUNK_WORK / (model->members.count + model->node_count + 1);
   *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
-  *r = (strut_run){.model = model, .options = options, .summary = summary, .error = error};
+  *r = (strut_run){.model = model,
+                   .options = options,
+                   .limits = limits,
+                   .summary = summary,
+                   .error = error};
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
   strut_status status = strut_run_prepare(r);
   r->begun = !status;
@@ -155,7 +160,7 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
   strut_error own = {0};
   strut_run r;
   int64_t stop = INT64_MAX;
-  strut_status status = strut_run_begin(model, options, summary, error ? error : &own, &r);
+  strut_status status = strut_run_begin(model, options, NULL, summary, error ? error : &own, &r);
   while (!status) {
     status = strut_run_look(&r, &stop);
     if (status || stop == r.state->step) break;

@@ -20,6 +20,7 @@ typedef struct hall {
   strut_batch *batch; /* NULL: all runs are run alone */
   bool more;
   int32_t width, taken;
+  strut_step_limits limits;
   seat seats[STRUT_MOST_LANES];
 } hall;
 
@@ -54,8 +55,8 @@ static void seat_next(hall *h, int32_t lane) {
     h->more = h->source->next(h->source->context, &s->point);
     if (!h->more) return;
     s->error = (strut_error){0};
-    strut_status status =
-        strut_run_begin(s->point.model, s->point.options, &s->summary, &s->error, &s->run);
+    strut_status status = strut_run_begin(s->point.model, s->point.options, &h->limits, &s->summary,
+                                          &s->error, &s->run);
     if (!status) status = strut_run_look(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
       end(h, s, status);

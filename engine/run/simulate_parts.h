@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 #define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 
+#include "engine/integrate/step_limit.h"
 #include "engine/run/balance.h"
 #include "engine/run/guard.h"
 #include "engine/run/measure.h"
@@ -18,6 +19,7 @@ typedef struct strut_run {
   const strut_model *model;
   const strut_run_options *options;
   const strut_integrator *method;
+  strut_step_limits *limits;
   strut_summary *summary;
   strut_error *error;
   strut_state *state;
@@ -41,10 +43,11 @@ typedef struct strut_run {
 
 /**
  * Everything before the first step. `run` and what is given must stay where they are until
- * strut_run_end, which must be called whatever is returned.
+ * strut_run_end, which must be called whatever is returned. limits: of models seen before; may be NULL.
  */
 strut_status strut_run_begin(const strut_model *model, const strut_run_options *options,
-                             strut_summary *summary, strut_error *error, strut_run *run);
+                             strut_step_limits *limits, strut_summary *summary, strut_error *error,
+                             strut_run *run);
 /**
  * Between steps: looks at the state, measures, records. *stop is the step to go on to before the next
  * look, or the present one where the run is over. May change the state's q, v.

@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "engine/integrate/batch.h"
-#include "tests/bench/rivals.h"
+#include "engine/run/simulate_batch.h"
 #include "tests/bench/scenes.h"
 
 enum { WIDTHS = 4, METHODS = 1, MOST = 1001 };
@@ -19,6 +20,13 @@ typedef struct lane {
   strut_state *state;
   void *workspace;
 } lane;
+
+/* Of this process on its core, whoever else runs meanwhile. */
+static double seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -61,12 +69,12 @@ static void compare(const char *name, bool ledger, int repeats) {
   }
   for (int r = -1; r < repeats && good; r++) /* the first round is for warming up */
     for (int w = 0; w < WIDTHS; w++) {
-      double start = bench_seconds();
+      double start = seconds();
       if (w && batch[w])
         strut_batch_advance(batch[w], steps);
       else if (!w)
         method->advance(lanes[0].model, lanes[0].state, lanes[0].workspace, 1e-4, steps);
-      if (r >= 0) times[w][r] = 1e9 * (bench_seconds() - start) / (double)(steps * widths[w]);
+      if (r >= 0) times[w][r] = 1e9 * (seconds() - start) / (double)(steps * widths[w]);
     }
   for (int w = 0; w < WIDTHS && good; w++) {
     if (w && !batch[w]) continue;
@@ -79,9 +87,67 @@ static void compare(const char *name, bool ledger, int repeats) {
   for (int i = 0; i < STRUT_MOST_LANES; i++) lane_free(&lanes[i]);
 }
 
+/* Whole runs: the crawler at so many frequencies, a second of each measured over its last tenth. */
+enum { POINTS = 48 };
+typedef struct points {
+  lane at[POINTS];
+  strut_run_options options;
+  int next, failed;
+} points;
+
+static bool next_point(void *context, strut_batch_point *point) {
+  points *all = context;
+  if (all->next == POINTS) return false;
+  *point = (strut_batch_point){all->at[all->next++].model, &all->options, NULL};
+  return true;
+}
+
+static void take_result(void *context, const strut_batch_point *point, strut_status status,
+                        strut_summary *summary, const strut_error *error) {
+  points *all = context;
+  (void)point, (void)error;
+  all->failed += status != STRUT_OK;
+  strut_summary_free(summary);
+}
+
+static double time_points(points *all, int32_t width) {
+  double start = seconds();
+  all->next = 0;
+  strut_simulate_batch(&(strut_batch_source){.context = all,
+                                             .next = next_point,
+                                             .result = take_result,
+                                             .example = all->at[0].model,
+                                             .without_ledger = all->options.without_ledger,
+                                             .width = width});
+  return POINTS / (seconds() - start);
+}
+
+static void compare_points(bool ledger, int repeats) {
+  static points all;
+  static double rates[WIDTHS][MOST];
+  bool good = true;
+  all = (points){.options = {.without_ledger = !ledger}};
+  for (int i = 0; i < POINTS; i++) {
+    good &= lane_make(&all.at[i], 2 * i, strut_integrator_find("rk4"), ledger);
+    all.at[i].scene.experiment.measure_last = 0.1;
+  }
+  for (int r = 0; r < repeats && good; r++)
+    for (int w = 0; w < WIDTHS; w++)
+      if (widths[w] <= strut_batch_widest()) rates[w][r] = time_points(&all, widths[w]);
+  for (int w = 0; w < WIDTHS && good && widths[w] <= strut_batch_widest(); w++) {
+    qsort(rates[w], (size_t)repeats, sizeof rates[w][0], ascending);
+    double typical = rates[w][repeats / 2];
+    printf("  %-14s %-8s %5d %10.1f %10.2f\n", all.failed ? "points FAILED" : "points",
+           ledger ? "ledger" : "", widths[w], typical, typical / rates[0][repeats / 2]);
+  }
+  for (int i = 0; i < POINTS; i++) lane_free(&all.at[i]);
+}
+
 void bench_lanes(int repeats) {
   printf("\nlanes: the crawler, 0.1 ms\n  %-14s %-8s %5s %10s %10s\n", "", "", "lanes", "ns/step",
          "times");
   for (int m = 0; m < METHODS; m++)
     for (int ledger = 0; ledger < 2; ledger++) compare(methods[m], ledger, repeats);
+  printf("  whole runs of 1 s%23s\n", "points/s");
+  for (int ledger = 0; ledger < 2; ledger++) compare_points(ledger, repeats > 5 ? 5 : repeats);
 }

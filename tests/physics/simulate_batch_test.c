@@ -135,6 +135,8 @@ static void make_scene(strut_scene *scene, int i, uint64_t *r) {
   e->step = random_between(r, 5e-5, 1e-4);
   e->duration = random_between(r, 0.02, 0.5);
   e->measure_last = random_between(r, 0.1, 1.0) * e->duration;
+  if (i % 4 == 1) scene->contacts[0].stiffness *= 0.9; /* the limit of the step is another one */
+  if (i % 8 == 4) scene->members[0].stiffness *= 0.95;
   if (i % 7 == 2) scene->signals[0].kind = STRUT_HALF_SINE;
   if (i % 11 == 5) e->integrator = "verlet-events";
   if (i % 13 == 6) scene->contacts[1].friction.law = STRUT_FRICTION_SMOOTH;
