@@ -148,6 +148,8 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
   status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, shard, &error);
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status && !shard.count && strut_slots_missing(slots) > 0)
+    strut_file_remove(arguments->output, table_name); /* it would be another sweep's */
   if (!status) status = run_points(arguments, study, threads, slots, &state, &error);
   complain(status, &error);
   if (!status) status = finish(arguments, study, shard, slots, &state);

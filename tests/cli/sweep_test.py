@@ -183,6 +183,8 @@ def killed_and_resumed():
 
 
 def interrupted():
+    os.makedirs(f"{work}/stopped")
+    write("stopped/table.csv", "of an earlier sweep")
     child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "stopped", "--threads", "1"],
                              cwd=work, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     path = f"{work}/stopped/points.slots"
@@ -194,6 +196,7 @@ def interrupted():
         return  # it was over before
     check(child.returncode == 130, f"interrupted: exit code {child.returncode}")
     check("the same command goes on from there" in err, f"interrupted: {err}")
+    check(not os.path.exists(f"{work}/stopped/table.csv"), "an earlier table beside new points")
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     check(read("stopped/table.csv") == read("one/table.csv"), "after an interrupt: table")
 
