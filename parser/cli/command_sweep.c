@@ -13,6 +13,7 @@
 #include "parser/cli/sweep_emit.h"
 #include "parser/cli/sweep_figures.h"
 #include "parser/cli/sweep_report.h"
+#include "parser/cli/sweep_shards.h"
 #include "parser/cli/sweep_study.h"
 
 static const strut_option options[] = {
@@ -72,8 +73,14 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   strut_error error = {0};
   strut_shard shard;
   const char *path;
+  strut_shards_found found;
+  strut_arena *arena = &study->plan.arena;
   strut_status status = find_shard(arguments, study, &shard, &path);
   if (status) return status;
+  status = strut_shards_find(arguments->output, &found, arena, &error);
+  if (status) return complain(status, &error);
+  if (!shard.count && found.count)
+    return strut_sweep_print_shards(arguments->output, &found, arena, arguments->json);
   status = strut_slots_read(path, &slots, &there, &error);
   if (status) return complain(status, &error);
   status = strut_sweep_print_status(slots, arguments->json);

@@ -53,6 +53,11 @@ rm in-5/table.csv
 expect 4 merge in-5
 err_has "2 of 5 shards are missing (1, 3)"
 absent in-5/table.csv
+expect 0 sweep study.yaml -o in-5 --status
+out_has "shard 0: 4 points: 4 done, 0 missing, 0 of the done failed"
+out_has "shard 1: not begun"
+expect 0 sweep study.yaml -o in-5 --status --json
+out_has '{"shard": 4, "points": 3, "done": 3, "missing": 0, "failed": 0}]}'
 expect 0 sweep study.yaml -o in-5 --shard 1/5 --quiet --set seconds=0.02
 expect 1 merge in-5
 err_has "shards 0 and 1 are not of one study, they differ in the model"
