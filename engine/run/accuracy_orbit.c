@@ -192,6 +192,12 @@ static bool is_stuck(const way *w) {
   return w->fine.applied > 0 && w->fine.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
 }
 
+/* The error of the orbit's velocity, in parts of what is wanted. */
+static double part_of_wanted(const way *w) {
+  double size = size_of_velocity(w->a, w->orbit.velocity);
+  return w->error / (w->a->wanted * size);
+}
+
 /*
  * The accurate method itself until it is steady: from the orbit found, of which it then is
  * independent, or, where that depends on how it came to be, from the scene's start. The run's costs
@@ -203,6 +209,8 @@ static strut_status run_accurate(way *w, bool from_orbit, strut_summary *last) {
   memcpy(w->end.q, w->orbit.y, length * sizeof(double));
   memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
   w->end.refined = w->orbit.y[2 * length];
+  /* where corrections fail the orbit is sensitive, and errors of a step matter more than usual */
+  if (!(part_of_wanted(w) <= 0.8)) w->accurate.tolerance = fmax(1e-12, w->accurate.tolerance / 25.0);
   strut_status status = run_until_steady(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
                                          fmax(20.0, strut_accuracy_periods(a)), from_orbit, last);
   if (status || last->steady.kind != STRUT_MOTION_PERIODIC) return status;
@@ -319,12 +327,6 @@ static strut_status settle_cheap(way *w, bool *steady) {
   w->run.velocity = w->travel / (w->cheap.period * w->cheap.repeats);
   memcpy(w->orbit.y, w->base, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
   return status;
-}
-
-/* The error of the orbit's velocity, in parts of what is wanted. */
-static double part_of_wanted(const way *w) {
-  double size = size_of_velocity(w->a, w->orbit.velocity);
-  return w->error / (w->a->wanted * size);
 }
 
 /*
