@@ -57,4 +57,21 @@ STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledge
   lane_store(b->step, step);
 }
 
+STRUT_LANE_TARGET
+static void batch_rk4_plain(strut_batch *batch, int64_t count) {
+  batch_rk4_steps(batch, count, false);
+}
+
+STRUT_LANE_TARGET
+static void batch_rk4_with_ledger(strut_batch *batch, int64_t count) {
+  batch_rk4_steps(batch, count, true);
+}
+
+static inline void batch_rk4(strut_batch *batch, int64_t count) {
+  if (batch->ledger)
+    batch_rk4_with_ledger(batch, count);
+  else
+    batch_rk4_plain(batch, count);
+}
+
 #endif
