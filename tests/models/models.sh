@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every model says what it shows, is valid, and runs if it has a run: begins with a comment, passes
 # strut check and strut run, and what strut write makes of it gives the same summary. A model for
-# statics alone has no run; what strut write makes of it must give the same check.
+# statics alone has no run; what strut write makes of it must give the same check. A study, which
+# says `study:`, must count its points.
 #
 #   sh tests/models/models.sh ROOT STRUT
 set -eu
@@ -25,6 +26,10 @@ still() {
 # tries FILE: says what is wrong with it.
 tries() {
   head -n 1 "$1" | grep -q '^# ' || { echo "does not begin with a comment"; return 1; }
+  if grep -q '^study:' "$1"; then
+    "$strut" sweep "$1" --count --json >"$scratch/check" || { echo "is no valid study"; return 1; }
+    return
+  fi
   "$strut" check "$1" --json >"$scratch/check" || { echo "check fails"; return 1; }
   grep -q '^run:' "$1" || { still "$1"; return; }
   "$strut" run "$1" --quiet -o "$scratch/first" || { echo "run fails"; return 1; }
@@ -36,7 +41,8 @@ tries() {
 # Self-test: files that must be noticed.
 printf 'strut: 1\n' >"$scratch/silent.yaml"
 printf '# says nothing\nstrut: 1\nnodes: {}\n' >"$scratch/bad.yaml"
-for bad in silent bad; do # the first has no comment, the second no nodes
+printf '# has no axes\nstrut: 1\nstudy: Nothing\nmodel: bad.yaml\n' >"$scratch/aimless.yaml"
+for bad in silent bad aimless; do # the first has no comment, the second no nodes
   ! tries "$scratch/$bad.yaml" >/dev/null 2>&1 || fail "self-test: $bad passes"
 done
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """docs/gallery.md: every model is there, and every picture is the one that strut draws today.
+Studies are no models.
 
 usage: gallery_test.py STRUT
 """
@@ -27,6 +28,8 @@ def fail(text):
 
 page = open("docs/gallery.md", encoding="utf-8").read()
 for model in sorted(glob.glob("models/**/*.yaml", recursive=True)):
+    if re.search(r"^study:", open(model, encoding="utf-8").read(), re.M):
+        continue
     if f"](../{model})" not in page:
         fail(f"{model} is not in docs/gallery.md")
     if len(re.findall(rf"^strut \w+ {re.escape(model)} .*--plot [\w-]+\.svg$", page, re.M)) != 1:
