@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The method is Raffaello Giulietti's Schubfach ("The Schubfach way to render doubles", 2020): one
- * table of powers of ten to 128 bits, three products, no loop over digits to decide, no fallback.
+ * table of powers of ten to 128 bits, one product, no loop over digits to decide, no fallback.
  * A value is c * 2^q; everything below is scaled by 4 so that the ends of the interval that rounds
  * to it are integers.
  */
@@ -36,15 +36,46 @@ static uint64_t multiply(uint64_t a, uint64_t b, uint64_t *low) {
   return a1 * b1 + (p01 >> 32) + (middle >> 32);
 }
 
-/* floor(power * c / 2^128), its last bit set where anything was cut off. */
-static uint64_t scale(const uint64_t power[2], uint64_t c) {
-  uint64_t low, unused;
-  uint64_t carry = multiply(power[1], c, &unused);
-  uint64_t high = multiply(power[0], c, &low);
-  low += carry;
-  high += low < carry;
-  return high | (low > 1);
+/* A number of 192 bits, the highest word first. */
+typedef struct wide {
+  uint64_t high, middle, low;
+} wide;
+
+static wide product_of(const uint64_t power[2], uint64_t c) {
+  wide p;
+  uint64_t carry = multiply(power[1], c, &p.low);
+  p.high = multiply(power[0], c, &p.middle);
+  p.middle += carry;
+  p.high += p.middle < carry;
+  return p;
 }
+
+/* power * 2^shift, 0 <= shift < 64. */
+static wide shifted(const uint64_t power[2], int shift) {
+  return (wide){power[0] >> 1 >> (63 - shift), power[0] << shift | power[1] >> 1 >> (63 - shift),
+                power[1] << shift};
+}
+
+static wide sum_of(wide a, wide b) {
+  wide s = {a.high + b.high, a.middle + b.middle, a.low + b.low};
+  uint64_t carry = s.low < a.low;
+  s.high += s.middle < a.middle;
+  s.middle += carry;
+  s.high += s.middle < carry;
+  return s;
+}
+
+static wide difference_of(wide a, wide b) {
+  wide d = {a.high - b.high, a.middle - b.middle, a.low - b.low};
+  uint64_t borrow = a.low < b.low;
+  d.high -= a.middle < b.middle;
+  d.high -= d.middle < borrow;
+  d.middle -= borrow;
+  return d;
+}
+
+/* floor(w / 2^128), its last bit set where anything was cut off. */
+static uint64_t top_of(wide w) { return w.high | (w.middle > 1); }
 
 /* Of s and s + 1, the one inside [lower, upper]; of both, the nearer to `quadruple` / 4. */
 static uint64_t nearest(uint64_t s, uint64_t lower, uint64_t upper, uint64_t quadruple) {
@@ -64,9 +95,10 @@ static decimal shortest(uint64_t fraction, int biased) {
   int k = uneven ? log10_of_three_quarters_power_2(q) : log10_of_power_2(q);
   int h = q + log2_of_power_10(-k) + 1;
   const uint64_t *power = strut_number_powers[-k - STRUT_NUMBER_POWER_FIRST];
-  uint64_t lower = scale(power, (4 * c - 2 + uneven) << h) + odd;
-  uint64_t middle = scale(power, 4 * c << h);
-  uint64_t upper = scale(power, (4 * c + 2) << h) - odd;
+  wide value = product_of(power, 4 * c << h); /* what follows lies half a unit of c around it */
+  uint64_t lower = top_of(difference_of(value, shifted(power, h + 1 - uneven))) + odd;
+  uint64_t middle = top_of(value);
+  uint64_t upper = top_of(sum_of(value, shifted(power, h + 1))) - odd;
 
   uint64_t s = middle / 4;
   if (s >= 10) { /* is there a multiple of ten inside? */
@@ -77,17 +109,41 @@ static decimal shortest(uint64_t fraction, int biased) {
   return (decimal){nearest(s, lower, upper, middle), k};
 }
 
-/* Writes the digits of a positive integer without trailing zeros; returns their number. */
-static int write_digits(decimal *d, char text[20]) {
-  char reversed[20];
-  int count = 0;
-  while (d->digits % 10 == 0) {
-    d->digits /= 10;
-    d->exponent++;
+static const char PAIRS[] =
+    "0001020304050607080910111213141516171819"
+    "2021222324252627282930313233343536373839"
+    "4041424344454647484950515253545556575859"
+    "6061626364656667686970717273747576777879"
+    "8081828384858687888990919293949596979899";
+
+static char *write_pair_before(char *at, uint32_t pair) {
+  at -= 2;
+  memcpy(at, PAIRS + 2 * pair, 2);
+  return at;
+}
+
+/* Writes the digits of a positive integer below 10^17 so that they end at `end`, and makes *d one
+ * without trailing zeros. Returns the first digit and their number. */
+static const char *write_digits(decimal *d, char *end, int *count) {
+  char *at = end;
+  uint64_t rest = d->digits;
+  if (rest >> 32) {
+    uint32_t low = (uint32_t)(rest % 100000000);
+    rest /= 100000000;
+    if (low == 0)
+      d->exponent += 8; /* of a short number most digits are zeros */
+    else
+      for (int i = 0; i < 4; i++, low /= 100) at = write_pair_before(at, low % 100);
   }
-  for (uint64_t rest = d->digits; rest; rest /= 10) reversed[count++] = (char)('0' + rest % 10);
-  for (int i = 0; i < count; i++) text[i] = reversed[count - 1 - i];
-  return count;
+  uint32_t high = (uint32_t)rest;
+  for (; high >= 100; high /= 100) at = write_pair_before(at, high % 100);
+  if (high >= 10)
+    at = write_pair_before(at, high);
+  else if (high > 0)
+    *--at = (char)('0' + high);
+  for (; end[-1] == '0'; end--) d->exponent++;
+  *count = (int)(end - at);
+  return at;
 }
 
 static char *write_zeros(char *at, int count) {
@@ -109,8 +165,9 @@ static char *write_exponent(char *at, int exponent) {
 
 /* Digits with a point after the first `point` of them; point may lie outside. */
 static char *write_decimal(char *at, decimal d) {
-  char digits[20];
-  int count = write_digits(&d, digits);
+  char room[20];
+  int count;
+  const char *digits = write_digits(&d, room + sizeof room, &count);
   int point = count + d.exponent;
   bool scientific = point < -3 || point > 17;
   int before = scientific ? 1 : point;
@@ -119,9 +176,13 @@ static char *write_decimal(char *at, decimal d) {
     *at++ = '.';
     at = write_zeros(at, -before);
   }
-  for (int i = 0; i < count; i++) {
-    if (i > 0 && i == before) *at++ = '.';
-    *at++ = digits[i];
+  int whole = before <= 0 || before > count ? count : before;
+  memcpy(at, digits, (size_t)whole);
+  at += whole;
+  if (whole < count) {
+    *at++ = '.';
+    memcpy(at, digits + whole, (size_t)(count - whole));
+    at += count - whole;
   }
   at = write_zeros(at, before - count);
   return scientific ? write_exponent(at, point - 1) : at;

@@ -9,41 +9,56 @@
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"
 
-enum { BUFFER = 1 << 16 };
+/* PART: what is written at a time. Behind it there is room for any one cell of a row. */
+enum { PART = 1 << 16, MOST_CELL = 2 * STRUT_SLOT_MESSAGE + 2 };
 
 /* Text on its way into the file. */
 typedef struct writer {
   strut_file file;
   size_t used;
   bool failed;
-  char buffer[BUFFER];
+  char buffer[PART + MOST_CELL];
 } writer;
 
+_Static_assert((int)STRUT_SLOT_WORD <= (int)STRUT_SLOT_MESSAGE &&
+                   (int)STRUT_NUMBER_TEXT <= (int)MOST_CELL,
+               "room for any one cell");
+
+static void flush(writer *w) {
+  if (!w->failed) {
+    errno = 0;
+    w->failed = fwrite(w->buffer, 1, w->used, w->file.stream) != w->used;
+  }
+  w->used = 0;
+}
+
+/* Ends a cell. */
+static void end_cell(writer *w, char mark) {
+  w->buffer[w->used++] = mark;
+  if (w->used >= PART) flush(w);
+}
+
 static void put(writer *w, const char *bytes, size_t length) {
-  while (length > 0 && !w->failed) {
-    size_t part = length < sizeof w->buffer - w->used ? length : sizeof w->buffer - w->used;
+  while (length > 0) {
+    size_t part = length < PART ? length : PART;
+    if (w->used + part > PART) flush(w);
     memcpy(w->buffer + w->used, bytes, part);
     w->used += part;
     bytes += part;
     length -= part;
-    if (w->used < sizeof w->buffer && length == 0) break;
-    errno = 0;
-    w->failed = fwrite(w->buffer, 1, w->used, w->file.stream) != w->used;
-    w->used = 0;
   }
 }
 
 static strut_status finish(writer *w, strut_error *error) {
-  errno = 0;
-  if (!w->failed) w->failed = fwrite(w->buffer, 1, w->used, w->file.stream) != w->used;
+  flush(w);
   if (!w->failed) return strut_file_commit(&w->file, error);
   strut_status status = strut_file_trouble(&w->file, error);
   strut_file_abandon(&w->file);
   return status;
 }
 
-/* A cell of two texts; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
-static void put_cell(writer *w, const char *text, const char *unit) {
+/* A name with its unit; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
+static void put_name(writer *w, const char *text, const char *unit) {
   bool quoted = strpbrk(text, ",\"\r\n") || strpbrk(unit, ",\"\r\n");
   if (quoted) put(w, "\"", 1);
   const char *parts[] = {text, *unit ? " [" : "", unit, *unit ? "]" : ""};
@@ -64,35 +79,52 @@ static void put_header(writer *w, const strut_slots_plan *plan) {
   put(w, "point,", 6);
   for (size_t i = 0; i < plan->column_count; i++) {
     const strut_slot_column *column = &plan->columns[i];
-    put_cell(w, column->name, strcmp(column->unit, "1") == 0 ? "" : column->unit);
+    put_name(w, column->name, strcmp(column->unit, "1") == 0 ? "" : column->unit);
     put(w, ",", 1);
   }
   put(w, "status,message\n", 15);
 }
 
 static void put_number(writer *w, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  if (!isnan(value)) put(w, text, strut_number_text(value, text));
-  put(w, ",", 1);
+  if (!isnan(value)) w->used += strut_number_text(value, w->buffer + w->used);
+  end_cell(w, ',');
+}
+
+/* A short text: copied as it stands, and then once more if it needs quotes. */
+static void put_text(writer *w, const char *text, size_t room, char mark) {
+  char *at = w->buffer + w->used;
+  size_t length = 0;
+  bool plain = true;
+  for (; length + 1 < room && text[length]; length++) {
+    char c = text[length];
+    plain = plain && c != ',' && c != '"' && c != '\r' && c != '\n';
+    at[length] = c;
+  }
+  if (!plain) {
+    char *to = at;
+    *to++ = '"';
+    for (size_t i = 0; i < length; i++) {
+      if (text[i] == '"') *to++ = '"';
+      *to++ = text[i];
+    }
+    *to++ = '"';
+    length = (size_t)(to - at);
+  }
+  w->used += length;
+  end_cell(w, mark);
 }
 
 static void put_row(writer *w, const strut_slots_plan *plan, int64_t point, const strut_slot *row) {
-  char number[STRUT_NUMBER_TEXT];
   size_t numbers = 0, words = 0;
-  int length = snprintf(number, sizeof number, "%lld,", (long long)point);
-  put(w, number, (size_t)length);
+  put_number(w, (double)point);
   for (size_t i = 0; i < plan->column_count; i++) {
-    if (plan->columns[i].word) {
-      put_cell(w, row->words[words++], "");
-      put(w, ",", 1);
-    } else {
+    if (plan->columns[i].word)
+      put_text(w, row->words[words++], STRUT_SLOT_WORD, ',');
+    else
       put_number(w, row->numbers[numbers++]);
-    }
   }
-  put_cell(w, strut_status_text(row->status), "");
-  put(w, ",", 1);
-  put_cell(w, row->message, "");
-  put(w, "\n", 1);
+  put_text(w, strut_status_text(row->status), STRUT_SLOT_MESSAGE, ',');
+  put_text(w, row->message, STRUT_SLOT_MESSAGE, '\n');
 }
 
 strut_status strut_study_table_write(const char *directory, const char *name,
