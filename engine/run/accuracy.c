@@ -85,7 +85,8 @@ strut_status strut_simulate_accurately(const strut_scene *scene, const strut_run
   bool done = false;
   double begin = strut_run_clock();
   strut_status status = choose_cheap(&a);
-  if (!status && scene->experiment.periods > 0.0 && !a.halving)
+  if (!status) status = strut_accuracy_by_midpoint(&a, &done);
+  if (!status && !done && scene->experiment.periods > 0.0 && !a.halving)
     status = strut_accuracy_by_orbit(&a, &done);
   if (!status && !done) status = strut_accuracy_by_repetition(&a);
   summary->wall_time = strut_run_clock() - begin;

@@ -15,7 +15,8 @@
  * motion. A run by periods whose motion becomes steady long before its window is made with the
  * cheapest method, and its orbit is then corrected by an accurate one (orbit.h). Any other run is made
  * with the cheapest method and with one of error control, then with ever smaller tolerances, until two
- * agree; rigid bars with ever smaller steps. summary->accuracy says what was done, why, what it cost
+ * agree; rigid bars with ever smaller steps. Where there is no ground and stiff members hold explicit
+ * steps far below the motion, implicit midpoint comes first (accuracy_midpoint.c). summary->accuracy says what was done, why, what it cost
  * to check, and the error to expect; `kept` is false where the accuracy was not reached. The scene's
  * own method and step are not used. Results and errors as strut_simulate.
  */
@@ -23,7 +24,7 @@ STRUT_API strut_status strut_simulate_accurately(const strut_scene *scene,
                                                  const strut_run_options *options,
                                                  strut_summary *summary, strut_error *error);
 
-/* accuracy_orbit.c, accuracy_plain.c: the two ways. Share what follows. */
+/* accuracy_midpoint.c, accuracy_orbit.c, accuracy_plain.c: the ways. Share what follows. */
 
 typedef struct strut_accuracy {
   const strut_scene *scene;
@@ -46,6 +47,13 @@ strut_status strut_accuracy_run(const strut_accuracy *a, const strut_experiment 
 double strut_accuracy_periods(const strut_accuracy *a);
 /** Is the mean over the window that over a steady motion found so? */
 bool strut_accuracy_orbit_answers(const strut_accuracy *a, const strut_steady_summary *steady);
+/**
+ * By implicit midpoint, with half the step again and again until two runs agree, their positions
+ * converge as its order says and no motion is left that is too fast for the step and would matter;
+ * as long as a run costs less than one by the cheapest explicit method. *done is false where that is
+ * not so, or the scene is none for it.
+ */
+strut_status strut_accuracy_by_midpoint(strut_accuracy *a, bool *done);
 /** By the steady orbit. *done is false where there is none to be had. */
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done);
 /** By runs that are ever finer. */

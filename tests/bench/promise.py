@@ -75,6 +75,7 @@ def one_scene(kind, number, work, totals):
         error = abs(found["velocity"] - right) / max(abs(right), scale)
         told = found["accuracy"]
         totals["forces"] += found["force_evaluations"] + told["check_evaluations"]
+        totals["midpoint"] += found["method"] == "midpoint"
         what = (f"wanted {wanted}, error {error:.2g}, expected {told['expected']:.2g}, "
                 f"v {found['velocity']:.6g} right {right:.6g} scale {scale:.2g}: {told['why']}")
         if not told["kept"]:
@@ -83,14 +84,18 @@ def one_scene(kind, number, work, totals):
     return "none", file, "no scene with a reference"
 
 
+COUNTED = ("kept", "broken", "none", "chaotic", "forces", "midpoint")
+
+
 def main():
-    totals = {"kept": 0, "broken": 0, "none": 0, "chaotic": 0, "forces": 0}
+    totals = dict.fromkeys(COUNTED, 0)
     with tempfile.TemporaryDirectory() as name:
         work = folder or pathlib.Path(name)
         work.mkdir(parents=True, exist_ok=True)
-        print(f"{'class':>9} {'kept':>5} {'broken':>7} {'no promise':>11} {'no reference':>13}")
+        print(f"{'class':>9} {'kept':>5} {'broken':>7} {'no promise':>11} {'no reference':>13} "
+              f"{'by midpoint':>12} {'forces':>12}")
         for kind in promise_scenes.CLASSES:
-            part = {"kept": 0, "broken": 0, "none": 0, "chaotic": 0, "forces": 0}
+            part = dict.fromkeys(COUNTED, 0)
             for number in range(count):
                 result, file, what = one_scene(kind, number, work, part)
                 part[result] += 1
@@ -99,7 +104,7 @@ def main():
                 elif folder:
                     file.unlink()
             print(f"{kind:>9} {part['kept']:5d} {part['broken']:7d} {part['none']:11d} "
-                  f"{part['chaotic']:13d}", flush=True)
+                  f"{part['chaotic']:13d} {part['midpoint']:12d} {part['forces']:12d}", flush=True)
             for key, value in part.items():
                 totals[key] += value
     scenes = 4 * count

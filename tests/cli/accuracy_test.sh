@@ -47,6 +47,44 @@ cp "$work/out" "$work/json"
 [ "$(field '.steady.kind == "periodic" and .steady.periods <= 60')" = true ] || fail "it never stops"
 [ "$(field '(.velocity | fabs) < 3e-5')" = true ] || fail "it moves"
 
+# Stiff members and slow motion, no ground: implicit midpoint, far above the explicit limit.
+expect 0 run "$here/../../models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1% \
+  --json
+cp "$work/out" "$work/json"
+about "$(field .velocity)" -2.068963889494835 0.001
+[ "$(field '.method == "midpoint" and .accuracy.kept and .accuracy.expected <= 0.001')" = true ] ||
+  fail "stiff: not kept by midpoint"
+# verlet's largest stable step is 1.1 us here, which 2.3e6 evaluations go through
+[ "$(field '.force_evaluations + .accuracy.check_evaluations < 40000')" = true ] ||
+  fail "stiff: midpoint is dear"
+field .accuracy.why | grep -q 'twice the step changes the velocity by' || fail "stiff: no reason"
+# Where stiff members vibrate so much that they push the slow motion their frequencies must be
+# followed: midpoint with large steps comes to 1.056 m/s and stays there. adaptive with tolerances of
+# 1e-9 and 1e-11 says 1.0417376.
+cat >"$work/kicked.yaml" <<'END'
+strut: 1
+nodes:
+  top: {position: [0, 0], fixed: both}
+  n0: {position: [-0.13728555597633055, -0.76109378168704], mass: 0.2753058327901088}
+  n1: {position: [0.28403037500424577, -1.4096336453071419], mass: 0.3279343438901855}
+  n2: {position: [-0.4151368893390792, -1.7402031612536082], mass: 0.2169635589794528}
+members:
+  m0: {kind: bar, nodes: [top, n0], stiffness: 4751175.461808136}
+  m1: {kind: bar, nodes: [n0, n1], stiffness: 4801666.329171631}
+  m2: {kind: bar, nodes: [n1, n2], stiffness: 6829995.2698824955}
+gravity: [0, -9.81]
+initial:
+  velocities:
+    n0: [0.22865326921778406, 1.2676248431704797]
+    n1: [-0.5758035887969262, 0.886345740786953]
+    n2: [1.4244794072675955, 0.6735004513954602]
+solver: {step: 0.1 ms}
+run: {duration: 0.9258812002378766, measure: {node: n2}}
+END
+expect 0 run "$work/kicked.yaml" --accuracy 0.5% --json
+cp "$work/out" "$work/json"
+about "$(field .velocity)" 1.0417376 0.005
+[ "$(field '.accuracy.kept and .method != "midpoint"')" = true ] || fail "kicked: by midpoint"
 # Rigid bars, which one method takes: at 5/4 of its period the rod hangs, having been level at one.
 sed 's/^nodes:/bars: rigid\nnodes:/' "$here/../../models/basics/pendulum.yaml" >"$work/rod.yaml"
 expect 0 run "$work/rod.yaml" --accuracy 0.01% --json
