@@ -27,14 +27,15 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSI
                             STRUT_KEY_RUN_DURATION,          STRUT_KEY_MEASURE_LAST,
                             STRUT_KEY_STEADY_TOLERANCE,
                             STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_STUDY_VERSION,
-                            STRUT_KEY_RANGE_FROM,            STRUT_KEY_CHECK_HALF_STEP,
-                            STRUT_KEY_FIGURE_KIND,           STRUT_KEY_COUNT};
+                            STRUT_KEY_RANGE_FROM,            STRUT_KEY_VARIANT_SOLVER,
+                            STRUT_KEY_CHECK_HALF_STEP,       STRUT_KEY_FIGURE_KIND,
+                            STRUT_KEY_COUNT};
 
 static const char *const room_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
     "initial", "settle", "equilibria", "solver",    "run",      "measure", "steady", "output",
-    "study",   "range",  "check",      "figure"};
+    "study",   "range",  "variant",    "check",      "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
 _Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");

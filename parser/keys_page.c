@@ -47,6 +47,7 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
         "A study is a file of its own: what `strut sweep` runs. Expressions may use the model's "
         "parameters in `set` and `derive`.",
     [STRUT_ROOM_RANGE] = "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
+    [STRUT_ROOM_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_ROOM_CHECK] = "`check: {...}` of a study.",
     [STRUT_ROOM_FIGURE] = "`figures: {NAME: {...}}` of a study."};
 

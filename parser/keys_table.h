@@ -137,8 +137,11 @@
   X(STUDY, SET, "set", THINGS, NONE, ANY, false, 0, "", "an expression or a text", "Values of the model's parameters at every point, as by `--set`, which wins.") \
   X(STUDY, AXES, "axes", AXES, NONE, ANY, true, 0, "", "", "A list; each gives one parameter values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several together, `{zip: {NAME: ..., NAME: ...}}`. Axes cross; the last is the fastest.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, false, 0, "", "an expression", "Parameters that follow from others at each point, such as `{step: 1/(1000*frequency)}`.") \
+  X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, false, 0, "", "the keys of a [variant](#variant)", "The same points in several ways, such as with other numerics: an axis before all others, whose column is `variant`.") \
   X(STUDY, SOLVER, "solver", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
   X(STUDY, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
+  X(STUDY, INITIAL, "initial", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
+  X(STUDY, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
   X(STUDY, KEEP, "keep", WORDS, NONE, ANY, false, 0, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome]", "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome", "What of each run stands in the table: velocity [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of a run that stops when steady; `distance` travelled in a drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses`, `residual` of the balance; `contacts` (duty and height of each), `positions` (of each node at the end), `outcome` (the nearest configuration); and the rest of the summary.") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, false, 0, "no", "no|yes", "Write each run into a folder of its own, `runs/POINT`, as `strut run -o` does.") \
   X(STUDY, CHECK, "check", MAP, NONE, ANY, false, 0, "", "", "Run each point again, more exactly, and mark those that end elsewhere.") \
@@ -148,6 +151,10 @@
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, false, 4, "", "", "From one value to the next; or") \
   X(RANGE, COUNT, "count", NUMBER, NONE, ABOVE_ZERO, false, 4, "", "", "so many values, both ends among them.") \
   X(RANGE, SCALE, "scale", WORD, NONE, ANY, false, 0, "linear", "linear|log", "`log`: equal ratios instead of equal steps; needs `count`.") \
+  X(VARIANT, SOLVER, "solver", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the study and the model.") \
+  X(VARIANT, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the study and the model.") \
+  X(VARIANT, INITIAL, "initial", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the study and the model.") \
+  X(VARIANT, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the study and the model.") \
   X(CHECK, HALF_STEP, "half_step", WORD, NONE, ANY, false, 5, "no", "no|yes", "With half the step, or of a model with `accuracy` half of that.") \
   X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, false, 5, "", "", "With this accuracy.") \
   X(FIGURE, KIND, "kind", WORD, NONE, ANY, false, 0, "lines", "lines|map", "Curves, or a colour for each point.") \
@@ -156,6 +163,9 @@
   X(FIGURE, SERIES, "series", NAME, NONE, ANY, false, 0, "", "", "Of lines: the column that tells them apart.") \
   X(FIGURE, COLOR, "color", NAME, NONE, ANY, false, 0, "", "", "Of a map: the column that is coloured; hatched where `flips` is 1.") \
   X(FIGURE, PANELS, "panels", NAME, NONE, ANY, false, 0, "", "", "The column that has a panel for each of its values.") \
+  X(FIGURE, BAND, "band", TEXT, NONE, ANY, false, 0, "", "", "Of lines: `COLUMN=TEXT`, grey where the column has that text, half way to the neighbours.") \
+  X(FIGURE, ONLY, "only", TEXT, NONE, ANY, false, 0, "", "", "`COLUMN=TEXT`: of the rows whose column has that text, such as `variant=coarse`.") \
+  X(FIGURE, DIFFERENCE, "difference", NAME, NONE, ANY, false, 0, "", "", "A column with two different texts: lines of `y` of the second less that of the first; a map of the second, hatched where the first says otherwise.") \
   X(FIGURE, TITLE, "title", TEXT, NONE, ANY, false, 0, "", "", "What stands above it.")
 /* clang-format on */
 

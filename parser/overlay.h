@@ -17,7 +17,7 @@ strut_place strut_overlay_place(strut_place place);
 /**
  * Lays the mapping `value` over the section of that name of the document: its keys replace those of
  * the section, mappings within mappings too, and those that say the same in another way (a duration
- * for periods, a step for an accuracy). False: memory is out.
+ * for periods, a step for an accuracy, a configuration for an equilibrium). False: memory is out.
  */
 bool strut_overlay(strut_document *document, const char *section, const strut_tree *value);
 

@@ -75,50 +75,14 @@ static void check_overrides(strut_study_reader *r, size_t overrides) {
   }
 }
 
-static const char *name_in(strut_study_reader *r, strut_fields *fields, int key) {
-  const strut_slot *slot = strut_slot_of(fields, key);
-  if (slot->state != STRUT_GIVEN) return NULL;
-  const char *copy =
-      strut_arena_text(&r->file->arena, slot->value->text, strlen(slot->value->text));
-  if (!copy) r->reader->out_of_memory = true;
-  return copy;
-}
-
-static void read_figures(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
-  if (slot->state != STRUT_GIVEN) return;
-  study->figures =
-      strut_take(r->reader, &r->file->arena, slot->value->count, sizeof *study->figures);
-  for (const strut_tree *key = slot->value->first; key && study->figures; key = key->next->next) {
-    strut_fields fields;
-    strut_owner owner = {"figure", key->text};
-    strut_read_name(r->reader, key, "figure");
-    strut_read_fields(r->reader, STRUT_ROOM_FIGURE, key->next, owner, &fields);
-    strut_require(r->reader, &fields, owner, key->place);
-    strut_study_figure *figure = &study->figures[study->figure_count++];
-    const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_FIGURE_KIND);
-    figure->name = key->text;
-    figure->map = kind->state == STRUT_GIVEN && kind->word == 1;
-    figure->x = name_in(r, &fields, STRUT_KEY_FIGURE_AT_X);
-    figure->y = name_in(r, &fields, STRUT_KEY_FIGURE_AT_Y);
-    figure->series = name_in(r, &fields, STRUT_KEY_FIGURE_SERIES);
-    figure->color = name_in(r, &fields, STRUT_KEY_FIGURE_COLOR);
-    figure->panels = name_in(r, &fields, STRUT_KEY_FIGURE_PANELS);
-    figure->title = name_in(r, &fields, STRUT_KEY_FIGURE_TITLE);
-    if (figure->map && !figure->color && !fields.broken)
-      strut_say(r->reader, key->place, "map '%s' lacks 'color', expected a column of the table",
-                key->text);
-  }
-}
-
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
   const strut_slot *keep = strut_slot_of(top, STRUT_KEY_STUDY_KEEP);
   const strut_slot *files = strut_slot_of(top, STRUT_KEY_STUDY_TRAJECTORIES);
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   strut_fields fields;
-  const char *name = name_in(r, top, STRUT_KEY_STUDY_NAME);
-  const char *description = name_in(r, top, STRUT_KEY_STUDY_DESCRIPTION);
+  const char *name = strut_study_text(r, top, STRUT_KEY_STUDY_NAME);
+  const char *description = strut_study_text(r, top, STRUT_KEY_STUDY_DESCRIPTION);
   study->name = name ? name : "";
   study->description = description ? description : "";
   if (keep->state == STRUT_GIVEN) study->keep = (unsigned)keep->word;
@@ -130,42 +94,7 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
     study->half_step = half->state == STRUT_GIVEN && half->word == 1;
     study->check_accuracy = strut_number_or(&fields, STRUT_KEY_CHECK_ACCURACY, 0.0);
   }
-  read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
-}
-
-/* The model's file, beside the study's unless it says where it is. */
-static char *model_path(const char *study, const char *model) {
-  const char *slash = strrchr(study, '/');
-  size_t folder = *model == '/' || !slash ? 0 : (size_t)(slash - study) + 1;
-  char *path = strut_allocate(folder + strlen(model) + 1, 1);
-  if (!path) return NULL;
-  memcpy(path, study, folder);
-  strcpy(path + folder, model);
-  return path;
-}
-
-static strut_status open_model(strut_study_reader *r, strut_fields *top, strut_error *error) {
-  strut_study_file *file = r->file;
-  const strut_slot *model = strut_slot_of(top, STRUT_KEY_STUDY_MODEL);
-  if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
-  file->study.model = model->value->text;
-  file->model_path = model_path(file->path, model->value->text);
-  if (!file->model_path) return STRUT_NO_MEMORY;
-  strut_status status =
-      strut_file_read(file->model_path, &file->model_text, &file->model_length, error);
-  if (status != STRUT_OK) return status;
-  status = strut_scene_source_open(file->model_path, file->model_text, file->model_length,
-                                   &file->model_diagnostics, &file->source);
-  if (status != STRUT_OK) return status;
-  const strut_slot *solver = strut_slot_of(top, STRUT_KEY_STUDY_SOLVER);
-  const strut_slot *run = strut_slot_of(top, STRUT_KEY_STUDY_RUN);
-  strut_document *document = strut_scene_source_document(file->source);
-  if (solver->state == STRUT_GIVEN && !strut_overlay(document, "solver", solver->value))
-    return STRUT_NO_MEMORY;
-  if (run->state == STRUT_GIVEN && !strut_overlay(document, "run", run->value))
-    return STRUT_NO_MEMORY;
-  r->declared = strut_scene_source_parameters(file->source, &r->declared_count);
-  return STRUT_OK;
+  strut_study_read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
 static size_t size_of(const strut_slot *slot) {
@@ -205,7 +134,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));
   read_rest(r, &top);
-  status = open_model(r, &top, error);
+  status = strut_study_open_sources(r, &top, error);
   if (status == STRUT_OK) read_points(r, &top, overrides, count);
   if (reader->out_of_memory) return STRUT_NO_MEMORY;
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;
@@ -242,24 +171,34 @@ const char *strut_study_messages(strut_study_file *file, size_t most) {
   return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
 }
 
+/* The model of a point: that of its variant. */
+static const strut_scene_source *source_of(const strut_study_file *file,
+                                           const strut_study_value *values) {
+  size_t i = 0;
+  if (!file->variants) return file->sources[0];
+  while (strcmp(file->study.axes[0].columns[0].words[i], values[0].word) != 0) i++;
+  return file->sources[i];
+}
+
 /* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
                                strut_diagnostics *diagnostics, strut_scene *scene) {
-  size_t fixed = file->setting_count, count = fixed + file->column_count;
+  size_t first = file->variants, fixed = file->setting_count;
+  size_t count = fixed + file->column_count - first;
   strut_setting *settings = strut_allocate(count, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return STRUT_NO_MEMORY;
   char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + count);
   for (size_t i = 0; i < fixed; i++) settings[i] = file->settings[i];
-  for (size_t i = 0; i < file->column_count; i++) {
-    strut_setting *s = &settings[fixed + i];
+  for (size_t i = first; i < file->column_count; i++) {
+    strut_setting *s = &settings[fixed + i - first];
     *s = file->columns[i];
     s->place = strut_overlay_place(s->place);
     s->value = values[i].number;
-    s->text = values[i].word ? values[i].word : texts[i];
-    if (!values[i].word) strut_number_text(values[i].number, texts[i]);
+    s->text = values[i].word ? values[i].word : texts[i - first];
+    if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
-  strut_status status =
-      strut_scene_source_read(file->source, settings, count, STRUT_FOR_RUN, diagnostics, scene);
+  strut_status status = strut_scene_source_read(source_of(file, values), settings, count,
+                                                STRUT_FOR_RUN, diagnostics, scene);
   strut_release(settings);
   return status;
 }
@@ -313,7 +252,7 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
 }
 
 void strut_study_close(strut_study_file *file) {
-  strut_scene_source_free(file->source);
+  for (size_t i = 0; i < file->source_count; i++) strut_scene_source_free(file->sources[i]);
   strut_diagnostics_free(&file->diagnostics);
   strut_diagnostics_free(&file->model_diagnostics);
   strut_document_free(&file->document);

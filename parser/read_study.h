@@ -14,7 +14,11 @@
 /** A study as read. Zero-initialise; strut_study_close releases it. Constant once it is open. */
 typedef struct strut_study_file {
   strut_study study;
-  strut_scene_source *source; /* the model, with the study's solver and run laid over */
+  /* The model, with the study's solver, run, initial and output laid over, and those of a variant:
+     one for each variant, whose name is the first column then, or one. */
+  size_t source_count;
+  strut_scene_source **sources;
+  bool variants;
   size_t setting_count, column_count;
   strut_setting *settings; /* (setting_count) the same at every point: --set, set, derive */
   strut_setting *columns;  /* (column_count) of the axes, their values to be filled in */

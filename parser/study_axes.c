@@ -210,12 +210,26 @@ static size_t count_columns(const strut_tree *list) {
   return count;
 }
 
+/* The axis of the variants, before all others. */
+static void add_variants(strut_study_reader *r) {
+  strut_study_file *file = r->file;
+  strut_study_column *column = strut_take(r->reader, &file->arena, 1, sizeof *column);
+  if (!column) return;
+  *column = (strut_study_column){
+      .name = "variant", .unit = "1", .word = true, .words = r->variant_names};
+  file->columns[file->column_count++] = (strut_setting){.name = column->name, .bare = true};
+  file->study.axes[file->study.axis_count++] =
+      (strut_study_axis){.count = (int64_t)r->variant_count, .column_count = 1, .columns = column};
+  file->variants = true;
+}
+
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
   strut_study *study = &r->file->study;
-  study->axes = strut_take(r->reader, &r->file->arena, list->count, sizeof *study->axes);
+  study->axes = strut_take(r->reader, &r->file->arena, list->count + 1, sizeof *study->axes);
   r->file->columns =
-      strut_take(r->reader, &r->file->arena, count_columns(list), sizeof *r->file->columns);
+      strut_take(r->reader, &r->file->arena, count_columns(list) + 1, sizeof *r->file->columns);
   if (!study->axes || !r->file->columns) return;
+  if (r->variant_count > 0) add_variants(r);
   for (const strut_tree *item = list->first; item; item = item->next)
     read_axis(r, item, &study->axes[study->axis_count++]);
   double points = 1.0;

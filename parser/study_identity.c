@@ -55,7 +55,8 @@ static void put_axis(strut_writer *w, const strut_study_axis *axis) {
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.text = NULL};
   const strut_study *study = &file->study;
-  put_tree(&w, strut_scene_source_document(file->source)->root);
+  for (size_t i = 0; i < file->source_count; i++)
+    put_tree(&w, strut_scene_source_document(file->sources[i])->root);
   for (size_t i = 0; i < file->setting_count; i++) {
     put_word(&w, file->settings[i].name);
     put_word(&w, file->settings[i].text);

@@ -4,7 +4,8 @@
  *
  * Points are the grid of all axes crossed, the last axis fastest. An axis gives one parameter of the
  * model or several together, each by a list or by a range that is never written out, so that a billion
- * points need no memory. All texts and arrays are owned by whoever filled the study.
+ * points need no memory. Variants of the model are the first axis, of the one column "variant". All
+ * texts and arrays are owned by whoever filled the study.
  */
 #ifndef STRUT_ENGINE_SCENE_STUDY_H
 #define STRUT_ENGINE_SCENE_STUDY_H
@@ -87,7 +88,8 @@ typedef struct strut_study_figure {
   const char *name;
   bool map; /* x, y, color; else lines: x, y, series */
   /* columns of the table; NULL where none is named */
-  const char *x, *y, *series, *color, *panels;
+  const char *x, *y, *series, *color, *panels, *difference;
+  const char *band, *only; /* "COLUMN=TEXT", or NULL */
   const char *title; /* or NULL */
 } strut_study_figure;
 

@@ -22,6 +22,9 @@ static const strut_option options[] = {
     {STRUT_OPTION_BY, "by", "COLUMN", "a curve, or a method, for each of what stands there"},
     {STRUT_OPTION_PANELS, "panels", "COLUMN", "a panel for each of what stands there"},
     {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey where the column has that text"},
+    {STRUT_OPTION_ONLY, "only", "COLUMN=TEXT", "only rows whose column has that text"},
+    {STRUT_OPTION_DIFFERENCE, "difference", "COLUMN",
+     "of its two texts the second less the first; of maps hatched where they differ"},
     {STRUT_OPTION_LABEL, "label", "COLUMN",
      "of a map: what is shown; of work-precision: beside the best"},
     {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "of a map: hatched where it says anything but 0"},
@@ -81,18 +84,27 @@ static bool read_y(const strut_arguments *arguments, const strut_table *table,
   }
 }
 
-static bool read_band(const strut_arguments *arguments, const strut_table *table,
-                      strut_table_figure *figure) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_BAND);
+/* COLUMN=TEXT. */
+static bool read_match(const strut_arguments *arguments, const strut_table *table,
+                       strut_option_id id, const char *option, int *column, const char **value) {
+  const char *text = strut_option_text(arguments, id);
   if (!text) return true;
   const char *equals = strchr(text, '=');
   if (!equals) {
-    fprintf(stderr, "strut plot: --band expects COLUMN=TEXT, not '%s'\n", text);
+    fprintf(stderr, "strut plot: --%s expects COLUMN=TEXT, not '%s'\n", option, text);
     return false;
   }
-  figure->band = find_column(table, "band", text, (size_t)(equals - text));
-  figure->band_value = equals + 1;
-  return figure->band != STRUT_NO_COLUMN;
+  *column = find_column(table, option, text, (size_t)(equals - text));
+  *value = equals + 1;
+  return *column != STRUT_NO_COLUMN;
+}
+
+static bool read_choice(const strut_arguments *arguments, const strut_table *table,
+                        strut_table_choice *choice) {
+  return read_match(arguments, table, STRUT_OPTION_ONLY, "only", &choice->only,
+                    &choice->only_value) &&
+         read_column(arguments, table, STRUT_OPTION_DIFFERENCE, "difference",
+                     &choice->difference);
 }
 
 static bool read_log(const strut_arguments *arguments, strut_table_figure *figure) {
@@ -113,12 +125,14 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
                                    .y = table->column_count > 1 ? 1 : 0,
                                    .value = third,
                                    .panels = STRUT_NO_COLUMN,
-                                   .doubt = STRUT_NO_COLUMN};
+                                   .doubt = STRUT_NO_COLUMN,
+                                   .choice = STRUT_TABLE_ALL};
   bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
               read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
               read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.value) &&
               read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
-              read_column(arguments, table, STRUT_OPTION_DOUBT, "doubt", &figure.doubt);
+              read_column(arguments, table, STRUT_OPTION_DOUBT, "doubt", &figure.doubt) &&
+              read_choice(arguments, table, &figure.choice);
   if (good && figure.value == STRUT_NO_COLUMN) {
     fprintf(stderr, "strut plot: a map needs a third column\n");
     good = false;
@@ -146,12 +160,15 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
                                .width = plot->width,
                                .by = STRUT_NO_COLUMN,
                                .panels = STRUT_NO_COLUMN,
-                               .band = STRUT_NO_COLUMN};
+                               .band = STRUT_NO_COLUMN,
+                               .choice = STRUT_TABLE_ALL};
   bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
               read_y(arguments, table, &figure) &&
               read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
               read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
-              read_band(arguments, table, &figure) && read_log(arguments, &figure);
+              read_match(arguments, table, STRUT_OPTION_BAND, "band", &figure.band,
+                         &figure.band_value) &&
+              read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure);
   return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
@@ -167,6 +184,7 @@ static const struct {
 } limited[] = {
     {STRUT_OPTION_BY, "by", 5},    {STRUT_OPTION_PANELS, "panels", 3}, {STRUT_OPTION_BAND, "band", 1},
     {STRUT_OPTION_LABEL, "label", 6}, {STRUT_OPTION_DOUBT, "doubt", 2},  {STRUT_OPTION_LOG, "log", 1},
+    {STRUT_OPTION_ONLY, "only", 3},   {STRUT_OPTION_DIFFERENCE, "difference", 3},
 };
 
 static strut_status read_kind(const strut_arguments *arguments, int *kind) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/sweep_figures.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/output/figures/table_map.h"
@@ -32,6 +33,19 @@ static strut_status check_column(const strut_sweep_plan *plan, const strut_study
       figure->name, name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
+/* COLUMN=TEXT, where the column has to be one of the table; the name is in `room`. */
+static strut_status check_match(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                                const char *text, const char *key, strut_error *error) {
+  char name[60];
+  if (!text) return STRUT_OK;
+  if (!strchr(text, '='))
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "figure '%.60s' of the study: '%s' expects COLUMN=TEXT, not '%.60s'",
+                      figure->name, key, text);
+  snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
+  return check_column(plan, figure, name, false, error);
+}
+
 strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < plan->study->figure_count && !status; i++) {
@@ -41,6 +55,9 @@ strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error
     if (!status) status = check_column(plan, f, f->series, false, error);
     if (!status) status = check_column(plan, f, f->color, false, error);
     if (!status) status = check_column(plan, f, f->panels, false, error);
+    if (!status) status = check_column(plan, f, f->difference, false, error);
+    if (!status) status = check_match(plan, f, f->band, "band", error);
+    if (!status) status = check_match(plan, f, f->only, "only", error);
   }
   return status;
 }
@@ -51,8 +68,22 @@ static int column_of(const strut_table *table, const char *name) {
   return STRUT_NO_COLUMN;
 }
 
+/* COLUMN=TEXT. */
+static int column_of_match(const strut_table *table, const char *match, const char **text) {
+  size_t length = match ? strcspn(match, "=") : 0;
+  for (size_t i = 0; match && i < table->column_count; i++) {
+    const char *name = table->columns[i].name;
+    if (strlen(name) != length || memcmp(name, match, length) != 0) continue;
+    *text = match + length + 1;
+    return (int)i;
+  }
+  return STRUT_NO_COLUMN;
+}
+
 static strut_status draw(const strut_study_figure *f, const char *path, const strut_table *table,
                          strut_error *error) {
+  strut_table_choice choice = {.difference = column_of(table, f->difference)};
+  choice.only = column_of_match(table, f->only, &choice.only_value);
   if (f->map) {
     const strut_table_map_figure map = {.title = f->title,
                                         .width = PAGE,
@@ -60,17 +91,19 @@ static strut_status draw(const strut_study_figure *f, const char *path, const st
                                         .y = column_of(table, f->y),
                                         .value = column_of(table, f->color),
                                         .panels = column_of(table, f->panels),
-                                        .doubt = column_of(table, "flips")};
+                                        .doubt = column_of(table, "flips"),
+                                        .choice = choice};
     return strut_table_map(path, &map, table, error);
   }
-  const strut_table_figure lines = {.title = f->title,
+  strut_table_figure lines = {.title = f->title,
                                     .width = PAGE,
                                     .x = column_of(table, f->x),
                                     .y = {column_of(table, f->y)},
                                     .y_count = 1,
                                     .by = column_of(table, f->series),
                                     .panels = column_of(table, f->panels),
-                                    .band = STRUT_NO_COLUMN};
+                                    .choice = choice};
+  lines.band = column_of_match(table, f->band, &lines.band_value);
   return strut_table_curves(path, &lines, table, error);
 }
 

@@ -177,14 +177,15 @@ static void a_study_is_what_it_says(void **state) {
   strut_study_file file;
   strut_scene scene;
   strut_error error = {0};
-  strut_study_value values[4];
+  strut_study_value values[5];
   open_good("every-key.yaml", &file);
-  assert_int_equal(strut_grid_points(&file.study), 3 * 2 * 3);
-  assert_int_equal(file.study.figure_count, 2);
+  assert_int_equal(strut_grid_points(&file.study), 2 * 3 * 2 * 3);
+  assert_int_equal(file.study.figure_count, 3);
   assert_true(file.study.half_step);
   assert_int_equal(file.study.keep,
                    1 << STRUT_KEEP_VELOCITY | 1 << STRUT_KEEP_WORK | 1 << STRUT_KEEP_POSITIONS);
-  strut_grid_values(&file.study, 2 * 6 + 1 * 3 + 1, values);
+  strut_grid_values(&file.study, 18 + 2 * 6 + 1 * 3 + 1, values);
+  assert_string_equal(values[0].word, "long");
   assert_int_equal(strut_study_scene(&file, values, &scene, &error), STRUT_OK);
   assert_true(scene.loads[0].force[0] == 0.25);
   assert_true(scene.nodes[1].mass == 0.5);
@@ -194,9 +195,18 @@ static void a_study_is_what_it_says(void **state) {
   assert_true(f > 3.16227766 && f < 3.16227767);
   assert_true(scene.experiment.step == 1 / (500 * f)); /* derived from the axis */
   assert_string_equal(scene.experiment.integrator, "verlet");
-  assert_true(scene.experiment.duration == 2 && scene.experiment.periods == 0);
+  assert_true(scene.experiment.duration == 3 && scene.experiment.periods == 0);
   assert_int_equal(scene.experiment.measure_node, 1); /* kept below the study's own keys */
   assert_true(scene.nodes[1].start[0] == 1.01);
+  assert_true(scene.experiment.output_every == 0.01 && scene.experiment.output_last == 0);
+  strut_scene_free(&scene);
+  strut_grid_values(&file.study, 2 * 6 + 1 * 3 + 1, values); /* the same of the other variant */
+  assert_string_equal(values[0].word, "coarse");
+  assert_int_equal(strut_study_scene(&file, values, &scene, &error), STRUT_OK);
+  assert_string_equal(scene.experiment.integrator, "euler");
+  assert_true(scene.experiment.step == 1 / (500 * f) && scene.experiment.duration == 2);
+  assert_true(scene.nodes[1].start[0] == 1.02 && scene.experiment.output_last == 0.1);
+  assert_true(scene.loads[0].force[0] == 0.25);
   strut_scene_free(&scene);
   strut_study_close(&file);
 }

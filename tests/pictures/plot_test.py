@@ -121,6 +121,45 @@ if all(maps) and len(maps) == 4:
         for place, value in ((bands[0][0], 10.5), (bands[0][2], 14.5)):
             check(abs(slope * value + offset - place) < 0.05, f"panels.svg: a band ends at {place}")
 
+# Some of the rows, and the second of two texts less the first, wherever its rows stand.
+table, fs = "f [Hz],v [m/s],way,mu,outcome\n", [1 + 0.5 * i for i in range(40)]
+values = {"slow": [0.01 * math.sin(f) for f in fs], "fast": [0.012 * math.cos(f) for f in fs]}
+for way, order in (("slow", 1), ("fast", -1)):
+    for f, v in list(zip(fs, values[way]))[::order]:
+        if (way, f) != ("slow", 11.0):  # the first side lacks a row
+            table += f"{f},{v!r},{way},0.1,{'III' if f > 15 or way == 'fast' and f == 4 else 'I'}\n"
+write("ways.csv", table)
+plot("ways.csv", "--only", "way=slow", "--plot", "only.svg")
+kept = [i for i, f in enumerate(fs) if f != 11.0]
+check_curve("only.svg", [fs[i] for i in kept], [values["slow"][i] for i in kept],
+            curves(read("only.svg")[2], FIRST)[0])
+plot("ways.csv", "--panels", "mu", "--difference", "way", "--plot", "less.svg")
+found = curves(read("less.svg")[2], FIRST)
+less = [b - a for a, b in zip(values["slow"], values["fast"])]
+check(sorted(len(line) for line in found) == [19, 20], "less.svg: a gap where one side has no row")
+lines = sorted(([p for p in line][::-1] if line[0][0] > line[-1][0] else line for line in found),
+               key=lambda line: line[0][0])
+if len(lines) == 2:
+    both = [affine(f, [p[0] for p in line])[:2] + affine(v, [p[1] for p in line])[2:]
+            for f, v, line in ((fs[:20], less[:20], lines[0]), (fs[21:], less[21:], lines[1]))]
+    check(all(b[2] < 0.02 for b in both), f"less.svg: the curve is not the difference: {both}")
+MAP = ("ways.csv", "--kind", "map", "--y", "mu", "--label", "outcome")
+plot(*MAP, "--difference", "way", "--plot", "differs.svg")
+plot(*MAP, "--only", "way=fast", "--plot", "fast.svg")
+
+
+def hatched(name):  # the lines of the hatching are as long as nothing else in the map
+    return len(read(name)[2])
+
+
+check(hatched("differs.svg") > hatched("fast.svg"), "differs.svg: where they differ it is hatched")
+write("same.csv", "f,v,way\n" + "".join(f"{i},{'I' if i % 2 else 'II'},{w}\n"
+                                       for w in "ab" for i in range(6)))
+SAME = ("same.csv", "--kind", "map", "--y", "f", "--label", "v")
+plot(*SAME, "--difference", "way", "--plot", "same.svg")
+plot(*SAME, "--only", "way=b", "--plot", "b.svg")
+check(hatched("same.svg") == hatched("b.svg"), "same.svg: nothing differs, yet it is marked")
+
 # Logarithmic axes. Zigzag, since Cairo makes one line of pieces that go on straight.
 logs = [-3.0 * i + 0.3 * (i % 2) for i in range(12)]
 write("log.csv", "step [s],error\n" + "".join(f"{2.0 ** -i!r},{2.0 ** y!r}\n"
@@ -170,6 +209,11 @@ plot("curves.csv", "--plot", "a.bmp", code=1, err=".svg, .pdf or .png")
 plot("curves.csv", "--kind", "pie", "--plot", "a.svg", code=1, err="curves")
 plot("curves.csv", "--doubt", "one", "--plot", "a.svg", code=1, err="knows no --doubt")
 plot("curves.csv", "--plot", "nowhere/a.svg", code=4, err="nowhere")
+plot("ways.csv", "--only", "way=slo", "--plot", "a.svg", code=1, err="has 'slo' in column 'way'")
+plot("ways.csv", "--only", "way", "--plot", "a.svg", code=1, err="expects COLUMN=TEXT")
+plot("ways.csv", "--difference", "mu", "--plot", "a.svg", code=1, err="nothing to compare")
+plot("ways.csv", "--difference", "f", "--plot", "a.svg", code=1, err="more than 2 sides to compare")
+plot("ways.csv", "--difference", "wya", "--plot", "a.svg", code=1, err="did you mean 'way'?")
 write("ragged.csv", "a,b\n1,2\n3\n4,5,6\n")
 done = plot("ragged.csv", "--plot", "a.svg", code=2, err="ragged.csv:3:1: error: 1 cells, expected 2")
 check("ragged.csv:4:1" in done.stderr, "only the first bad row is told")

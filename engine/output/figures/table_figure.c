@@ -8,6 +8,7 @@
 #include "engine/output/draw/curves.h"
 #include "engine/output/draw/curves_parts.h"
 #include "engine/output/figures/table_parts.h"
+#include "engine/output/figures/table_select.h"
 
 static const double PANEL_WIDTH = 165, ASPECT = 0.62, INDENT = 30;
 enum { MOST_ENTRIES = STRUT_MOST_GROUPS * STRUT_MOST_Y + 1 };
@@ -172,8 +173,8 @@ static strut_status draw(maker *m, const char *path, strut_error *error) {
                                draw_panel, m, error);
 }
 
-strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
-                                const strut_table *table, strut_error *error) {
+static strut_status draw_table(const char *path, const strut_table_figure *figure,
+                               const strut_table *table, strut_error *error) {
   maker m = {.figure = figure, .table = table};
   strut_status status = strut_table_numbers(table, figure->x, error);
   for (int k = 0; k < figure->y_count && status == STRUT_OK; k++)
@@ -189,5 +190,18 @@ strut_status strut_table_curves(const char *path, const strut_table_figure *figu
     status = draw(&m, path, error);
   }
   strut_arena_free(&m.arena);
+  return status;
+}
+
+strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
+                                const strut_table *table, strut_error *error) {
+  strut_table_chosen chosen = {0};
+  const strut_table_pairing pairing = {.keys = {figure->x, figure->by, figure->panels},
+                                       .key_count = 3,
+                                       .values = figure->y,
+                                       .value_count = (size_t)figure->y_count};
+  strut_status status = strut_table_choose(table, &figure->choice, pairing, &chosen, error);
+  if (status == STRUT_OK) status = draw_table(path, figure, chosen.table, error);
+  strut_table_chosen_free(&chosen);
   return status;
 }

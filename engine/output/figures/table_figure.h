@@ -12,6 +12,16 @@
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 
+/** Which rows are drawn, and against which. */
+typedef struct strut_table_choice {
+  int only; /* those whose column has the text `only_value` */
+  const char *only_value;
+  int difference; /* its two texts are two sides: the second less the first; a map of the second, with
+                     doubt where the first says otherwise */
+} strut_table_choice;
+#define STRUT_TABLE_ALL                                                                            \
+  { .only = STRUT_NO_COLUMN, .difference = STRUT_NO_COLUMN }
+
 /** What of a table is drawn how. Columns by number, STRUT_NO_COLUMN for none. */
 typedef struct strut_table_figure {
   const char *title; /* may be NULL */
@@ -22,6 +32,7 @@ typedef struct strut_table_figure {
   int band;          /* grey where it has the text `band_value`: half way to the next points */
   const char *band_value;
   bool log_x, log_y;
+  strut_table_choice choice;
 } strut_table_figure;
 
 /**

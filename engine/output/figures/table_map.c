@@ -8,6 +8,7 @@
 #include "engine/output/draw/map.h"
 #include "engine/output/draw/work_precision.h"
 #include "engine/output/figures/table_parts.h"
+#include "engine/output/figures/table_select.h"
 
 static const double PANEL_WIDTH = 200, ASPECT = 0.8;
 enum { MOST_CELLS = 4000000 };
@@ -167,8 +168,8 @@ static strut_status prepare(mapper *m, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
-                             const strut_table *table, strut_error *error) {
+static strut_status draw_table(const char *path, const strut_table_map_figure *figure,
+                               const strut_table *table, strut_error *error) {
   mapper m = {.figure = figure, .table = table};
   strut_status status = prepare(&m, error);
   const strut_panel_page page = {.width = figure->width,
@@ -178,6 +179,23 @@ strut_status strut_table_map(const char *path, const strut_table_map_figure *fig
   if (status == STRUT_OK)
     status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_panel, &m, error);
   strut_arena_free(&m.arena);
+  return status;
+}
+
+strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
+                             const strut_table *table, strut_error *error) {
+  strut_table_chosen chosen = {0};
+  strut_table_map_figure drawn = *figure;
+  const strut_table_pairing pairing = {.keys = {figure->x, figure->y, figure->panels},
+                                       .key_count = 3,
+                                       .values = &figure->value,
+                                       .value_count = 1};
+  strut_status status = strut_table_choose(table, &figure->choice, pairing, &chosen, error);
+  if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
+      !table->columns[figure->value].value)
+    drawn.doubt = (int)chosen.table->column_count - 1;
+  if (status == STRUT_OK) status = draw_table(path, &drawn, chosen.table, error);
+  strut_table_chosen_free(&chosen);
   return status;
 }
 

@@ -13,6 +13,7 @@ typedef struct strut_table_map_figure {
   double width;      /* [pt] */
   int x, y, value;   /* value: texts are categories, numbers get a scale of colours */
   int panels, doubt; /* doubt: hatched where it is not empty, 0, false or no */
+  strut_table_choice choice;
 } strut_table_map_figure;
 
 /**

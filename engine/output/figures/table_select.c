@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/figures/table_select.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/output/figures/table_parts.h"
+
+static strut_status no_memory(strut_error *error) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+}
+
+/* A copy of the columns with the rows named (count) and room for one column more. */
+static strut_status take_rows(const strut_table *table, const size_t *rows, size_t count,
+                              strut_table *some, strut_error *error) {
+  some->row_count = count;
+  some->column_count = table->column_count;
+  some->columns =
+      strut_arena_allocate(&some->arena, table->column_count + 1, sizeof *some->columns);
+  if (!some->columns) return no_memory(error);
+  for (size_t i = 0; i < table->column_count; i++) {
+    const strut_table_column *from = &table->columns[i];
+    const char **text = strut_arena_allocate(&some->arena, count, sizeof *text);
+    double *value = strut_arena_allocate(&some->arena, count, sizeof *value);
+    if (!text || !value) return no_memory(error);
+    for (size_t k = 0; k < count; k++) {
+      text[k] = from->text[rows[k]];
+      if (from->value) value[k] = from->value[rows[k]];
+    }
+    some->columns[i] = (strut_table_column){
+        .name = from->name, .unit = from->unit, .text = text, .value = from->value ? value : NULL};
+  }
+  return STRUT_OK;
+}
+
+/* Numbers of the rows with that text, in the arena; NULL: memory is out. */
+static size_t *rows_with(const strut_table *table, int column, const char *text, strut_arena *arena,
+                         size_t *count) {
+  size_t *rows = strut_arena_allocate(arena, table->row_count + 1, sizeof *rows);
+  *count = 0;
+  for (size_t i = 0; rows && i < table->row_count; i++)
+    if (strut_table_belongs(table, column, text, i)) rows[(*count)++] = i;
+  return rows;
+}
+
+strut_status strut_table_only(const strut_table *table, int column, const char *text,
+                              strut_table *some, strut_error *error) {
+  size_t count;
+  *some = (strut_table){0};
+  size_t *rows = rows_with(table, column, text, &some->arena, &count);
+  if (!rows) return no_memory(error);
+  if (!count)
+    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
+                      table->columns[column].name);
+  return take_rows(table, rows, count, some, error);
+}
+
+/* A row that knows where its keys are, to be sorted. */
+typedef struct keyed {
+  const strut_table *table;
+  const strut_table_pairing *pairing;
+  size_t row;
+} keyed;
+
+/* Numbers by size, those that are none first; texts by their letters. */
+static int compare_keys(const void *a, const void *b) {
+  const keyed *one = a, *two = b;
+  for (size_t i = 0; i < one->pairing->key_count; i++) {
+    int column = one->pairing->keys[i];
+    if (column == STRUT_NO_COLUMN) continue;
+    const strut_table_column *c = &one->table->columns[column];
+    int order;
+    if (c->value) {
+      double x = c->value[one->row], y = c->value[two->row];
+      order = isnan(x) || isnan(y) ? isnan(y) - isnan(x) : (x > y) - (x < y);
+    } else {
+      order = strcmp(c->text[one->row], c->text[two->row]);
+    }
+    if (order) return order;
+  }
+  return 0;
+}
+
+typedef struct sides {
+  strut_table_groups names; /* two */
+  size_t *second, second_count;
+  keyed *first; /* (first_count) sorted */
+  size_t first_count;
+} sides;
+
+static strut_status find_sides(const strut_table *table, const strut_table_pairing *p, sides *s,
+                               strut_arena *arena, strut_error *error) {
+  const char *name = table->columns[p->of].name;
+  strut_status status =
+      strut_table_groups_find(table, p->of, 2, "sides to compare", &s->names, error);
+  if (status) return status;
+  if (s->names.count < 2)
+    return strut_fail(error, STRUT_USAGE,
+                      "column '%.60s' has one text, '%.60s': there is nothing to compare", name,
+                      s->names.name[0]);
+  size_t *rows = rows_with(table, p->of, s->names.name[0], arena, &s->first_count);
+  s->second = rows_with(table, p->of, s->names.name[1], arena, &s->second_count);
+  s->first = strut_arena_allocate(arena, s->first_count, sizeof *s->first);
+  if (!rows || !s->second || !s->first) return no_memory(error);
+  for (size_t i = 0; i < s->first_count; i++)
+    s->first[i] = (keyed){.table = table, .pairing = p, .row = rows[i]};
+  qsort(s->first, s->first_count, sizeof *s->first, compare_keys);
+  return STRUT_OK;
+}
+
+/* What the rows say of one column: numbers are subtracted, different texts marked. */
+static bool compare_column(const strut_table *table, const sides *s, const size_t *partner,
+                           int column, strut_table *out, const char **mark) {
+  strut_table_column *to = &out->columns[column];
+  const strut_table_column *from = &table->columns[column];
+  for (size_t k = 0; !from->value && k < s->second_count; k++)
+    if (partner[k] == SIZE_MAX || strcmp(from->text[partner[k]], to->text[k]) != 0) mark[k] = "1";
+  if (!from->value) return true;
+  double *value = strut_arena_allocate(&out->arena, s->second_count, sizeof *value);
+  to->name = strut_arena_format(&out->arena, "%s, %s less %s", from->name, s->names.name[1],
+                                s->names.name[0]);
+  if (!value || !to->name) return false;
+  for (size_t k = 0; k < s->second_count; k++)
+    value[k] = partner[k] == SIZE_MAX ? (double)NAN : to->value[k] - from->value[partner[k]];
+  to->value = value;
+  return true;
+}
+
+static strut_status compare(const strut_table *table, const strut_table_pairing *p, const sides *s,
+                            strut_table *out, strut_error *error) {
+  size_t *partner = strut_arena_allocate(&out->arena, s->second_count, sizeof *partner);
+  const char **mark = strut_arena_allocate(&out->arena, s->second_count, sizeof *mark);
+  const char *name = strut_arena_format(&out->arena, "%s: other", s->names.name[0]);
+  if (!partner || !mark || !name) return no_memory(error);
+  for (size_t k = 0; k < s->second_count; k++) {
+    const keyed wanted = {.table = table, .pairing = p, .row = s->second[k]};
+    const keyed *found = bsearch(&wanted, s->first, s->first_count, sizeof *s->first, compare_keys);
+    partner[k] = found ? found->row : SIZE_MAX;
+    mark[k] = "0";
+  }
+  for (size_t i = 0; i < p->value_count; i++)
+    if (!compare_column(table, s, partner, p->values[i], out, mark)) return no_memory(error);
+  out->columns[out->column_count++] = (strut_table_column){.name = name, .unit = "", .text = mark};
+  return STRUT_OK;
+}
+
+strut_status strut_table_difference(const strut_table *table, const strut_table_pairing *pairing,
+                                    strut_table *difference, strut_error *error) {
+  sides s;
+  *difference = (strut_table){0};
+  strut_status status = find_sides(table, pairing, &s, &difference->arena, error);
+  if (!status) status = take_rows(table, s.second, s.second_count, difference, error);
+  return status ? status : compare(table, pairing, &s, difference, error);
+}
+
+strut_status strut_table_choose(const strut_table *table, const strut_table_choice *choice,
+                                strut_table_pairing pairing, strut_table_chosen *chosen,
+                                strut_error *error) {
+  strut_status status = STRUT_OK;
+  chosen->table = table;
+  if (choice->only != STRUT_NO_COLUMN) {
+    status = strut_table_only(table, choice->only, choice->only_value, &chosen->some, error);
+    chosen->table = &chosen->some;
+  }
+  if (status || choice->difference == STRUT_NO_COLUMN) return status;
+  pairing.of = choice->difference;
+  status = strut_table_difference(chosen->table, &pairing, &chosen->difference, error);
+  chosen->table = &chosen->difference;
+  return status;
+}
+
+void strut_table_chosen_free(strut_table_chosen *chosen) {
+  strut_arena_free(&chosen->some.arena);
+  strut_arena_free(&chosen->difference.arena);
+}

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""strut sweep with variants: their rows are those of studies with the same keys, each by itself.
+
+usage: variants_test.py STRUT
+"""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+
+strut = os.path.realpath(sys.argv[1])
+os.chdir(tempfile.mkdtemp())
+failures = 0
+
+
+def check(good, text):
+    global failures
+    if not good:
+        failures += 1
+        print("FAILED:", text)
+
+
+def write(name, text):
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def sweep(name, text, *words, code=0):
+    write(name + ".yaml", text)
+    done = subprocess.run([strut, "sweep", name + ".yaml", "-o", name, "--quiet", *words],
+                          capture_output=True, text=True)
+    check(done.returncode == code, f"{name}: exit code {done.returncode}: {done.stderr}")
+    if not os.path.exists(f"{name}/table.csv"):
+        return done.stderr, []
+    return done.stderr, list(csv.DictReader(open(f"{name}/table.csv", newline="")))
+
+
+write("block.yaml", """strut: 1
+name: Block
+parameters: {stiffness: 100 N/m, mass: 1 kg, step: 1 ms, place: "near"}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  block: {position: [1, 0], mass: mass, fixed: y}
+members:
+  spring: {kind: spring, nodes: [wall, block], stiffness: stiffness, damping: 1 N s/m}
+configurations: {near: {}, far: {block: [1.2, 0]}}
+initial: {configuration: place}
+solver: {step: step}
+run: {duration: 0.5 s, measure: {node: block}}
+""")
+STUDY = """strut: 1
+study: one
+model: block.yaml
+axes:
+  - mass: [1 kg, 2 kg]
+  - stiffness: {from: 100, to: 200, step: 50}
+solver: {integrator: verlet}
+keep: [velocity, distance, steps, step, duration, positions, energy]
+"""
+KEYS = {"near": "{solver: {step: 2 ms}}",
+        "far": "{initial: {configuration: far}, run: {duration: 0.25 s, measure: {last: 0.1 s}}}",
+        "rk4": "{solver: {integrator: rk4}, initial: {configuration: far}}"}
+variants = STUDY + "variants:\n" + "".join(f"  {name}: {keys}\n" for name, keys in KEYS.items())
+_, table = sweep("all", variants)
+check([row["variant"] for row in table] == [name for name in KEYS for _ in range(6)],
+      "variants are the slowest axis, in the order of the file")
+for name, keys in KEYS.items():
+    text = STUDY.replace("solver: {integrator: verlet}\n", "")
+    if name == "rk4":
+        text += "solver: {integrator: rk4}\n"
+    else:
+        text += "solver: {integrator: verlet%s}\n" % (", step: 2 ms" if name == "near" else "")
+    if name != "near":
+        text += "initial: {configuration: far}\n"
+    if name == "far":
+        text += "run: {duration: 0.25 s, measure: {last: 0.1 s}}\n"
+    _, alone = sweep(name, text)
+    of_all = [row for row in table if row["variant"] == name]
+    check(len(alone) == len(of_all) == 6, f"{name}: {len(alone)}, {len(of_all)} rows")
+    for one, other in zip(alone, of_all):
+        for column in one:
+            if column != "point":
+                check(one[column] == other[column],
+                      f"{name}: {column}: alone {one[column]}, as a variant {other[column]}")
+check(len({row["velocity [m/s]"] for row in table}) == 13,
+      "variants are alike, but for those that begin at rest")
+
+# Their names and their keys decide results, their figures do not.
+said, _ = sweep("all", variants.replace("  rk4:", "  other:"), code=1)
+check("another study" in said, said)
+said, _ = sweep("all", variants.replace("step: 2 ms", "step: 1 ms"), code=1)
+check("another study" in said, said)
+figures = """figures:
+  near: {x: stiffness, y: velocity, series: mass, only: variant=near}
+  less: {x: stiffness, y: velocity, series: mass, panels: variant, difference: mass}
+"""
+sweep("all", variants + figures)
+check(os.path.exists("all/near.svg") and os.path.exists("all/less.svg"), "figures")
+for old, new, wanted in (("only: variant=", "only: varian=", "did you mean 'variant'?"),
+                         ("only: variant=near", "only: variant", "'only' expects COLUMN=TEXT"),
+                         ("difference: mass", "difference: mas", "did you mean 'mass'?")):
+    said, _ = sweep("all", variants + figures.replace(old, new), code=2)
+    check(wanted in said, said)
+said, _ = sweep("all", variants + figures.replace("=near", "=nea"), code=1)
+check("no row of the table has 'nea'" in said, said)
+said, _ = sweep("all", variants, "--set", "variant=near", code=2)
+check("variant" in said, said)
+
+# The same bytes whatever the threads and shards.
+sweep("two", variants, "--threads", "1")
+check(open("two/table.csv").read() == open("all/table.csv").read(), "one thread: table")
+for shard in ("0/4", "1/4", "2/4", "3/4"):
+    sweep("shards", variants, "--shard", shard)
+subprocess.run([strut, "merge", "shards"], check=True, capture_output=True)
+check(open("shards/table.csv").read() == open("all/table.csv").read(), "shards: table")
+print(f"{failures} failures")
+sys.exit(failures > 0)
