@@ -14,8 +14,10 @@ int32_t strut_batch_widest(void) {
 #endif
 }
 
+bool strut_batch_knows(const strut_integrator *method) { return method == &strut_integrator_rk4; }
+
 bool strut_batch_possible(const strut_model *model, const strut_integrator *method) {
-  return method == &strut_integrator_rk4 && strut_lanes_possible(model);
+  return strut_batch_knows(method) && strut_lanes_possible(model);
 }
 
 strut_batch *strut_batch_create(const strut_model *first, const strut_integrator *method,

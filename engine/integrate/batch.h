@@ -15,7 +15,9 @@ typedef struct strut_batch strut_batch;
 
 /** The most lanes that this processor steps at once: 8, 4 or 2. */
 STRUT_API int32_t strut_batch_widest(void);
-/** Can the method step this model in lanes? */
+/** Has the method lanes at all? */
+STRUT_API bool strut_batch_knows(const strut_integrator *method);
+/** Can it step this model in lanes? */
 STRUT_API bool strut_batch_possible(const strut_model *model, const strut_integrator *method);
 
 /**

@@ -18,7 +18,7 @@ typedef struct seat {
 typedef struct hall {
   const strut_batch_source *source;
   strut_batch *batch; /* NULL: all runs are run alone */
-  bool more;
+  bool more; /* the next point is worth asking for */
   int32_t width, taken;
   strut_step_limits limits;
   seat seats[STRUT_MOST_LANES];
@@ -28,6 +28,7 @@ static void end(hall *h, seat *s, strut_status status) {
   strut_batch_point point = s->point;
   status = strut_run_end(&s->run, status);
   h->source->result(h->source->context, &point, status, &s->summary, &s->error);
+  h->more = true;
 }
 
 /* To the end, in the caller's own time. */
@@ -159,10 +160,10 @@ void strut_simulate_batch(const strut_batch_source *source) {
     if (!h.taken) break;
     if (too_few(&h)) {
       finish_last(&h);
-      break;
+    } else {
+      step(&h);
+      look(&h);
     }
-    step(&h);
-    look(&h);
   } while (h.taken || h.more);
   strut_batch_free(h.batch);
 }

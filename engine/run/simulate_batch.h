@@ -21,7 +21,7 @@ typedef struct strut_batch_point {
 
 typedef struct strut_batch_source {
   void *context;
-  /** Fills the next point; false: there is none left, or none is wanted any more. */
+  /** Fills the next point; false: there is none now. After a result it is asked again. */
   bool (*next)(void *context, strut_batch_point *point);
   /** A point's end, in any order: as strut_simulate returned it. The summary belongs to the callee,
       and so do again the model and the options. */

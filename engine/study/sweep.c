@@ -6,8 +6,8 @@
 #include <omp.h>
 #endif
 
+#include "engine/integrate/batch.h"
 #include "engine/run/simulate.h"
-#include "engine/study/grid.h"
 #include "engine/study/sweep_parts.h"
 
 /* Time between two reports [s]. */
@@ -19,7 +19,8 @@ typedef struct sweep {
   strut_slots *slots;
   strut_sweep_state *state;
   double began, told;
-  bool stopped;        /* read and written atomically */
+  int64_t next; /* of the file's points; read and written atomically, as the next one */
+  bool stopped;
   strut_status status; /* of what stopped it, and why */
   strut_error *error;
 } sweep;
@@ -33,14 +34,6 @@ int strut_sweep_threads(void) {
   return given > 0 && given < threads ? given : threads;
 #else
   return 1;
-#endif
-}
-
-static int thread_number(void) {
-#ifdef _OPENMP
-  return omp_get_thread_num();
-#else
-  return 0;
 #endif
 }
 
@@ -96,25 +89,55 @@ static void count_point(sweep *s, int64_t point, const strut_slot *row) {
   }
 }
 
-static void visit(sweep *s, int64_t i, strut_sweep_room *room) {
-  strut_error error;
-  int64_t point = strut_slots_point(s->slots, i);
-  if (strut_slots_done(s->slots, point) || !going(s)) return;
-  strut_status status = strut_sweep_point(&s->worker, point, room, &error);
-  if (!status) status = strut_slots_put(s->slots, point, &room->row, &error);
-  if (status)
-    stop(s, status, &error);
-  else
-    count_point(s, point, &room->row);
+/* The next point without a result; false: there is none, or none is wanted. */
+static bool next_point(void *context, int64_t *point) {
+  sweep *s = context;
+  int64_t count = strut_slots_plan_of(s->slots)->count, i = 0;
+  while (going(s)) {
+#ifdef _OPENMP
+#pragma omp atomic capture
+#endif
+    i = s->next++;
+    if (i >= count) return false;
+    *point = strut_slots_point(s->slots, i);
+    if (!strut_slots_done(s->slots, *point)) return true;
+  }
+  return false;
 }
 
-static void visit_all(sweep *s, int threads, strut_sweep_room *rooms) {
-  int64_t count = strut_slots_plan_of(s->slots)->count;
+static void take_point(void *context, const strut_sweep_job *job) {
+  sweep *s = context;
+  strut_error error = {0};
+  strut_status status = job->status;
+  if (!status) status = strut_slots_put(s->slots, job->point, &job->room.row, &error);
+  if (status)
+    stop(s, status, job->status ? &job->error : &error);
+  else
+    count_point(s, job->point, &job->room.row);
+}
+
+static void work(sweep *s, int threads, int32_t lanes, strut_sweep_job *jobs) {
+  const strut_sweep_queue queue = {s, next_point, take_point};
   (void)threads;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
 #endif
-  for (int64_t i = 0; i < count; i++) visit(s, i, &rooms[thread_number()]);
+  for (int i = 0; i < threads; i++) strut_sweep_work(&s->worker, &queue, jobs + i * lanes, lanes);
+}
+
+/* No more lanes on each processor than there are points for it. */
+static int32_t lanes_for(int wanted, int threads, int64_t points) {
+  int32_t widest = strut_batch_widest(), lanes = 1;
+  if (wanted > 0 && wanted < widest) widest = wanted;
+  while (2 * lanes <= widest && (int64_t)lanes * threads < points) lanes *= 2;
+  return lanes;
+}
+
+static strut_sweep_job *make_jobs(const strut_sweep_plan *plan, strut_arena *arena, size_t count) {
+  strut_sweep_job *jobs = strut_arena_allocate(arena, count, sizeof *jobs);
+  for (size_t i = 0; i < count && jobs; i++)
+    if (!make_room(plan, arena, &jobs[i].room)) return NULL;
+  return jobs;
 }
 
 strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
@@ -128,16 +151,15 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
              .state = state,
              .began = strut_run_clock(),
              .error = error ? error : &own};
-  strut_sweep_room *rooms = strut_arena_allocate(&arena, (size_t)threads, sizeof *rooms);
-  bool fine = rooms && s.worker.standing;
-  for (int i = 0; i < threads && fine; i++) fine = make_room(plan, &arena, &rooms[i]);
+  int32_t lanes = lanes_for(options->lanes, threads, strut_slots_missing(slots));
+  strut_sweep_job *jobs = make_jobs(plan, &arena, (size_t)threads * (size_t)lanes);
   int64_t count = strut_slots_plan_of(slots)->count;
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),
                                .failed = strut_slots_failed(slots),
                                .last = -1};
-  if (fine)
-    visit_all(&s, threads, rooms);
+  if (jobs && s.worker.standing)
+    work(&s, threads, lanes, jobs);
   else
     s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
   if (!s.status && options->interrupt && *options->interrupt && state->done < count)

@@ -55,6 +55,7 @@ typedef struct strut_sweep_state {
 
 typedef struct strut_sweep_options {
   int threads;                            /* 0: strut_sweep_threads */
+  int lanes; /* points at a time on one processor, where they are alike; 0: as it is good for */
   const volatile sig_atomic_t *interrupt; /* may be NULL */
   const char *directory;                  /* of runs, where trajectories are wanted */
   /** A few times a second, one thread at a time; may be NULL. */

@@ -5,8 +5,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_PARTS_H
 #define STRUT_ENGINE_STUDY_SWEEP_PARTS_H
 
-#include "engine/run/recorder.h"
-#include "engine/run/summary.h"
+#include "engine/run/simulate.h"
 #include "engine/study/standing.h"
 #include "engine/study/sweep.h"
 
@@ -36,12 +35,50 @@ typedef struct strut_sweep_worker {
   strut_standing *standing;
 } strut_sweep_worker;
 
-/**
- * Computes a point into room->row. STRUT_OK also where the point failed, which the row says; else what
- * stops the sweep.
- */
-strut_status strut_sweep_point(const strut_sweep_worker *worker, int64_t point,
-                               strut_sweep_room *room, strut_error *error);
+typedef enum strut_sweep_stage {
+  STRUT_SWEEP_IDLE,    /* no point */
+  STRUT_SWEEP_WAITING, /* for the run of `scene` with `options` */
+  STRUT_SWEEP_RUNNING
+} strut_sweep_stage;
+
+/** A point on its way. It stays where it is while it has one. */
+typedef struct strut_sweep_job {
+  strut_sweep_stage stage;
+  int64_t point;
+  strut_sweep_room room;
+  strut_scene scene;
+  strut_model *model; /* of the scene, where someone has compiled it */
+  strut_run_options options;
+  strut_sink *sinks[1];
+  struct strut_sweep_record *files;
+  char first[STRUT_SLOT_WORD]; /* what the first run came to, while the second is made */
+  bool second;
+  strut_status status; /* at the end: STRUT_OK, and room.row is filled; else what stops the sweep */
+  strut_error error;
+} strut_sweep_job;
+
+/** An idle job gets a point. True: it waits for its run. False: it is over already. */
+bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
+/** Takes what the run came to, and frees the summary. True: it waits for another run. */
+bool strut_sweep_job_take(const strut_sweep_worker *worker, strut_sweep_job *job,
+                          strut_status status, strut_summary *summary, const strut_error *error);
+/** The model of a waiting job, if it has none yet. */
+strut_status strut_sweep_job_compile(strut_sweep_job *job);
+/** All runs that a waiting job wants, one after the other. */
+void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *job);
+
+/* sweep_lanes.c */
+
+/** Where one thread's points come from and go to. */
+typedef struct strut_sweep_queue {
+  void *context;
+  bool (*next)(void *context, int64_t *point);
+  void (*over)(void *context, const strut_sweep_job *job);
+} strut_sweep_queue;
+
+/** Works on the queue until it is empty, `lanes` points at a time where they can go side by side. */
+void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
+                      strut_sweep_job *jobs, int32_t lanes);
 
 /* sweep_record.c */
 

@@ -19,6 +19,8 @@
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "where the results are, and go on"},
     {STRUT_OPTION_THREADS, "threads", "N", "points at a time; as many as there are processors"},
+    {STRUT_OPTION_LANES, "lanes", "N",
+     "points at a time on one processor, 1, 2, 4 or 8; as many as it is good for"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
      "only every N-th point from K on, counted from 0; or slurm/N"},
     {STRUT_OPTION_EMIT, "emit", "slurm", "only print the script for a cluster with Slurm"},
@@ -34,8 +36,13 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-enum { MOST_THREADS = 4096 };
+enum { MOST_THREADS = 4096, MOST_LANES = 8 };
 static const char table_name[] = "table.csv";
+
+/* How many points at a time; 0: as is good. */
+typedef struct pace {
+  int64_t threads, lanes;
+} pace;
 
 /* DIR/name in the study's memory; NULL: memory is out. */
 static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
@@ -99,10 +106,11 @@ static strut_status keep_texts(const strut_arguments *arguments, const strut_swe
 }
 
 static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               int threads, strut_slots *slots, strut_sweep_state *state,
+                               pace at_a_time, strut_slots *slots, strut_sweep_state *state,
                                strut_error *error) {
   strut_sweep_progress progress = strut_sweep_progress_begin(&study->plan, arguments->quiet);
-  const strut_sweep_options how = {.threads = threads,
+  const strut_sweep_options how = {.threads = (int)at_a_time.threads,
+                                   .lanes = (int)at_a_time.lanes,
                                    .interrupt = strut_interrupt_watch(),
                                    .directory = arguments->output,
                                    .progress = strut_sweep_progress_show,
@@ -144,7 +152,7 @@ static strut_status finish(const strut_arguments *arguments, strut_sweep_study *
   return STRUT_DIVERGED;
 }
 
-static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study, int threads) {
+static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study, pace at_a_time) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};
@@ -157,7 +165,7 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
   if (!status && !shard.count && strut_slots_missing(slots) > 0)
     strut_file_remove(arguments->output, table_name); /* it would be another sweep's */
-  if (!status) status = run_points(arguments, study, threads, slots, &state, &error);
+  if (!status) status = run_points(arguments, study, at_a_time, slots, &state, &error);
   complain(status, &error);
   if (!status) status = finish(arguments, study, shard, slots, &state);
   strut_slots_close(slots);
@@ -166,9 +174,12 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
 
 static strut_status run(const strut_arguments *arguments) {
   strut_sweep_study study = {0};
-  int64_t threads = 0;
+  pace at_a_time = {0};
   strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
-                                             1, MOST_THREADS, &threads);
+                                             1, MOST_THREADS, &at_a_time.threads);
+  if (!status)
+    status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_LANES, 1,
+                                  MOST_LANES, &at_a_time.lanes);
   if (status) return status;
   if (!arguments->output && !arguments->tally) {
     fputs("strut sweep: -o DIR is missing, where the results go\n", stderr);
@@ -182,7 +193,7 @@ static strut_status run(const strut_arguments *arguments) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status)
-    status = sweep(arguments, &study, (int)threads);
+    status = sweep(arguments, &study, at_a_time);
   strut_sweep_study_close(&study);
   return status;
 }

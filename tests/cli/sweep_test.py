@@ -153,6 +153,52 @@ def the_same_bytes():
     check(read("shards/table.csv") == read("one/table.csv"), "shards: table")
 
 
+# Points that fail or have other terms stand between those that go side by side; all are run twice.
+MIXED = f"""strut: 1
+study: mixed
+model: {models}/crawler/crawler.yaml
+axes:
+  - start: [I, II]
+  - step: [0.1 ms, 10 ms]
+  - friction: [0, 0, 0.1, 0.1, 0.1, 0, 0, 0, 0, 0, 0, 0.5]
+run: {{periods: 10, measure: {{last: 1}}}}
+check: {{half_step: yes}}
+"""
+MOTIONS = f"""strut: 1
+study: motions
+model: {models}/crawler/crawler.yaml
+axes:
+  - frequency: {{from: 8 Hz, to: 16 Hz, count: 11}}
+run: {{periods: 10, measure: {{last: 1}}}}
+trajectories: yes
+"""
+
+
+def lanes_change_nothing():
+    write("mixed.yaml", MIXED)
+    write("motions.yaml", MOTIONS)
+    ends = {"crawler": 0, "mixed": 3, "motions": 0}
+    for name, code in ends.items():
+        run("sweep", f"{name}.yaml", "-o", f"{name}-1", "--lanes", "1", "--threads", "1",
+            "--quiet", code=code)
+        for lanes, threads in ((3, 1), (4, 2), (8, 1)):
+            folder = f"{name}-{lanes}-{threads}"
+            run("sweep", f"{name}.yaml", "-o", folder, "--lanes", f"{lanes}", "--threads",
+                f"{threads}", "--quiet", code=code)
+            for file in ("table.csv", "points.slots"):
+                check(read(f"{folder}/{file}") == read(f"{name}-1/{file}"), f"{folder}/{file}")
+    table = rows("mixed-1/table.csv")
+    check(len(table) == 48 and [row["status"] for row in table].count("completed") == 24,
+          "half of the mixed points fail")
+    check(all(float(row["check_velocity [m/s]"]) != float(row["velocity [m/s]"])
+              for row in table if row["status"] == "completed"), "mixed: half the step")
+    for n in range(11):
+        for file in ("summary.json", "trajectory.h5", "scene.yaml"):
+            name = f"runs/{n:09d}/{file}"
+            check(read(f"motions-8-1/{name}") == read(f"motions-1/{name}"), name)
+    run("sweep", "mixed.yaml", "-o", "mixed-9", "--lanes", "9", code=1)
+
+
 def killed_and_resumed():
     before = 0
     for n in range(kills):
@@ -340,7 +386,7 @@ keep: [velocity]
 
 
 try:
-    for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes,
+    for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes, lanes_change_nothing,
                  killed_and_resumed, interrupted, points_that_fail, checked_again, figures, trajectories,
                  what_has_changed_is_refused, wrong_use, memory_is_flat):
         began = time.time()

@@ -23,7 +23,7 @@ typedef struct search {
   const strut_critical_effort *effort;
   strut_critical_set *set;
   strut_gathering all;
-  strut_batch *batch;
+  strut_descents *batch;
   strut_task task[STRUT_BATCH];
   size_t tasks;
   int64_t random, room; /* random starts made; how many points `hits` has room for */
@@ -71,7 +71,7 @@ static strut_status read_result(search *s, const strut_task *task,
 }
 
 static strut_status run(search *s) {
-  const strut_task_result *result = strut_batch_run(s->batch, s->task, s->tasks);
+  const strut_task_result *result = strut_descents_run(s->batch, s->task, s->tasks);
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < s->tasks && !status; i++) {
     s->spent += s->cost * (double)result[i].looks;
@@ -342,7 +342,7 @@ strut_status strut_critical_search(const strut_potential *potential,
   *set = (strut_critical_set){0};
   set_budget(&s);
   strut_gathering_start(&s.all, potential, &set->arena);
-  strut_status status = strut_batch_create(potential, effort->seed, climbs, &s.batch, error);
+  strut_status status = strut_descents_create(potential, effort->seed, climbs, &s.batch, error);
   if (!status) status = known_starts(&s);
   if (!status) status = random_starts(&s);
   if (!status) status = folded_minima(&s);
@@ -353,7 +353,7 @@ strut_status strut_critical_search(const strut_potential *potential,
   if (!status && s.random == 0) set->missed = set->missed_one = 1.0;
   if (!status) status = find_saddles(&s);
   if (!status) status = hand_over(&s);
-  strut_batch_free(s.batch);
+  strut_descents_free(s.batch);
   strut_gathering_free(&s.all);
   strut_release(s.hits);
   if (status) strut_critical_free(set);
