@@ -37,7 +37,8 @@ static strut_status no_scene(void *context, const strut_study_value *values, str
     if (write(log->file, &point, sizeof point) != sizeof point) abort();
     nanosleep(&pause, NULL);
   }
-  return strut_fail(error, STRUT_NOT_SETTLED, "no scene"); /* a number would cost more than it all */
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "no scene"); /* a number would cost more than it all */
 }
 
 static strut_study_column column = {.name = "a", .unit = "m", .kind = STRUT_RANGE_STEP, .step = 1};
