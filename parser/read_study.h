@@ -53,6 +53,13 @@ STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study
  * of texts; a block of strut_allocate, or NULL.
  */
 STRUT_API char *strut_study_identity(const strut_study_file *file);
+/**
+ * The study's text as it was written, but naming `model` as its model, so that it may stand beside a
+ * copy of that; comments at its end say what the model was, and what --set gave. A block of
+ * strut_allocate, or NULL.
+ */
+STRUT_API char *strut_study_copy(const strut_study_file *file, const char *model,
+                                 const strut_override *overrides, size_t override_count);
 STRUT_API void strut_study_close(strut_study_file *file);
 
 #endif

@@ -9,7 +9,7 @@
 #include "parser/text.h"
 #include "parser/writer.h"
 
-static void append(strut_writer *writer, const char *text, size_t length) {
+void strut_put_part(strut_writer *writer, const char *text, size_t length) {
   if (writer->failed) return;
   if (writer->length + length + 1 > writer->capacity) {
     size_t capacity = 2 * (writer->capacity + length + 1);
@@ -26,11 +26,11 @@ static void append(strut_writer *writer, const char *text, size_t length) {
   writer->text[writer->length] = '\0';
 }
 
-void strut_put(strut_writer *writer, const char *text) { append(writer, text, strlen(text)); }
+void strut_put(strut_writer *writer, const char *text) { strut_put_part(writer, text, strlen(text)); }
 
 void strut_put_number(strut_writer *writer, double value) {
   char text[STRUT_NUMBER_TEXT];
-  append(writer, text, strut_number_text(value, text));
+  strut_put_part(writer, text, strut_number_text(value, text));
 }
 
 void strut_put_pair(strut_writer *writer, const double pair[2]) {
@@ -53,7 +53,7 @@ static void put_escaped(strut_writer *writer, const char *text, size_t bytes, ui
     snprintf(escape, sizeof escape, code > 0xffff ? "\\U%08X" : "\\u%04X", (unsigned)code);
     strut_put(writer, escape);
   } else {
-    append(writer, text, bytes);
+    strut_put_part(writer, text, bytes);
   }
 }
 

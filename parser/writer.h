@@ -20,7 +20,9 @@ typedef struct strut_writer {
 
 /** Appends text as it is. */
 void strut_put(strut_writer *writer, const char *text);
-/** Appends a number as the shortest of %.15g, %.16g and %.17g that reads back to the same bits. */
+/** Appends some bytes of a text. */
+void strut_put_part(strut_writer *writer, const char *text, size_t length);
+/** Appends a number as the shortest text that reads back to the same bits. */
 void strut_put_number(strut_writer *writer, double value);
 /** Appends "[x, y]". */
 void strut_put_pair(strut_writer *writer, const double pair[2]);

@@ -327,3 +327,18 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_slot *row) {
                       .message = slots->message};
   return true;
 }
+
+strut_status strut_slots_retry(strut_slots *slots, strut_error *error) {
+  for (int64_t i = 0; i < slots->plan.count && strut_slots_failed(slots) > 0; i++) {
+    strut_slot row;
+    if (!is_done(slots, i)) continue;
+    if (!strut_slots_get(slots, strut_slots_point(slots, i), &row))
+      return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' has changed while it was read",
+                        slots->path);
+    if (row.status == STRUT_OK) continue;
+    atomic_fetch_and(&slots->done[i / BITS], ~((uint64_t)1 << i % BITS));
+    atomic_fetch_add(&slots->missing, 1);
+    atomic_fetch_sub(&slots->failed, 1);
+  }
+  return STRUT_OK;
+}

@@ -95,6 +95,11 @@ STRUT_API int64_t strut_slots_failed(const strut_slots *slots);
  */
 STRUT_API strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_slot *row,
                                        strut_error *error);
+/**
+ * Points that failed count as missing from now on. Their rows stay in the file until they have others,
+ * so that whoever opens it next finds them still, unless they were computed.
+ */
+STRUT_API strut_status strut_slots_retry(strut_slots *slots, strut_error *error);
 /** Waits until all rows have reached the disk. */
 STRUT_API strut_status strut_slots_sync(strut_slots *slots, strut_error *error);
 /**

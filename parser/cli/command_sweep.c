@@ -15,12 +15,14 @@
 #include "parser/cli/sweep_report.h"
 #include "parser/cli/sweep_shards.h"
 #include "parser/cli/sweep_study.h"
+#include "parser/cli/sweep_texts.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "where the results are, and go on"},
     {STRUT_OPTION_THREADS, "threads", "N", "points at a time; as many as there are processors"},
     {STRUT_OPTION_LANES, "lanes", "N",
      "points at a time on one processor, 1, 2, 4 or 8; as many as it is good for"},
+    {STRUT_OPTION_RETRY, "retry", NULL, "compute points that failed once more"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
      "only every N-th point from K on, counted from 0; or slurm/N"},
     {STRUT_OPTION_EMIT, "emit", "slurm", "only print the script for a cluster with Slurm"},
@@ -95,16 +97,6 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   return status;
 }
 
-/* The study and its model as they were, for the record. */
-static strut_status keep_texts(const strut_arguments *arguments, const strut_sweep_study *study,
-                               strut_error *error) {
-  strut_status status =
-      strut_file_write_text(arguments->output, "study.yaml", study->file.text, error);
-  return status ? status
-                : strut_file_write_text(arguments->output, "model.yaml", study->file.model_text,
-                                        error);
-}
-
 static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
                                pace at_a_time, strut_slots *slots, strut_sweep_state *state,
                                strut_error *error) {
@@ -115,7 +107,7 @@ static strut_status run_points(const strut_arguments *arguments, strut_sweep_stu
                                    .directory = arguments->output,
                                    .progress = strut_sweep_progress_show,
                                    .progress_context = &progress};
-  strut_status status = keep_texts(arguments, study, error);
+  strut_status status = strut_sweep_texts_write(arguments, study, error);
   if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
   strut_sweep_progress_end(&progress);
   strut_error late = {0};
@@ -160,9 +152,11 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
   const char *path;
   strut_status status = find_shard(arguments, study, &shard, &path);
   if (status) return status;
-  status = strut_directory_create(arguments->output, &error);
+  status = strut_sweep_texts_check(arguments, study, &error);
+  if (!status) status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, shard, &error);
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
   if (!status && !shard.count && strut_slots_missing(slots) > 0)
     strut_file_remove(arguments->output, table_name); /* it would be another sweep's */
   if (!status) status = run_points(arguments, study, at_a_time, slots, &state, &error);
@@ -181,6 +175,11 @@ static strut_status run(const strut_arguments *arguments) {
     status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_LANES, 1,
                                   MOST_LANES, &at_a_time.lanes);
   if (status) return status;
+  if (arguments->retry &&
+      (arguments->tally || arguments->status || strut_option_text(arguments, STRUT_OPTION_EMIT))) {
+    fputs("strut sweep: --retry is for computing, not for --count, --status or --emit\n", stderr);
+    return STRUT_USAGE;
+  }
   if (!arguments->output && !arguments->tally) {
     fputs("strut sweep: -o DIR is missing, where the results go\n", stderr);
     return STRUT_USAGE;
@@ -212,7 +211,8 @@ const strut_command strut_command_sweep = {
         "goes on where it was, and the table has the same bytes in the end, whatever the number "
         "of\n"
         "threads. Remove points.slots to begin anew.\n"
-        "A point that fails is a row that says why; the exit code is 3 then. Ctrl-C stops soon.\n",
+        "A point that fails is a row that says why; the exit code is 3 then, and only --retry\n"
+        "computes it again. Ctrl-C stops soon.\n",
     .options = options,
     .run = run,
 };

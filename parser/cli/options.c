@@ -135,6 +135,9 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     case STRUT_OPTION_STATUS:
       to->status = true;
       break;
+    case STRUT_OPTION_RETRY:
+      to->retry = true;
+      break;
     case STRUT_OPTION_HELP:
       to->help = true;
       break;

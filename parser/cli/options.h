@@ -32,6 +32,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_VARY,
   STRUT_OPTION_TALLY, /* how many points a study has */
   STRUT_OPTION_STATUS, /* how far a study is */
+  STRUT_OPTION_RETRY,  /* of a study's points that failed */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -108,7 +109,7 @@ typedef struct strut_arguments {
   const char **models; /* (model_count) all that are given: several where the command takes many */
   size_t model_count;
   const char *output;
-  bool help, json, quiet, force, stuck, own, csv, no_motion, no_states, tally, status;
+  bool help, json, quiet, force, stuck, own, csv, no_motion, no_states, tally, status, retry;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
   strut_override *overrides; /* (override_count) */
   size_t override_count;

@@ -42,7 +42,7 @@ def run(*words, code=0):
 
 
 def write(name, text):
-    with open(os.path.join(work, name), "w") as file:
+    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
         file.write(text)
 
 
@@ -267,6 +267,67 @@ keep: [velocity]
     check([f["point"] for f in status["failures"]] == [2, 3] and status["missing"] == 0, "status")
 
 
+def failed_points_once_more():
+    """A failed point is never computed again, but by --retry; what is done is not."""
+    def computed(*words):
+        done = subprocess.run([strut, "sweep", "fails.yaml", "-o", "fails", "--json", *words],
+                              cwd=work, capture_output=True, text=True)
+        check(done.returncode == 3, f"{words}: exit code {done.returncode}: {done.stderr}")
+        return json.loads(done.stdout)["computed"]
+    table, slots = read("fails/table.csv"), read("fails/points.slots")
+    check(computed() == 0, "failed points are computed again")
+    check(computed("--retry") == 2, "--retry")
+    check(read("fails/table.csv") == table and read("fails/points.slots") == slots, "--retry: table")
+    run("sweep", "fails.yaml", "-o", "shards2", "--shard", "1/2", "--quiet", code=3)
+    run("sweep", "fails.yaml", "-o", "shards2", "--shard", "0/2", "--retry", "--quiet", code=3)
+    run("sweep", "fails.yaml", "-o", "shards2", "--shard", "1/2", "--retry", "--quiet", code=3)
+    run("merge", "shards2", code=3)
+    check(read("shards2/table.csv") == table, "--retry of shards: table")
+    for word in ("--status", "--count"):
+        run("sweep", "fails.yaml", "-o", "fails", "--retry", word, code=1)
+
+
+def a_directory_stands_for_itself():
+    """study.yaml and model.yaml of the results make them again, wherever they are."""
+    os.makedirs(f"{work}/models/deep")
+    write("models/deep/block.yaml", BLOCK)
+    # Places of all kinds: in quotes, with an anchor, in a flow mapping, behind a wide character.
+    ways = ["model: models/deep/block.yaml   # where it is",
+            "model: 'models/deep/block.yaml'", "model: &m models/deep/block.yaml",
+            "model:\n  models/deep/block.yaml", "model: |-\n  models/deep/block.yaml"]
+    for n, way in enumerate(ways):
+        write("own.yaml", f"strut: 1\nstudy: \"\u00fc\"\n{way}\naxes: [{{mass: [1 kg, 2 kg]}}]\n")
+        run("sweep", "own.yaml", "-o", f"own{n}", "--set", "seconds=0.1 s", "--quiet")
+        copy = read(f"own{n}/study.yaml").decode()
+        check("# A copy; its model was models/deep/block.yaml" in copy, copy)
+        check("# It was run with --set seconds=0.1 s" in copy, copy)
+        os.rename(f"{work}/own{n}", f"{work}/models/moved{n}")
+        place = f"models/moved{n}"
+        run("sweep", f"{place}/study.yaml", "-o", f"again{n}", "--set", "seconds=0.1 s", "--quiet")
+        check(read(f"again{n}/table.csv") == read(f"{place}/table.csv"), f"{way}: table")
+        before = read(f"{place}/study.yaml"), read(f"{place}/model.yaml")
+        end = json.loads(run("sweep", f"{place}/study.yaml", "-o", place, "--set", "seconds=0.1 s",
+                             "--json").stdout)
+        check(end["computed"] == 0, f"{way}: not the same study")
+        check((read(f"{place}/study.yaml"), read(f"{place}/model.yaml")) == before, "copies of copies")
+    # A copy of a copy is the same text; a model that has changed is another study.
+    check(read("again0/study.yaml").count(b"A copy") == 1, "copies of copies")
+    write("models/moved0/model.yaml", BLOCK.replace("1 N s/m", "2 N s/m"))
+    run("sweep", "models/moved0/study.yaml", "-o", "again0", "--set", "seconds=0.1 s", code=1)
+    # What is not ours stays: results in the study's own folder.
+    os.makedirs(f"{work}/home")
+    write("home/block.yaml", BLOCK)
+    write("home/model.yaml", "another one")
+    write("home/mine.yaml", "strut: 1\nstudy: x\nmodel: block.yaml\naxes: [{mass: [1 kg]}]\n")
+    said = run("sweep", "home/mine.yaml", "-o", "home", code=1)
+    check("give another directory" in said.stderr, said.stderr)
+    check(sorted(os.listdir(f"{work}/home")) == ["block.yaml", "mine.yaml", "model.yaml"] and
+          read("home/model.yaml") == b"another one", "a file of the user's is gone")
+    os.remove(f"{work}/home/model.yaml")
+    run("sweep", "home/mine.yaml", "-o", "home", "--quiet")
+    run("sweep", "home/mine.yaml", "-o", "home", "--quiet")
+
+
 def checked_again():
     write("check.yaml", """strut: 1
 study: check
@@ -386,8 +447,10 @@ keep: [velocity]
 
 
 try:
-    for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes, lanes_change_nothing,
-                 killed_and_resumed, interrupted, points_that_fail, checked_again, figures, trajectories,
+    for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes,
+                 lanes_change_nothing, killed_and_resumed, interrupted, points_that_fail,
+                 failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
+                 trajectories,
                  what_has_changed_is_refused, wrong_use, memory_is_flat):
         began = time.time()
         test()

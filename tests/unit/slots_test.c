@@ -548,9 +548,46 @@ static void test_no_memory(void **unused) {
   scratch_remove();
 }
 
+/* Rows that failed are missing until they have others; in the file they stay till then. */
+static void test_failed_rows_once_more(void **unused) {
+  (void)unused;
+  scratch_make();
+  const char *path = scratch_path("a.slots");
+  const double numbers[] = {1.0, 2.0};
+  const char words[1][STRUT_SLOT_WORD] = {"well"};
+  const strut_slot good = {STRUT_OK, numbers, words, NULL};
+  strut_slots_plan plan = a_plan(1000);
+  strut_slot row;
+  make_file(path, 1000);
+  strut_slots *slots = open_slots(path, &plan);
+  assert_int_equal(strut_slots_failed(slots), 200);
+  assert_int_equal(strut_slots_retry(slots, NULL), STRUT_OK);
+  assert_int_equal(strut_slots_failed(slots), 0);
+  assert_int_equal(strut_slots_missing(slots), 200);
+  assert_false(strut_slots_done(slots, 4));
+  assert_true(strut_slots_done(slots, 5));
+  assert_int_equal(strut_slots_put(slots, 4, &good, NULL), STRUT_OK);
+  assert_int_equal(strut_slots_put(slots, 5, &good, NULL), STRUT_USAGE);
+  assert_int_equal(put(slots, 9, NULL), STRUT_OK); /* fails again */
+  assert_int_equal(strut_slots_missing(slots), 198);
+  assert_int_equal(strut_slots_failed(slots), 1);
+  strut_slots_close(slots);
+  slots = read_slots(path);
+  assert_int_equal(strut_slots_missing(slots), 0);
+  assert_int_equal(strut_slots_failed(slots), 199);
+  assert_true(strut_slots_get(slots, 4, &row));
+  assert_int_equal(row.status, STRUT_OK);
+  assert_string_equal(row.words[0], "well");
+  check_row(slots, 9);
+  check_row(slots, 14);
+  strut_slots_close(slots);
+  scratch_remove();
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_rows_come_back),
+      cmocka_unit_test(test_failed_rows_once_more),
       cmocka_unit_test(test_some_points_only),
       cmocka_unit_test(test_the_bytes_do_not_depend_on_the_order),
       cmocka_unit_test(test_a_file_that_is_cut),
