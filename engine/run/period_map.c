@@ -5,6 +5,8 @@
 #include <string.h>
 
 static const double TURN = 6.28318530717958647692;
+/* Members and nodes times steps between two looks at the interrupt flag. */
+static const int64_t STRETCH = 200000;
 
 strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
                                      int32_t repeats, strut_period_map *map, strut_error *error) {
@@ -37,6 +39,24 @@ static double mean_along(const strut_model *model, const double *q) {
   return sum / model->node_count;
 }
 
+bool strut_period_map_interrupted(const strut_period_map *map) {
+  return map->interrupt && *map->interrupt;
+}
+
+/* In stretches so long that looking around costs nothing, and so short that nobody waits. */
+static void advance(strut_period_map *map) {
+  const strut_model *model = map->model;
+  strut_state *state = map->state;
+  int64_t most = STRETCH / (model->members.count + model->node_count + 1) + 1;
+  int64_t left = map->steps * map->repeats;
+  state->interrupt = map->interrupt;
+  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map)) {
+    int64_t count = left < most ? left : most;
+    map->method->advance(model, state, map->workspace, map->dt, count);
+    left -= count;
+  }
+}
+
 double strut_period_map_apply(strut_period_map *map, double *y) {
   const strut_model *model = map->model;
   strut_state *state = map->state;
@@ -49,7 +69,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   state->refined_until = map->time + y[2 * model->length];
   strut_measure_track(model, state, &map->measure, &from, &speed);
   if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
-  map->method->advance(model, state, map->workspace, map->dt, map->steps * map->repeats);
+  advance(map);
   map->evaluations += state->evaluations;
   map->events += state->events;
   map->applied += map->repeats;
@@ -60,7 +80,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   double shift = map->travels ? mean_along(model, y) - before : 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     y[i] -= shift * model->contacts.tangent[i % 2];
-  return state->trouble ? (double)NAN : to - from;
+  return state->trouble || strut_period_map_interrupted(map) ? (double)NAN : to - from;
 }
 
 double strut_period_map_size(const strut_period_map *map, const double *d) {

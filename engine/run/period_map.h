@@ -9,6 +9,8 @@
 #ifndef STRUT_ENGINE_RUN_PERIOD_MAP_H
 #define STRUT_ENGINE_RUN_PERIOD_MAP_H
 
+#include <signal.h>
+
 #include "engine/integrate/integrator.h"
 #include "engine/run/measure.h"
 
@@ -24,6 +26,7 @@ typedef struct strut_period_map {
   int64_t steps;     /* of one drive period */
   int32_t repeats;   /* drive periods of one application */
   bool travels;
+  const volatile sig_atomic_t *interrupt; /* an application ends soon after it is set; may be NULL */
   int64_t evaluations, events, applied; /* so far; applied: drive periods */
 } strut_period_map;
 
@@ -32,12 +35,14 @@ strut_status strut_period_map_create(const strut_scene *scene, const strut_exper
                                      int32_t repeats, strut_period_map *map, strut_error *error);
 /**
  * y becomes the state `repeats` drive periods later, brought back along the ground. Returns how far
- * the measured point went [m]; NAN where the motion was lost.
+ * the measured point went [m]; NAN where the motion was lost or the application interrupted.
  */
 double strut_period_map_apply(strut_period_map *map, double *y);
 /** d = shape of `to` less that of `from`: the mean shift along the ground taken out. */
 void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
                                double *d);
+/** Was it told to stop? */
+bool strut_period_map_interrupted(const strut_period_map *map);
 /** Size of a difference: the largest of positions over the structure's size, and velocities over
     size times 2 pi f. */
 double strut_period_map_size(const strut_period_map *map, const double *d);

@@ -35,11 +35,15 @@ static strut_status shoot(strut_run *r) {
                                                 found->repeats, &map, r->error);
   if (!status) {
     map.time = (double)r->state->step * r->dt;
+    map.interrupt = r->options->interrupt;
     memcpy(y, r->state->q, length * sizeof *y);
     memcpy(y + length, r->state->v, length * sizeof *y);
     y[2 * length] = fmax(0.0, r->state->refined_until - map.time);
     status = strut_shoot(&map, y, &travel, found);
-    if (status) strut_fail(r->error, status, "out of memory");
+    if (status == STRUT_INTERRUPTED)
+      strut_fail(r->error, status, "interrupted at t = %.9g s, while the orbit was shot", map.time);
+    else if (status)
+      strut_fail(r->error, status, "out of memory");
   }
   if (!status && found->shot) {
     take_orbit(r, y);

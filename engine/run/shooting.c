@@ -118,7 +118,7 @@ static bool solve(shot *s) {
 /* Along the change, halved until the leftover falls; the new leftover, or the old one. */
 static double search_line(shot *s, double before, double *travel) {
   double part = 1.0;
-  for (int k = 0; k < MOST_HALVINGS; k++, part *= 0.5) {
+  for (int k = 0; k < MOST_HALVINGS && !strut_period_map_interrupted(s->map); k++, part *= 0.5) {
     double gone;
     memcpy(s->trial, s->here, s->both * sizeof(double));
     for (size_t i = 0; i < s->count; i++)
@@ -200,16 +200,17 @@ strut_status strut_shoot(strut_period_map *map, double *y, double *travel,
   choose_unknowns(&s);
   memcpy(s.here, y, s.both * sizeof(double));
   double gone = 0.0, left = iterate(&s, &gone, found);
-  if (left <= GOOD) {
+  bool interrupted = strut_period_map_interrupted(map);
+  if (!interrupted && left <= GOOD) {
     found->shot = true;
     found->residual = left;
     memcpy(y, s.here, s.both * sizeof(double));
     *travel = gone;
     take_multipliers(&s, found);
-  } else if (!found->reason[0]) {
+  } else if (!interrupted && !found->reason[0]) {
     snprintf(found->reason, sizeof found->reason,
              "Newton's method came no nearer than %.2g of the size", left);
   }
   strut_arena_free(&s.arena);
-  return STRUT_OK;
+  return interrupted ? STRUT_INTERRUPTED : STRUT_OK;
 }

@@ -20,7 +20,7 @@ enum { STRUT_MOST_SHOT = 96 }; /* free coordinates and velocities */
  * application [m]. Fills shot, iterations, reason, residual (the largest change of shape and
  * velocities over one application, in sizes and sizes times 2 pi f) and the multipliers of `found`.
  * Where Newton's method does not get nearer, y is as before, `shot` is false and `reason` says why.
- * STRUT_OK or STRUT_NO_MEMORY.
+ * STRUT_OK, STRUT_INTERRUPTED where the map was (y is as before) or STRUT_NO_MEMORY.
  */
 strut_status strut_shoot(strut_period_map *map, double *y, double *travel,
                          strut_steady_summary *found);

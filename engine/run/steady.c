@@ -17,6 +17,9 @@ enum { SLOW = 24 };
 enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
+/* As many factors alike are growth. */
+enum { GROWTH = 3 };
+
 static const double TURN = 6.28318530717958647692;
 
 /* When the last signal has begun, ended or run through: before that nothing can be called steady. */
@@ -100,13 +103,82 @@ static double distance(const strut_watch *w, const double *a, const double *b) {
 
 void strut_watch_middle(const strut_state *state, strut_watch *w) { take(state, w, w->middle); }
 
-/* What is left of a decay: the sum of the geometric series that goes on from the latest change. */
-static double remaining(const double *residual, int64_t now, int32_t over, double amplitude) {
-  double last = residual[now % STRUT_RING], first = residual[(now - over) % STRUT_RING];
+/*
+ * What is left of a decay: the sum of the geometric series that goes on from the latest change. It is
+ * compared with that of whole repetitions before: within one, changes differ from period to period.
+ */
+static double remaining(const double *residual, int64_t now, int32_t n, int32_t over,
+                        double amplitude) {
+  int32_t rounds = (over + n - 1) / n;
+  double last = residual[now % STRUT_RING], first = residual[(now - n * rounds) % STRUT_RING];
   if (last <= ROUNDING * amplitude) return 0.0;
   if (!(first > 0.0)) return HUGE_VAL;
-  double rate = pow(last / first, 1.0 / over);
+  double rate = pow(last / first, 1.0 / rounds);
   return rate < 0.9999 ? rate / (1.0 - rate) : HUGE_VAL;
+}
+
+/* From b to a along coordinate i, without the travel `along`, in sizes and sizes times 2 pi f. */
+static double step_of(const strut_watch *w, const double *a, const double *b, double along,
+                      int32_t i, double *speed) {
+  int32_t length = w->model->length;
+  double shift = w->travels ? along * w->model->contacts.tangent[i % 2] : 0.0;
+  *speed = (a[length + i] - b[length + i]) * w->period / (w->model->size * TURN);
+  return (a[i] - b[i] - shift) / w->model->size;
+}
+
+/*
+ * How far the present state is from where its repetitions go, if each is the same combination of the
+ * two before: so is a decay, and so is a slow beat, whose changes may fall for a while and come back.
+ */
+static double way_to_go(const strut_watch *w, int64_t now, int32_t n) {
+  const double *at[4];
+  double along[3], sum[2][3] = {{0.0}};
+  int32_t coordinates = 2 * w->model->node_count;
+  for (int k = 0; k < 4; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < 3; k++) along[k] = travel(w, at[k + 1], at[k]);
+  for (int32_t i = 0; i < coordinates; i++) {
+    double d[3], v[3];
+    for (int k = 0; k < 3; k++) d[k] = step_of(w, at[k], at[k + 1], along[k], i, &v[k]);
+    for (int r = 0; r < 2; r++)
+      for (int c = 0; c < 3; c++) sum[r][c] += d[r + 1] * d[c] + v[r + 1] * v[c];
+  }
+  double both = sum[0][1] * sum[1][2], mixed = sum[0][2] * sum[1][1], det = both - mixed;
+  double p = sum[0][1] > 0.0 ? sum[0][0] / sum[0][1] : 0.0, q = 0.0;
+  if (det > 1e-14 * both) {
+    p = (sum[0][0] * sum[1][2] - sum[1][0] * sum[0][2]) / det;
+    q = (sum[1][0] * sum[0][1] - sum[0][0] * sum[1][1]) / det;
+  }
+  double most = 0.0;
+  for (int32_t i = 0; i < coordinates; i++) {
+    double v0, v1, d0 = step_of(w, at[0], at[1], along[0], i, &v0);
+    double d1 = step_of(w, at[1], at[2], along[1], i, &v1);
+    most = fmax(most, fmax(fabs((p + q) * d0 + q * d1), fabs((p + q) * v0 + q * v1)));
+  }
+  return most / fabs(1.0 - p - q);
+}
+
+/*
+ * Does something small grow under the motion that looks steady, in one coordinate or more? Its changes
+ * then are each time larger by the same factor; what merely varies keeps no factor.
+ */
+static bool something_grows(const strut_watch *w, int64_t now, int32_t n) {
+  const double *at[GROWTH + 2];
+  double along[GROWTH + 1];
+  if (now < (GROWTH + 1) * n || (GROWTH + 1) * n >= STRUT_RING) return false;
+  for (int k = 0; k < GROWTH + 2; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < GROWTH + 1; k++) along[k] = travel(w, at[k + 1], at[k]);
+  for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
+    double d[GROWTH + 1], v, least = HUGE_VAL, most = 0.0;
+    for (int k = 0; k < GROWTH + 1; k++)
+      d[k] = fabs(step_of(w, at[k], at[k + 1], along[k], i, &v));
+    for (int k = 0; k < GROWTH; k++) {
+      double factor = d[k + 1] > 0.0 ? d[k] / d[k + 1] : 0.0;
+      least = fmin(least, factor), most = fmax(most, factor);
+    }
+    bool above_rounding = d[GROWTH] > ROUNDING * w->amplitude;
+    if (above_rounding && least > 1.0 && most - 1.0 < 1.25 * (least - 1.0)) return true;
+  }
+  return false;
 }
 
 static double mean_velocity(const strut_watch *w, int64_t now, int32_t periods) {
@@ -137,13 +209,19 @@ static bool repeats_itself(strut_watch *w, int64_t now, int k) {
   double velocity = mean_velocity(w, now, rounds), change = 0.0;
   for (int64_t j = now - over + 1; j <= now; j++)
     change = fmax(change, w->change[k][j % STRUT_RING]);
-  double rest = remaining(w->residual[k], now, over, w->amplitude);
+  double rest = remaining(w->residual[k], now, n, over, w->amplitude);
   double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
   double residual = w->residual[k][now % STRUT_RING];
   double still = w->floor * w->period / w->model->size;
   if (!(change <= allowed && change * rest <= allowed)) return false;
-  double alike = 4.0 * fmax(w->tolerance * w->amplitude, still);
+  /* of n > 1, where the transient itself may seem to repeat, more is asked */
+  double alike = (n > 1 ? 1.0 : 4.0) * fmax(w->tolerance * w->amplitude, still);
   if (!(residual * fmax(rest, 1.0) <= alike)) return false;
+  if (residual > ROUNDING * w->amplitude) {
+    if (something_grows(w, now, n)) return false;
+    rest = fmax(rest, way_to_go(w, now, n) / residual);
+    if (!(change * rest <= allowed && residual * rest <= alike)) return false;
+  }
   /* irregular motion comes back by chance, but not again and again */
   int32_t often = n > 1 && 2 * n > over ? 2 * n : over;
   for (int64_t j = now - often + 1; j <= now; j++)

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What runs call steady, against the truth: closed forms, and equations of motion that are written
+ * out and stepped here, with their variation for multipliers and Lyapunov exponents.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "engine/run/shooting.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double PI = 3.14159265358979323846;
+
+static void watch(strut_scene *scene, double step, double periods, double tolerance) {
+  strut_experiment *e = &scene->experiment;
+  e->step = step;
+  e->periods = periods;
+  e->period_signal = 0;
+  e->measure_last = 1;
+  e->steady.wanted = true;
+  e->steady.tolerance = tolerance;
+}
+
+/* ---- a mass of 1 kg between two springs, pushed through their line ---- */
+
+enum { STEPS = 400 }; /* of a drive period */
+static const double K = 500, C = 6, RISE = 0.3;
+
+/* y, v, and two tangent vectors beside them. */
+static void snap_rate(double t, double push, double frequency, const double *z, double *d) {
+  double y = z[0], v = z[1], length = sqrt(1 + y * y), rest = sqrt(1 + RISE * RISE);
+  double lean = y / length, turn = 1 / (length * length * length), stretch = length - rest;
+  double by_y = -2 * (K * lean * lean + K * stretch * turn + 2 * C * v * lean * turn);
+  double by_v = -2 * C * lean * lean;
+  d[0] = v;
+  d[1] = push * sin(2 * PI * frequency * t) - 2 * (K * stretch + C * v * lean) * lean;
+  for (int c = 2; c < 6; c += 2) d[c] = z[c + 1], d[c + 1] = by_y * z[c] + by_v * z[c + 1];
+}
+
+static void snap_period(double push, double frequency, int period, double *z) {
+  double h = 1 / frequency / STEPS, k[4][6], x[6];
+  for (int n = 0; n < STEPS; n++) {
+    double t = period / frequency + n * h;
+    snap_rate(t, push, frequency, z, k[0]);
+    for (int s = 1; s < 4; s++) {
+      double part = s < 3 ? 0.5 * h : h;
+      for (int i = 0; i < 6; i++) x[i] = z[i] + part * k[s - 1][i];
+      snap_rate(t + part, push, frequency, x, k[s]);
+    }
+    for (int i = 0; i < 6; i++) z[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+  }
+}
+
+/* The period of what it comes to, in drive periods, or 0; and how fast neighbours part, per period. */
+static int snap_truth(double push, double frequency, double *lyapunov) {
+  enum { PERIODS = 1200, SETTLED = 400, MOST = 16 };
+  double z[6] = {RISE, 0, 1, 0, 0, 1}, at[PERIODS];
+  *lyapunov = 0;
+  for (int p = 0; p < PERIODS; p++) {
+    snap_period(push, frequency, p, z);
+    double size = hypot(z[2], z[3]);
+    at[p] = z[0];
+    if (p >= SETTLED) *lyapunov += log(size) / (PERIODS - SETTLED);
+    z[2] /= size, z[3] /= size;
+  }
+  for (int n = 1; n <= MOST; n++) {
+    bool alike = true;
+    for (int p = PERIODS - 10 * MOST; p < PERIODS; p++)
+      alike = alike && fabs(at[p] - at[p - n]) < 1e-7;
+    if (alike) return n;
+  }
+  return 0;
+}
+
+static void snap_scene(strut_scene *scene, double push, double frequency) {
+  strut_scene_init(scene);
+  build_support(scene, -1, 0);
+  build_support(scene, 1, 0);
+  build_mass(scene, 0, RISE, 1);
+  for (int32_t k = 0; k < 2; k++) build_member(scene, STRUT_SPRING, k, 2, K, C, 0);
+  scene->nodes[2].fixed[0] = true;
+  build_load(scene, 2, 0, 1, build_sine(scene, push, frequency));
+  watch(scene, 1 / frequency / STEPS, 1000, 0.005);
+  scene->experiment.measure_node = 2;
+}
+
+/*
+ * From small pushes to large ones the motion doubles its period, is chaotic, has windows of period 3,
+ * and is simple again. Which of them it is here is known; that is what the run must say, or nothing.
+ */
+static void test_doubling_and_chaos(void **unused) {
+  (void)unused;
+  const struct {
+    double frequency, push;
+    int period;
+  } cases[] = {{2.6, 6, 1},   {2.6, 7, 2},   {2.6, 8.5, 2},  {1.5, 4.5, 1},
+               {1.5, 4.8, 2}, {2.6, 11, 3},  {1.5, 8.25, 3}, {1.1, 5, 1},
+               {1.1, 2.6, 0}, {1.1, 3.1, 0}, {1.1, 4.1, 0},  {1.5, 6, 0},
+               {2, 12, 0},    {2, 20, 0},    {2.6, 32, 0},   {2, 28, 1}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    double lyapunov;
+    int period = snap_truth(cases[i].push, cases[i].frequency, &lyapunov);
+    assert_int_equal(period, cases[i].period);
+    assert_true(period ? lyapunov < -0.02 : lyapunov > 0.2);
+    strut_scene scene;
+    snap_scene(&scene, cases[i].push, cases[i].frequency);
+    strut_summary s = motion_simulate(&scene);
+    if (period) {
+      assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+      assert_int_equal(s.steady.repeats, period);
+    } else {
+      assert_int_not_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+    }
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+}
+
+/* Of a motion that repeats itself every second period because it has doubled, not by its loads. */
+static void test_multipliers_of_a_doubled_motion(void **unused) {
+  (void)unused;
+  double z[6] = {RISE, 0, 1, 0, 0, 1};
+  for (int p = 0; p < 600; p++) {
+    snap_period(7, 2.6, p, z);
+    if (p < 598) z[2] = 1, z[3] = 0, z[4] = 0, z[5] = 1; /* the last two vary */
+  }
+  double trace = z[2] + z[5], product = z[2] * z[5] - z[3] * z[4];
+  double root = 0.25 * trace * trace - product;
+  strut_scene scene;
+  snap_scene(&scene, 7, 2.6);
+  scene.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.repeats, 2);
+  assert_true(s.steady.shot);
+  assert_int_equal(s.steady.multiplier_count, 2);
+  assert_true(root < 0); /* a pair */
+  for (int k = 0; k < 2; k++) {
+    assert_near(s.steady.multiplier[k][0], 0.5 * trace, 1e-5);
+    assert_near(fabs(s.steady.multiplier[k][1]), sqrt(-root), 1e-5);
+  }
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* ---- a mass that bounces on the pushed way down to the ground ---- */
+
+/*
+ * An area of states shrinks by exp(-c/m t), t being how long the ground's damper works in a period:
+ * touchdowns and take-offs leave it as it is. That is the product of the multipliers.
+ */
+static void test_multipliers_of_a_bouncing_mass(void **unused) {
+  (void)unused;
+  const double stiffness = 1e4, damping = 20, push = 8, frequency = 7;
+  double y = 0.01, v = 0, works = 0;
+  enum { FINE = 20000, PERIODS = 200 };
+  double h = 1 / frequency / FINE;
+  for (int p = 0; p < PERIODS; p++) {
+    for (int n = 0; n < FINE; n++) { /* of its own: leapfrog in small steps */
+      double force = -9.81 + push * sin(2 * PI * frequency * (p / frequency + (n + 0.5) * h));
+      double half = y + 0.5 * h * v;
+      bool damped = half < 0 && v < 0;
+      if (half < 0) force += -stiffness * half - (damped ? damping * v : 0);
+      if (p == PERIODS - 1 && damped) works += h;
+      v += h * force;
+      y = half + 0.5 * h * v;
+    }
+  }
+  strut_scene scene;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 0.01, 1);
+  scene.nodes[0].fixed[0] = true;
+  scene.gravity[1] = -9.81;
+  build_contact(&scene, 0, stiffness, damping);
+  build_load(&scene, 0, 0, 1, build_sine(&scene, push, frequency));
+  watch(&scene, 1 / frequency / 2000, 400, 0.001);
+  scene.experiment.integrator = "rk4-events";
+  scene.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.repeats, 1);
+  assert_true(s.steady.shot);
+  assert_within(s.contacts[0].duty, 0.1, 0.5);
+  assert_int_equal(s.steady.multiplier_count, 2);
+  double product = 1;
+  for (int k = 0; k < 2; k++)
+    product *= hypot(s.steady.multiplier[k][0], s.steady.multiplier[k][1]);
+  assert_relative(product, exp(-damping * works), 2e-3);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* ---- an oscillator of 1 kg whose transient comes nearly or exactly back with the drive's periods ---- */
+
+/* Parts of the steady motion that are left of the transient when it is called steady; else 0. */
+static double left_over(double ratio, double zeta, double tolerance, double periods) {
+  strut_scene scene;
+  double w = 2 * PI * ratio, drive = 2 * PI;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, 1);
+  build_member(&scene, STRUT_SPRING, 0, 1, w * w, 2 * zeta * w, 0);
+  build_load(&scene, 1, 1, 0, build_sine(&scene, 1, 1));
+  scene.nodes[1].fixed[1] = true;
+  watch(&scene, 0.01, periods, tolerance);
+  strut_summary s = motion_simulate(&scene);
+  assert_int_not_equal(s.steady.kind, STRUT_MOTION_IRREGULAR);
+  double re = w * w - drive * drive, im = 2 * zeta * w * drive, size = hypot(re, im);
+  double own = w * sqrt(1 - zeta * zeta), x = im / (size * size);
+  double v = (-drive * re / (size * size) + zeta * w * x) / own;
+  double left = exp(-zeta * w * s.duration) * hypot(x, v) * fmax(1, ratio) * size;
+  bool steady = s.steady.kind == STRUT_MOTION_PERIODIC;
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+  return steady ? left : 0;
+}
+
+/*
+ * At 1/3 of the drive's frequency a light damping lets the transient seem period-3 for hundreds of
+ * periods; a little beside 2 and 3 times it, its slow beat seems to decay for a while. The shape is
+ * held to four tolerances of its way in half a period: 8 to 10 of its amplitude.
+ */
+static void test_transients_in_tune_with_the_drive(void **unused) {
+  (void)unused;
+  const double ratio[] = {1.0 / 3, 0.25, 0.75,   1.25,  4.0 / 3, 1.5,
+                          2.0006,  3.0,  3.0009, 3.009, 1.0003,  0.3337};
+  for (size_t i = 0; i < sizeof ratio / sizeof *ratio; i++) {
+    assert_within(left_over(ratio[i], 1e-3, 0.005, 1500), 0, 13 * 0.005);
+    assert_within(left_over(ratio[i], 1e-4, 0.005, 1500), 0, 13 * 0.005);
+  }
+  assert_within(left_over(0.125, 3e-3, 0.005, 1500), 0, 13 * 0.005);
+}
+
+/* ---- what changes late ---- */
+
+/*
+ * A hanging mass pushed up and down at twice its frequency as a pendulum: it begins to swing, from
+ * as little as 1e-10 of its length. While nobody sees that yet the vertical motion has become steady.
+ */
+static void test_a_swing_that_grows_from_almost_nothing(void **unused) {
+  (void)unused;
+  for (int power = 4; power <= 10; power += 2) {
+    strut_scene scene;
+    strut_scene_init(&scene);
+    build_support(&scene, 0, 0);
+    build_mass(&scene, pow(10, -power), -1, 1);
+    build_member(&scene, STRUT_SPRING, 0, 1, 400, 6, 0);
+    scene.gravity[1] = -9.81;
+    build_load(&scene, 1, 0, 1, build_sine(&scene, 20, 0.985));
+    watch(&scene, 0.005 / 0.985, 300, 0.005);
+    strut_summary s = motion_simulate(&scene);
+    assert_int_not_equal(s.steady.kind,
+                         STRUT_MOTION_PERIODIC); /* it is so at the earliest at 500 */
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+}
+
+/*
+ * A slider creeps along against a damper far too strong for its spring, 0.998 of the way left each
+ * period; a cable goes taut when 5 % of it is left. Nothing is steady before, however quiet each period
+ * is beside the one before it.
+ */
+static void test_a_drift_that_ends_in_a_jolt(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  const double stiffness = 0.04, damping = 500 * stiffness, drift = 0.3, push = 0.2;
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1 - drift, 0, 1);
+  build_support(&scene, -1, 0);
+  build_sized(&scene, STRUT_SPRING, 0, 1, stiffness, damping, 0, 1);
+  build_sized(&scene, STRUT_CABLE, 2, 1, 400, 1, 0, 2 - 0.05 * drift);
+  scene.nodes[1].fixed[1] = true;
+  build_load(&scene, 1, 1, 0, build_sine(&scene, push, 1));
+  watch(&scene, 0.01, 4000, 0.005);
+  strut_summary s = motion_simulate(&scene);
+  double sway = push / (2 * PI * hypot(damping, 2 * PI)),
+         when = log(drift / (0.05 * drift + 2 * sway));
+  assert_true((double)s.steady.periods > 500 * when);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* A frame at rest under its weight that nothing moves: it stands still, and the run ends at once. */
+static void test_standing_still_under_its_weight(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 0, -1, 1);
+  build_member(&scene, STRUT_SPRING, 0, 1, 981, 20, 0);
+  scene.gravity[1] = -9.81;
+  build_load(&scene, 1, 1, 0, build_sine(&scene, 0, 2));
+  watch(&scene, 1e-3, 1000, 0.005);
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  assert_int_equal(s.steady.repeats, 1);
+  assert_true(s.steady.periods < 60);
+  assert_near(s.velocity, 0, 0);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+/* ---- shooting that is told to stop ---- */
+
+static void test_shooting_can_be_interrupted(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  snap_scene(&scene, 5, 1.1);
+  scene.experiment.steady.wanted = false;
+  volatile sig_atomic_t flag = 0;
+  strut_period_map map;
+  strut_steady_summary found = {0};
+  strut_error error = {0};
+  assert_int_equal(strut_period_map_create(&scene, &scene.experiment, 1, &map, &error), STRUT_OK);
+  map.interrupt = &flag;
+  double y[40] = {0}, before[40], travel;
+  assert_true(2 * map.model->length + 1 <= 40);
+  memcpy(y, map.model->start, (size_t)map.model->length * sizeof *y);
+  for (int p = 0; p < 40; p++) assert_true(isfinite(strut_period_map_apply(&map, y)));
+  memcpy(before, y, sizeof y);
+  flag = 1;
+  assert_int_equal(strut_shoot(&map, y, &travel, &found), STRUT_INTERRUPTED);
+  assert_false(found.shot);
+  assert_memory_equal(y, before, sizeof y);
+  flag = 0;
+  assert_int_equal(strut_shoot(&map, y, &travel, &found), STRUT_OK);
+  assert_true(found.shot);
+  strut_period_map_free(&map);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_doubling_and_chaos),
+      cmocka_unit_test(test_multipliers_of_a_doubled_motion),
+      cmocka_unit_test(test_multipliers_of_a_bouncing_mass),
+      cmocka_unit_test(test_transients_in_tune_with_the_drive),
+      cmocka_unit_test(test_a_swing_that_grows_from_almost_nothing),
+      cmocka_unit_test(test_a_drift_that_ends_in_a_jolt),
+      cmocka_unit_test(test_standing_still_under_its_weight),
+      cmocka_unit_test(test_shooting_can_be_interrupted),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
