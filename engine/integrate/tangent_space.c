@@ -18,6 +18,21 @@ bool strut_tangent_space_create(const strut_model *model, const strut_tangent *t
   return space->vector && space->stiffness && space->damping && space->image && space->node;
 }
 
+static double largest_of(const double *x, int32_t n) {
+  double largest = 0.0;
+  for (int32_t i = 0; i < n; i++) largest = fmax(largest, fabs(x[i]));
+  return largest;
+}
+
+/* What rigid bars leave of it; nothing where they hold all of it and only rounding is left. */
+static void hold_rigid(const strut_model *model, strut_rigid *rigid, double *acceleration,
+                       double *scratch) {
+  double before = largest_of(acceleration, model->length);
+  strut_rigid_filter(model, rigid, acceleration, scratch);
+  if (largest_of(acceleration, model->length) < 1e-12 * before)
+    memset(acceleration, 0, (size_t)model->length * sizeof *acceleration);
+}
+
 void strut_tangent_divide(strut_tangent_space *space, double *x) {
   const strut_model *model = space->model;
   const strut_tangent *tangent = space->tangent;
@@ -26,7 +41,7 @@ void strut_tangent_divide(strut_tangent_space *space, double *x) {
   memset(force, 0, 2 * both * sizeof *force);
   for (int32_t i = 0; i < tangent->n; i++) force[tangent->coordinate[i]] = x[i];
   strut_mass_solve(model, force, acceleration, scratch);
-  if (tangent->rigid) strut_rigid_filter(model, tangent->rigid, acceleration, scratch);
+  if (tangent->rigid) hold_rigid(model, tangent->rigid, acceleration, scratch);
   for (int32_t i = 0; i < tangent->n; i++) x[i] = acceleration[tangent->coordinate[i]];
 }
 
@@ -70,8 +85,7 @@ static double dot(const double *x, const double *y, int32_t n) {
 /* Scales x to size 1 in the mass; its size before, 0 where it has none. `image` is then M x. */
 static double normalise(strut_tangent_space *space, double *x) {
   int32_t n = space->tangent->n;
-  double largest = 0.0;
-  for (int32_t i = 0; i < n; i++) largest = fmax(largest, fabs(x[i]));
+  double largest = largest_of(x, n);
   if (!(largest > 0.0 && largest < HUGE_VAL)) return 0.0;
   for (int32_t i = 0; i < n; i++) x[i] /= largest;
   strut_tangent_mass(space, x, space->image);

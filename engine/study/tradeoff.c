@@ -234,8 +234,9 @@ static strut_status make(study *s, size_t count) {
   double others = (double)(r->fidelity_count - 1);
   for (size_t i = 1; i < r->fidelity_count && status == STRUT_OK; i++) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
-    status = other_model(s, (int)i, OWN_REFINED + (1 - OWN_REFINED) * end, 0.6 + 0.4 * begin,
-                         0.6 + 0.4 * end);
+    double spent = 1 - strut_study_left(s, 1) / s->budget; /* what is left goes to all alike */
+    double share = spent + fmax(0, 1 - spent) / (double)(r->fidelity_count - i);
+    status = other_model(s, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }
   if (status != STRUT_OK) return status;
   strut_study_judge(s);

@@ -7,8 +7,8 @@
 #include "engine/output/quantity_text.h"
 #include "engine/study/tradeoff_parts.h"
 
-/* All there can be, in the order in which they are run. */
-typedef enum kind { OWN, MASS, RIGID, KARNOPP, COULOMB, SMOOTH, GROUND, KINDS } kind;
+/* All there can be, in the order in which they are run: the dearest last. */
+typedef enum kind { OWN, MASS, RIGID, GROUND, KARNOPP, COULOMB, SMOOTH, KINDS } kind;
 
 static bool has_member_mass(const strut_scene *scene) {
   for (size_t i = 0; i < scene->member_count; i++)
@@ -16,10 +16,14 @@ static bool has_member_mass(const strut_scene *scene) {
   return false;
 }
 
-static bool has_bar(const strut_scene *scene) {
+/* Whether there are bars that could be rigid: none of them is driven. */
+static bool has_still_bars(const strut_scene *scene) {
+  bool any = false;
   for (size_t i = 0; i < scene->member_count; i++)
-    if (scene->members[i].kind == STRUT_BAR) return true;
-  return false;
+    any = any || scene->members[i].kind == STRUT_BAR;
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    any = any && scene->members[scene->actuators[i].member].kind != STRUT_BAR;
+  return any;
 }
 
 static bool has_friction(const strut_scene *scene, strut_friction_law law) {
@@ -59,7 +63,7 @@ static bool makes_sense(const strut_scene *scene, kind what) {
     case MASS:
       return has_member_mass(scene);
     case RIGID:
-      return has_bar(scene) && has_member_mass(scene);
+      return has_still_bars(scene);
     case KARNOPP:
       return rubs(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
     case COULOMB:
@@ -81,11 +85,8 @@ static double soft_speed(const study *s, const strut_friction *friction) {
 
 static void describe(const study *s, kind what, strut_tradeoff_fidelity *f) {
   const strut_scene *scene = s->scenes[0];
-  static const char *const names[KINDS] = {"the scene's own model", "",
-                                           "",                      "",
-                                           "Coulomb friction",      "",
-                                           ""};
-  snprintf(f->name, sizeof f->name, "%s", names[what]);
+  if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
+  if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
   if (what == MASS)
     snprintf(f->name, sizeof f->name, "%s masses",
              scene->mass_model == STRUT_MASS_LUMPED ? "consistent" : "lumped");
@@ -157,7 +158,7 @@ strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene 
   if (what == RIGID)
     scene->bar_model =
         scene->bar_model == STRUT_BARS_RIGID ? STRUT_BARS_ELASTIC : STRUT_BARS_RIGID;
-  if (what < KARNOPP) return STRUT_OK;
+  if (what < GROUND) return STRUT_OK;
   strut_contact *contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *contacts);
   if (!contacts) return STRUT_NO_MEMORY;
   if (what == GROUND)
@@ -180,8 +181,8 @@ bool strut_study_switches(const strut_scene *scene) {
 
 bool strut_study_able(const study *s, const strut_integrator *method, int fidelity) {
   kind what = kind_of(s, fidelity);
-  bool exact = has_friction(s->scenes[0], STRUT_FRICTION_COULOMB) ? what < KARNOPP || what == GROUND
-                                                                  : what == COULOMB;
+  bool own = has_friction(s->scenes[0], STRUT_FRICTION_COULOMB);
+  bool exact = own ? what <= GROUND : what == COULOMB;
   if (exact && !method->events) return false;
   return !method->events || strut_study_adaptive(method) || strut_study_switches(s->scenes[0]);
 }

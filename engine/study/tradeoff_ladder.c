@@ -6,6 +6,8 @@
 enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64 };
 static const double SHORT = 0.05; /* a run that is repeated for its CPU time [s] */
 static const double BELOW = 0.95, IN_DECADE = 5;
+/* Steps that nothing limits begin at so many times the explicit limit, or the base's step. */
+static const double FREE = 100, FREE_OF_BASE = 10;
 static const double above[ABOVE] = {2.5, 1.5, 1.1};
 
 static int step_count(const study *s) {
@@ -137,10 +139,11 @@ strut_status strut_study_run_row(study *s, study_ladder *from, study_setting set
 
 /* The k-th setting of a ladder, the coarsest first. False after the last. */
 static bool setting_at(const study *s, const study_ladder *l, int k, study_setting *setting) {
+  bool adaptive = strut_study_adaptive(l->first.method);
   int extra = l->limited ? ABOVE : 0;
-  if (k >= step_count(s) + extra) return false;
+  if (k >= step_count(s) + (adaptive ? 0 : ABOVE)) return false;
   *setting = l->first;
-  if (strut_study_adaptive(l->first.method))
+  if (adaptive)
     setting->tolerance = 1e-2 * pow(0.1, k);
   else if (k < extra)
     setting->step *= above[k];
@@ -176,7 +179,10 @@ strut_status strut_study_add_method(study *s, study_ladders *all, int fidelity,
   if (status != STRUT_OK || outcome.cannot) return status;
   bool limited = !adaptive && isfinite(outcome.step_limit) && outcome.step_limit > 0;
   if (limited) first.step = outcome.step_limit;
-  if (!limited && !adaptive) first.step *= 10;
+  if (!limited && !adaptive) {
+    double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
+    first.step = fmin(most, strut_study_longest(s->scenes[0]));
+  }
   study_setting below = first;
   below.step *= 0.8;
   status = strut_study_probe(s, fidelity, below, &outcome);

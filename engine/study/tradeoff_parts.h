@@ -44,6 +44,8 @@ double strut_study_left(const study *s, double share);
 strut_experiment strut_study_experiment(const study *s, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
 double strut_study_fit(const study *s, size_t point, double step);
+/** The longest step that can make sense: a part of the period, or else of the duration [s]. */
+double strut_study_longest(const strut_scene *scene);
 /**
  * Runs a fidelity with a setting at an operating point; its values go into (value_count) `value`,
  * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.

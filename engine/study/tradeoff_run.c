@@ -85,14 +85,17 @@ static void take_values(const study *s, const strut_summary *summary, double *va
   }
 }
 
+double strut_study_longest(const strut_scene *scene) {
+  strut_span span = strut_scene_span(scene);
+  return (span.period > 0 ? span.period : span.duration) / 20;
+}
+
 /*
  * The largest step worth trying. Where nothing vibrates, as where rigid bars swing under gravity, the
  * limit of stability may be far longer than the motion lasts: then a part of that counts.
  */
 static double useful_limit(const strut_scene *scene, double limit) {
-  strut_span span = strut_scene_span(scene);
-  double unit = span.period > 0 ? span.period : span.duration;
-  return isfinite(limit) ? fmin(limit, unit / 20) : limit;
+  return isfinite(limit) ? fmin(limit, strut_study_longest(scene)) : limit;
 }
 
 static bool hopeless(strut_status status) {

@@ -245,11 +245,48 @@ with tempfile.TemporaryDirectory() as here:
     done = run(BALL, "--steps", "1", "-o", "/dev/full/x", code=4)
 
 # ---- Rigid bars of a pendulum vibrate nowhere: no limit says how long a step makes sense, and the
-# answer is still that of the stiff ones, nearly.
+# answer is still that of the stiff ones, nearly. They are a bargain: steps of a tenth of a second.
 found = read("models/basics/pendulum.yaml", "--methods", "rk4", "--steps", "3", "--budget", "6 s")
 rigid = [model for model in found["models"] if model["name"] == "rigid bars"]
 if len(rigid) != 1 or not rigid[0]["model_error"]["worst"] < 1e-3:
     fail(f"rigid bars of a pendulum change the answer: {rigid}")
+longest = max([r["step"] for r in found["settings"] if r["model"] == "rigid bars"], default=0)
+if longest < 0.02 * found["duration"]:
+    fail(f"rigid bars of a pendulum step by {longest} at most")
+
+# ---- A method that no step is too long for begins at a hundred times the explicit limit, here
+# sqrt(8) / sqrt(3 k / m), and comes down to it.
+found = read("models/basics/pendulum.yaml", "--set", "stiffness=1e8 N/m", "--methods", "rk4,midpoint",
+             "--steps", "8", "--budget", "6 s", "--own-model")
+limit = math.sqrt(8) / math.sqrt(3 * 1e8)
+steps = [r["step"] / limit for r in found["settings"] if r["method"] == "midpoint"]
+if not steps or not 80 < max(steps) < 100 or not 0.8 < min(steps) < 2:
+    fail(f"midpoint's steps are {steps} times the explicit limit")
+for row in found["settings"]:
+    error = row["step_error"]["worst"]
+    if row["method"] == "midpoint" and not error < 0.01 * (row["step"] / limit / 95) ** 1.9:
+        fail(f"midpoint at {row['step']}: {error}")
+
+# ---- Other models are offered where a scene has what they change, and bars that are driven cannot be
+# rigid. What one costs does not take it from the others: every one of them is run.
+def offered(file, *words):
+    found = read(file, "--steps", "1", "--periods", "3", *words)
+    for model in found["models"]:
+        if not model["run"]:
+            fail(f"{file}: {model['name']} is not run: {model['remark']}")
+    return [model["name"].split(",")[0] for model in found["models"][1:]]
+
+
+for file, wanted, *words in (
+        ("models/crawler/crawler.yaml", ["lumped masses", "rigid bars", "Hunt-Crossley ground",
+                                         "Coulomb friction", "smooth friction"], "--budget", "5 s"),
+        (BALL, ["Hunt-Crossley ground"], "--budget", "1 s"),
+        ("models/gallery/two-mass-crawler.yaml", ["Coulomb friction", "smooth friction"],
+         "--budget", "3 s", "--set", "step=50 us", "--set", "band=1 mm/s"),
+        (OSCILLATOR, [], "--budget", "1 s")):
+    names = offered(file, *words)
+    if names != wanted:
+        fail(f"{file}: other models are {names}, not {wanted}")
 
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (

@@ -203,6 +203,24 @@ static void test_step_limit_is_that_of_the_motions_left(void **unused) {
   strut_scene_free(&scene);
 }
 
+/* A rod that only swings has no limit, also where it lies along an axis, in which nothing moves. */
+static void test_a_rod_that_only_swings_has_no_step_limit(void **unused) {
+  (void)unused;
+  const double way[][2] = {{1, 0}, {0, -1}, {0.6, -0.8}, {-0.28, 0.96}};
+  for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
+    strut_scene scene;
+    begin(&scene);
+    scene.gravity[1] = 0;
+    int32_t pin = build_support(&scene, 0, 0), tip = build_node(&scene, way[i][0], way[i][1]);
+    build_member(&scene, STRUT_BAR, pin, tip, 1e6, 0, 1.0);
+    motion_experiment(&scene, 1e-3, 0.1);
+    strut_summary s = motion_simulate(&scene);
+    assert_true(s.step_limit > 1.0);
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_pendulum_has_the_period_of_the_elliptic_integral),
@@ -212,6 +230,7 @@ int main(void) {
       cmocka_unit_test(test_bars_and_stick_are_solved_together),
       cmocka_unit_test(test_what_cannot_be_rigid_is_refused_by_name),
       cmocka_unit_test(test_step_limit_is_that_of_the_motions_left),
+      cmocka_unit_test(test_a_rod_that_only_swings_has_no_step_limit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
