@@ -2,68 +2,16 @@
 #include "engine/study/slurm_script.h"
 
 #include <ctype.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/study/script_page.h"
 #include "engine/study/shard.h"
 
 /* Seconds before the time is over in which a task finishes its points. */
 enum { NOTICE = 120, MOST_RESTARTS = 1000, MOST_NAME = 60 };
-
-/* A text that grows. */
-typedef struct page {
-  char *text;
-  size_t length, room;
-  bool failed;
-} page;
-
-static void put(page *p, const char *bytes, size_t length) {
-  if (p->room - p->length <= length) {
-    size_t room = 2 * p->room + length + 1024;
-    char *more = p->failed ? NULL : strut_reallocate(p->text, room, 1);
-    p->failed = !more;
-    if (!more) return;
-    p->text = more;
-    p->room = room;
-  }
-  memcpy(p->text + p->length, bytes, length);
-  p->length += length;
-  p->text[p->length] = '\0';
-}
-
-static void say(page *p, const char *text) { put(p, text, strlen(text)); }
-
-__attribute__((format(printf, 2, 3))) static void format(page *p, const char *format, ...) {
-  char line[256];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  say(p, line);
-}
-
-/* A word that the shell takes as it stands. */
-static void say_word(page *p, const char *word) {
-  say(p, "'");
-  while (*word) {
-    size_t length = strcspn(word, "'");
-    put(p, word, length);
-    word += length;
-    if (!*word) break;
-    say(p, "'\\''");
-    word++;
-  }
-  say(p, "'");
-}
-
-static void say_assignment(page *p, const char *name, const char *value) {
-  format(p, "%s=", name);
-  say_word(p, value);
-  say(p, "\n");
-}
 
 /* A name for the queue: plain characters only. */
 static void plain_name(const char *name, char plain[MOST_NAME + 1]) {
@@ -96,17 +44,21 @@ static strut_status check(const strut_slurm_script *s, strut_error *error) {
   return STRUT_OK;
 }
 
-static void say_head(page *p, const strut_slurm_script *s, const char *name) {
-  say(p, "#!/bin/sh\n");
-  format(p, "#SBATCH --job-name=%s\n#SBATCH --array=0-%lld\n", name, (long long)s->shards - 1);
-  say(p, "#SBATCH --nodes=1\n#SBATCH --ntasks=1\n");
-  if (s->cpus) format(p, "#SBATCH --cpus-per-task=%lld\n", (long long)s->cpus);
-  if (s->time) format(p, "#SBATCH --time=%s\n", s->time);
-  if (s->memory) format(p, "#SBATCH --mem=%s\n", s->memory);
-  format(p, "#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --signal=B:USR1@%d\n", NOTICE);
-  format(p, "# A study in %lld shards as an array of jobs, and their table when all have ended.\n",
-         (long long)s->shards);
-  say(p,
+static void say_head(strut_page *p, const strut_slurm_script *s, const char *name) {
+  strut_page_say(p, "#!/bin/sh\n");
+  strut_page_format(p, "#SBATCH --job-name=%s\n#SBATCH --array=0-%lld\n", name,
+                    (long long)s->shards - 1);
+  strut_page_say(p, "#SBATCH --nodes=1\n#SBATCH --ntasks=1\n");
+  if (s->cpus) strut_page_format(p, "#SBATCH --cpus-per-task=%lld\n", (long long)s->cpus);
+  if (s->time) strut_page_format(p, "#SBATCH --time=%s\n", s->time);
+  if (s->memory) strut_page_format(p, "#SBATCH --mem=%s\n", s->memory);
+  strut_page_format(
+      p, "#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --signal=B:USR1@%d\n", NOTICE);
+  strut_page_format(
+      p, "# A study in %lld shards as an array of jobs, and their table when all have ended.\n",
+      (long long)s->shards);
+  strut_page_say(
+      p,
       "#\n"
       "#   sh FILE                 sends both to the queue\n"
       "#   sh FILE --array=2,5     the same for some shards only\n"
@@ -117,8 +69,9 @@ static void say_head(page *p, const strut_slurm_script *s, const char *name) {
 }
 
 /* The part that runs where the script is called: it sends the rest of itself to the queue. */
-static void say_sending(page *p, const strut_slurm_script *s, const char *name) {
-  say(p,
+static void say_sending(strut_page *p, const strut_slurm_script *s, const char *name) {
+  strut_page_say(
+      p,
       "case $0 in /*) script=$0 ;; *) script=$PWD/$0 ;; esac\n"
       "cd \"$folder\" || exit 4\n\n"
       "if [ -z \"${SLURM_ARRAY_TASK_ID:-}\" ]; then # not yet in the queue\n"
@@ -128,29 +81,30 @@ static void say_sending(page *p, const strut_slurm_script *s, const char *name) 
       "  table=$(sbatch --parsable --chdir=\"$folder\" --output=\"$results/slurm-%j-merge.log\" "
       "\\\n"
       "    --dependency=\"afterany:${shards%%;*}\" ");
-  format(p, "--job-name=%s-merge ", name);
-  if (s->time) format(p, "--time=%s ", s->time);
-  say(p, "<<'END'\n#!/bin/sh\nexec ");
-  say_word(p, s->program);
-  say(p, " merge ");
-  say_word(p, s->output);
-  say(p,
-      "\nEND\n"
-      "  ) || exit\n"
-      "  echo \"the shards are job ${shards%%;*}, their table is job ${table%%;*}\"\n"
-      "  exit\n"
-      "fi\n\n");
+  strut_page_format(p, "--job-name=%s-merge ", name);
+  if (s->time) strut_page_format(p, "--time=%s ", s->time);
+  strut_page_say(p, "<<'END'\n#!/bin/sh\nexec ");
+  strut_page_word(p, s->program);
+  strut_page_say(p, " merge ");
+  strut_page_word(p, s->output);
+  strut_page_say(p,
+                 "\nEND\n"
+                 "  ) || exit\n"
+                 "  echo \"the shards are job ${shards%%;*}, their table is job ${table%%;*}\"\n"
+                 "  exit\n"
+                 "fi\n\n");
 }
 
 /* The part that is a task of the array. */
-static void say_task(page *p, const strut_slurm_script *s) {
-  say(p, "again=\n\"$strut\" sweep \"$study\" -o \"$results\"");
+static void say_task(strut_page *p, const strut_slurm_script *s) {
+  strut_page_say(p, "again=\n\"$strut\" sweep \"$study\" -o \"$results\"");
   for (size_t i = 0; i < s->word_count; i++) {
-    say(p, " ");
-    say_word(p, s->words[i]);
+    strut_page_say(p, " ");
+    strut_page_word(p, s->words[i]);
   }
-  format(p, " --shard slurm/%lld &\n", (long long)s->shards);
-  say(p,
+  strut_page_format(p, " --shard slurm/%lld &\n", (long long)s->shards);
+  strut_page_say(
+      p,
       "child=$!\n"
       "trap 'again=yes; kill -TERM \"$child\"' USR1 # the time is nearly over\n"
       "trap 'kill -TERM \"$child\"' TERM\n"
@@ -160,29 +114,29 @@ static void say_task(page *p, const strut_slurm_script *s) {
       "  wait \"$child\"\n"
       "  code=$?\n"
       "done\n");
-  format(p,
-         "if [ -n \"$again\" ] && [ \"$code\" -eq 130 ] &&\n"
-         "  [ \"${SLURM_RESTART_COUNT:-0}\" -lt %d ]; then\n",
-         MOST_RESTARTS);
-  say(p,
-      "  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\"\n"
-      "fi\n"
-      "exit \"$code\"\n");
+  strut_page_format(p,
+                    "if [ -n \"$again\" ] && [ \"$code\" -eq 130 ] &&\n"
+                    "  [ \"${SLURM_RESTART_COUNT:-0}\" -lt %d ]; then\n",
+                    MOST_RESTARTS);
+  strut_page_say(p,
+                 "  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\"\n"
+                 "fi\n"
+                 "exit \"$code\"\n");
 }
 
 strut_status strut_slurm_script_write(const strut_slurm_script *script, char **text,
                                       strut_error *error) {
   char name[MOST_NAME + 1];
-  page p = {0};
+  strut_page p = {0};
   *text = NULL;
   strut_status status = check(script, error);
   if (status != STRUT_OK) return status;
   plain_name(*script->name ? script->name : "study", name);
   say_head(&p, script, name);
-  say_assignment(&p, "strut", script->program);
-  say_assignment(&p, "folder", script->folder);
-  say_assignment(&p, "study", script->study);
-  say_assignment(&p, "results", script->output);
+  strut_page_assignment(&p, "strut", script->program);
+  strut_page_assignment(&p, "folder", script->folder);
+  strut_page_assignment(&p, "study", script->study);
+  strut_page_assignment(&p, "results", script->output);
   say_sending(&p, script, name);
   say_task(&p, script);
   if (p.failed) {

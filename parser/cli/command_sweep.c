@@ -25,11 +25,12 @@ static const strut_option options[] = {
     {STRUT_OPTION_RETRY, "retry", NULL, "compute points that failed once more"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
      "only every N-th point from K on, counted from 0; or slurm/N"},
-    {STRUT_OPTION_EMIT, "emit", "slurm", "only print the script for a cluster with Slurm"},
-    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: tasks of the job array"},
+    {STRUT_OPTION_EMIT, "emit", "KIND",
+     "only print the script for a cluster: slurm or parallel (GNU's)"},
+    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: how many in all"},
     {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors of a task; 1 if not given"},
-    {STRUT_OPTION_TIME, "time", "TIME", "with --emit: of a task, such as 12:00:00"},
-    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit: of a task, such as 2G"},
+    {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: of a task, such as 12:00:00"},
+    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit slurm: of a task, such as 2G"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_TALLY, "count", NULL, "only tell how many points and which columns there are"},
     {STRUT_OPTION_STATUS, "status", NULL, "only tell what is done, missing and failed in DIR"},
@@ -144,7 +145,8 @@ static strut_status finish(const strut_arguments *arguments, strut_sweep_study *
   return STRUT_DIVERGED;
 }
 
-static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study, pace at_a_time) {
+static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study,
+                          pace at_a_time) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/study/parallel_script.h"
 #include "engine/study/shard.h"
 #include "engine/study/slurm_script.h"
 #include "parser/cli/command_sweep.h"
@@ -45,8 +46,23 @@ static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   return STRUT_FILE_TROUBLE;
 }
 
+/* The script with what only the machine knows filled in. */
+static strut_status write_script(const strut_slurm_script *script, bool slurm, char **text,
+                                 strut_error *error) {
+  const strut_parallel_script parallel = {.program = script->program,
+                                          .folder = script->folder,
+                                          .study = script->study,
+                                          .output = script->output,
+                                          .words = script->words,
+                                          .word_count = script->word_count,
+                                          .shards = script->shards,
+                                          .cpus = script->cpus};
+  return slurm ? strut_slurm_script_write(script, text, error)
+               : strut_parallel_script_write(&parallel, text, error);
+}
+
 static strut_status print_script(const strut_arguments *arguments, strut_slurm_script *script,
-                                 strut_arena *arena) {
+                                 bool slurm, strut_arena *arena) {
   strut_error error = {0};
   char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
   strut_status status = find_places(program, folder);
@@ -55,7 +71,7 @@ static strut_status print_script(const strut_arguments *arguments, strut_slurm_s
   script->folder = folder;
   script->words = words_of(arguments, arena, &script->word_count);
   if (!script->words) return strut_complain_of_memory();
-  status = strut_slurm_script_write(script, &text, &error);
+  status = write_script(script, slurm, &text, &error);
   if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
   if (status == STRUT_NO_MEMORY) strut_complain(&error);
   if (status == STRUT_OK) status = strut_print(text);
@@ -63,7 +79,23 @@ static strut_status print_script(const strut_arguments *arguments, strut_slurm_s
   return status;
 }
 
+/* What can be known before the numbers are read. */
+static strut_status check(const strut_arguments *arguments, bool slurm) {
+  const char *wrong = NULL;
+  if (strcmp(arguments->model, "-") == 0)
+    wrong = "--emit needs a file that the tasks can read, not the standard input";
+  else if (!slurm && (strut_option_text(arguments, STRUT_OPTION_TIME) ||
+                      strut_option_text(arguments, STRUT_OPTION_MEMORY)))
+    wrong = "--time and --memory are for --emit slurm";
+  else if (!strut_option_text(arguments, STRUT_OPTION_SHARDS))
+    wrong = "--emit needs --shards N, the number of tasks";
+  if (!wrong) return STRUT_OK;
+  fprintf(stderr, "strut sweep: %s\n", wrong);
+  return STRUT_USAGE;
+}
+
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
+  static const char *const kinds[] = {"slurm", "parallel", NULL};
   const strut_command *command = &strut_command_sweep;
   strut_slurm_script script = {.name = name,
                                .study = arguments->model,
@@ -71,27 +103,18 @@ strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name
                                .time = strut_option_text(arguments, STRUT_OPTION_TIME),
                                .memory = strut_option_text(arguments, STRUT_OPTION_MEMORY),
                                .cpus = 1};
-  if (strcmp(strut_option_text(arguments, STRUT_OPTION_EMIT), "slurm") != 0) {
-    fputs("strut sweep: --emit knows slurm only\n", stderr);
-    return STRUT_USAGE;
-  }
-  if (strcmp(arguments->model, "-") == 0) {
-    fputs("strut sweep: --emit needs a file that the tasks can read, not the standard input\n",
-          stderr);
-    return STRUT_USAGE;
-  }
-  strut_status status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1,
-                                             STRUT_MOST_SHARDS, &script.shards);
+  int kind = 0;
+  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
+  if (status == STRUT_OK) status = check(arguments, kind == 0);
+  if (status == STRUT_OK)
+    status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1, STRUT_MOST_SHARDS,
+                                  &script.shards);
   if (status == STRUT_OK)
     status =
         strut_option_integer(command, arguments, STRUT_OPTION_CPUS, 1, MOST_CPUS, &script.cpus);
-  if (status == STRUT_OK && !script.shards) {
-    fputs("strut sweep: --emit needs --shards N, the number of tasks\n", stderr);
-    status = STRUT_USAGE;
-  }
   if (status != STRUT_OK) return status;
   strut_arena arena = {0};
-  status = print_script(arguments, &script, &arena);
+  status = print_script(arguments, &script, kind == 0, &arena);
   strut_arena_free(&arena);
   return status;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * strut sweep --emit slurm: the script that runs a study on a cluster.
+ * strut sweep --emit: the script that runs a study on a cluster.
  */
 #ifndef STRUT_PARSER_CLI_SWEEP_EMIT_H
 #define STRUT_PARSER_CLI_SWEEP_EMIT_H
