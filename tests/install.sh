@@ -12,7 +12,8 @@ packages="gcc libc6-dev make cmake pkg-config
 case ${1:-} in
   '') ;;
   tests) packages="$packages g++ clang libcmocka-dev locales jq
-  python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge parallel" ;;
+  python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge parallel
+  python3-pandas python3-matplotlib" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;
 esac
 
