@@ -159,6 +159,8 @@ static const char *expected_shape(strut_key_type type) {
       return "true, or a mapping such as {tolerance: 0.5 %}";
     case STRUT_TYPE_AXES:
       return "a list of axes such as [{friction: [0.1, 0.2]}]";
+    case STRUT_TYPE_TIMES:
+      return "a list of times such as [0 s, 20 ms]";
     case STRUT_TYPE_MAP:
       return "a mapping {key: value, ...}";
     default:

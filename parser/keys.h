@@ -64,6 +64,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_SETTLE,        /* true, false or the keys of settle */
   STRUT_TYPE_STEADY,        /* true, false or the keys of steady */
   STRUT_TYPE_AXES,          /* a list of axes of a study */
+  STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the room that has the key's name */
   STRUT_TYPE_THINGS         /* a mapping from names to what `words` says */
 } strut_key_type;

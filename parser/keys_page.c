@@ -89,6 +89,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_SIGNALS] = "list of signals",
       [STRUT_TYPE_TABLE] = "list of `[t, value]`",
       [STRUT_TYPE_AXES] = "list of axes",
+      [STRUT_TYPE_TIMES] = "list of times [s]",
       [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
       [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
       [STRUT_TYPE_THINGS] = "names, each with "};

@@ -145,7 +145,7 @@
   X(STUDY, KEEP, "keep", WORDS, NONE, ANY, false, 0, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome]", "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome", "What of each run stands in the table: velocity [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of a run that stops when steady; `distance` travelled in a drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses`, `residual` of the balance; `contacts` (duty and height of each), `positions` (of each node at the end), `outcome` (the nearest configuration); and the rest of the summary.") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, false, 0, "no", "no|yes", "Write each run into a folder of its own, `runs/POINT`, as `strut run -o` does.") \
   X(STUDY, CHECK, "check", MAP, NONE, ANY, false, 0, "", "", "Run each point again, more exactly, and mark those that end elsewhere.") \
-  X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, false, 0, "", "the keys of a [figure](#figure)", "Drawings of the table, NAME.svg each.") \
+  X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, false, 0, "", "the keys of a [figure](#figure)", "Drawings of the table, or of what runs recorded: NAME.svg each.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, true, 0, "", "", "The first value.") \
   X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, true, 0, "", "", "The last value, where the steps meet it.") \
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, false, 4, "", "", "From one value to the next; or") \
@@ -157,15 +157,19 @@
   X(VARIANT, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the study and the model.") \
   X(CHECK, HALF_STEP, "half_step", WORD, NONE, ANY, false, 5, "no", "no|yes", "With half the step, or of a model with `accuracy` half of that.") \
   X(CHECK, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, false, 5, "", "", "With this accuracy.") \
-  X(FIGURE, KIND, "kind", WORD, NONE, ANY, false, 0, "lines", "lines|map", "Curves, or a colour for each point.") \
-  X(FIGURE, AT_X, "x", NAME, NONE, ANY, true, 0, "", "", "A column of the table.") \
-  X(FIGURE, AT_Y, "y", NAME, NONE, ANY, true, 0, "", "", "Another; of a map the second axis.") \
+  X(FIGURE, KIND, "kind", WORD, NONE, ANY, false, 0, "lines", "lines|map|motion|period|snapshots", "Of the table: `lines`, or a `map`, a colour for each point. Of what runs recorded, which needs `trajectories: yes`: `motion`, lines of a table with a row for each node at each time, whose columns are those of the axes, `node`, `time`, `elapsed` (since the record began), `x`, `y`, and `dx`, `dy` (since then too); `period` and `snapshots` as `strut run --draw` does, each run a picture of its own.") \
+  X(FIGURE, AT_X, "x", NAME, NONE, ANY, false, 0, "", "", "A column of the table. Required of lines, maps and motion.") \
+  X(FIGURE, AT_Y, "y", NAME, NONE, ANY, false, 0, "", "", "Another; of a map the second axis. Required as `x`.") \
   X(FIGURE, SERIES, "series", NAME, NONE, ANY, false, 0, "", "", "Of lines: the column that tells them apart.") \
   X(FIGURE, COLOR, "color", NAME, NONE, ANY, false, 0, "", "", "Of a map: the column that is coloured; hatched where `flips` is 1.") \
   X(FIGURE, PANELS, "panels", NAME, NONE, ANY, false, 0, "", "", "The column that has a panel for each of its values.") \
   X(FIGURE, BAND, "band", TEXT, NONE, ANY, false, 0, "", "", "Of lines: `COLUMN=TEXT`, grey where the column has that text, half way to the neighbours.") \
   X(FIGURE, ONLY, "only", TEXT, NONE, ANY, false, 0, "", "", "`COLUMN=TEXT`: of the rows whose column has that text, such as `variant=coarse`.") \
-  X(FIGURE, DIFFERENCE, "difference", NAME, NONE, ANY, false, 0, "", "", "A column with two different texts: lines of `y` of the second less that of the first; a map of the second, hatched where the first says otherwise.") \
+  X(FIGURE, DIFFERENCE, "difference", NAME, NONE, ANY, false, 0, "", "", "A column with two different texts: lines of `y` of the second less that of the first; a map of the second, hatched where the first says otherwise; a picture of the second, the first dashed.") \
+  X(FIGURE, FROM, "from", NUMBER, TIME, ANY, false, 0, "", "", "Of motion: nothing before.") \
+  X(FIGURE, TO, "to", NUMBER, TIME, ANY, false, 0, "", "", "Of motion: nothing after.") \
+  X(FIGURE, SCALE, "scale", PAIR, NONE, ANY, false, 0, "[1, 1]", "", "Of `period`: motion along x and y is drawn so many times as large.") \
+  X(FIGURE, TIMES, "times", TIMES, NONE, ANY, false, 0, "six", "", "Of `snapshots`: when.") \
   X(FIGURE, TITLE, "title", TEXT, NONE, ANY, false, 0, "", "", "What stands above it.")
 /* clang-format on */
 

@@ -127,6 +127,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_WORDS:
     case STRUT_TYPE_SIGNALS:
     case STRUT_TYPE_AXES:
+    case STRUT_TYPE_TIMES:
     case STRUT_TYPE_TABLE:
     case STRUT_TYPE_NODE_SETS:
       return value->kind == STRUT_TREE_LIST;

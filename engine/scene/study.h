@@ -83,14 +83,27 @@ typedef enum strut_keep {
       STRUT_KEEP_COUNT
 } strut_keep;
 
-/** A drawing of the table. */
+/** What is drawn, in the order of the language. */
+typedef enum strut_study_figure_kind {
+  STRUT_FIGURE_LINES,    /* of the table: x, y, series */
+  STRUT_FIGURE_MAP,      /* of the table: x, y, color */
+  STRUT_FIGURE_MOTION,   /* lines of what runs recorded, node by node */
+  STRUT_FIGURE_PERIOD,   /* ways of the nodes over the last period of each run */
+  STRUT_FIGURE_SNAPSHOTS /* shapes of each run */
+} strut_study_figure_kind;
+
+/** A drawing of the table, or of what runs recorded. */
 typedef struct strut_study_figure {
   const char *name;
-  bool map; /* x, y, color; else lines: x, y, series */
+  strut_study_figure_kind kind;
   /* columns of the table; NULL where none is named */
   const char *x, *y, *series, *color, *panels, *difference;
   const char *band, *only; /* "COLUMN=TEXT", or NULL */
   const char *title; /* or NULL */
+  double from, to;     /* of MOTION [s]; without limits infinite */
+  double scale[2];     /* of PERIOD; 0: 1 */
+  size_t time_count;   /* of SNAPSHOTS; 0: six */
+  const double *times; /* (time_count) [s] */
 } strut_study_figure;
 
 typedef struct strut_study {

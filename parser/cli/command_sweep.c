@@ -133,7 +133,7 @@ static strut_status finish(const strut_arguments *arguments, strut_sweep_study *
       shard.count ? STRUT_OK
                   : strut_study_table_write(arguments->output, table_name, sources, 1, &error);
   if (status) return complain(status, &error);
-  if (!shard.count) status = strut_sweep_figures_draw(&study->file.study, arguments->output, table);
+  if (!shard.count) status = strut_sweep_figures_draw(&study->plan, arguments->output, table);
   if (status) return status;
   if (!arguments->quiet || arguments->json)
     status = strut_sweep_print_end(state, table, arguments->json);

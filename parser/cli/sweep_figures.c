@@ -5,37 +5,55 @@
 #include <string.h>
 
 #include "engine/output/figures/table_map.h"
+#include "engine/study/study_runs.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
 #include "parser/diagnostics.h"
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
+static bool of_runs(const strut_study_figure *f) { return f->kind >= STRUT_FIGURE_MOTION; }
+
+/* What a figure is drawn of: the table, or what runs recorded. */
+typedef struct source {
+  const strut_sweep_plan *plan;
+  bool runs;
+} source;
+
 static const char *column_name(const void *context, size_t i) {
-  const strut_sweep_plan *plan = context;
-  return i < plan->column_count ? plan->columns[i].name : NULL;
+  const source *s = context;
+  size_t count = s->runs ? s->plan->axis_columns : s->plan->column_count;
+  if (i < count) return s->plan->columns[i].name;
+  return s->runs ? strut_study_motion_column(i - count) : NULL;
+}
+
+static bool holds_texts(const source *s, size_t i) {
+  size_t axes = s->plan->axis_columns;
+  return s->runs && i >= axes ? i == axes : s->plan->columns[i].word;
 }
 
 /* May the figure name this column? NULL is none. */
-static strut_status check_column(const strut_sweep_plan *plan, const strut_study_figure *figure,
+static strut_status check_column(const source *s, const strut_study_figure *figure,
                                  const char *name, bool number, strut_error *error) {
-  for (size_t i = 0; name && i < plan->column_count; i++) {
-    if (strcmp(plan->columns[i].name, name) != 0) continue;
-    if (!number || !plan->columns[i].word) return STRUT_OK;
+  const char *other = NULL;
+  for (size_t i = 0; name && (other = column_name(s, i)); i++) {
+    if (strcmp(other, name) != 0) continue;
+    if (!number || !holds_texts(s, i)) return STRUT_OK;
     return strut_fail(error, STRUT_BAD_SCENE,
                       "figure '%.60s' of the study: column '%.60s' holds texts, not numbers",
                       figure->name, name);
   }
   if (!name) return STRUT_OK;
-  const char *near = strut_did_you_mean(name, column_name, plan);
-  return strut_fail(
-      error, STRUT_BAD_SCENE, "figure '%.60s' of the study: the table has no column '%.60s'%s%s%s",
-      figure->name, name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  const char *near = strut_did_you_mean(name, column_name, s);
+  return strut_fail(error, STRUT_BAD_SCENE,
+                    "figure '%.60s' of the study: %s no column '%.60s'%s%s%s", figure->name,
+                    s->runs ? "the motion has" : "the table has", name,
+                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-/* COLUMN=TEXT, where the column has to be one of the table; the name is in `room`. */
-static strut_status check_match(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                const char *text, const char *key, strut_error *error) {
+/* COLUMN=TEXT, where the column has to be there. */
+static strut_status check_match(const source *s, const strut_study_figure *figure, const char *text,
+                                const char *key, strut_error *error) {
   char name[60];
   if (!text) return STRUT_OK;
   if (!strchr(text, '='))
@@ -43,21 +61,30 @@ static strut_status check_match(const strut_sweep_plan *plan, const strut_study_
                       "figure '%.60s' of the study: '%s' expects COLUMN=TEXT, not '%.60s'",
                       figure->name, key, text);
   snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-  return check_column(plan, figure, name, false, error);
+  return check_column(s, figure, name, false, error);
+}
+
+static strut_status check_figure(const source *s, const strut_study_figure *f, strut_error *error) {
+  if (s->runs && !s->plan->study->trajectories)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "figure '%.60s' of the study draws what runs recorded: the study lacks "
+                      "'trajectories: yes'",
+                      f->name);
+  strut_status status = check_column(s, f, f->x, true, error);
+  if (!status) status = check_column(s, f, f->y, true, error);
+  if (!status) status = check_column(s, f, f->series, false, error);
+  if (!status) status = check_column(s, f, f->color, false, error);
+  if (!status) status = check_column(s, f, f->panels, false, error);
+  if (!status) status = check_column(s, f, f->difference, false, error);
+  if (!status) status = check_match(s, f, f->band, "band", error);
+  return status ? status : check_match(s, f, f->only, "only", error);
 }
 
 strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < plan->study->figure_count && !status; i++) {
-    const strut_study_figure *f = &plan->study->figures[i];
-    status = check_column(plan, f, f->x, true, error);
-    if (!status) status = check_column(plan, f, f->y, true, error);
-    if (!status) status = check_column(plan, f, f->series, false, error);
-    if (!status) status = check_column(plan, f, f->color, false, error);
-    if (!status) status = check_column(plan, f, f->panels, false, error);
-    if (!status) status = check_column(plan, f, f->difference, false, error);
-    if (!status) status = check_match(plan, f, f->band, "band", error);
-    if (!status) status = check_match(plan, f, f->only, "only", error);
+    const source s = {.plan = plan, .runs = of_runs(&plan->study->figures[i])};
+    status = check_figure(&s, &plan->study->figures[i], error);
   }
   return status;
 }
@@ -80,11 +107,11 @@ static int column_of_match(const strut_table *table, const char *match, const ch
   return STRUT_NO_COLUMN;
 }
 
-static strut_status draw(const strut_study_figure *f, const char *path, const strut_table *table,
-                         strut_error *error) {
+static strut_status draw_table(const strut_study_figure *f, const char *path,
+                               const strut_table *table, strut_error *error) {
   strut_table_choice choice = {.difference = column_of(table, f->difference)};
   choice.only = column_of_match(table, f->only, &choice.only_value);
-  if (f->map) {
+  if (f->kind == STRUT_FIGURE_MAP) {
     const strut_table_map_figure map = {.title = f->title,
                                         .width = PAGE,
                                         .x = column_of(table, f->x),
@@ -96,30 +123,51 @@ static strut_status draw(const strut_study_figure *f, const char *path, const st
     return strut_table_map(path, &map, table, error);
   }
   strut_table_figure lines = {.title = f->title,
-                                    .width = PAGE,
-                                    .x = column_of(table, f->x),
-                                    .y = {column_of(table, f->y)},
-                                    .y_count = 1,
-                                    .by = column_of(table, f->series),
-                                    .panels = column_of(table, f->panels),
-                                    .choice = choice};
+                              .width = PAGE,
+                              .x = column_of(table, f->x),
+                              .y = {column_of(table, f->y)},
+                              .y_count = 1,
+                              .by = column_of(table, f->series),
+                              .panels = column_of(table, f->panels),
+                              .choice = choice,
+                              .between = f->kind == STRUT_FIGURE_MOTION};
   lines.band = column_of_match(table, f->band, &lines.band_value);
   return strut_table_curves(path, &lines, table, error);
 }
 
-strut_status strut_sweep_figures_draw(const strut_study *study, const char *directory,
+static strut_status draw_motion(const strut_sweep_plan *plan, const char *directory,
+                                const strut_study_figure *f, const char *path, strut_error *error) {
+  strut_table motion = {0};
+  strut_status status = strut_study_motion(plan, directory, f, &motion, error);
+  if (!status) status = draw_table(f, path, &motion, error);
+  strut_arena_free(&motion.arena);
+  return status;
+}
+
+static strut_status draw(const strut_sweep_plan *plan, const char *directory,
+                         const strut_study_figure *f, strut_table *table) {
+  strut_error error = {0};
+  const char *file = strut_arena_format(&table->arena, "%s/%s.svg", directory, f->name);
+  if (!file) return strut_complain_of_memory();
+  strut_status status = STRUT_OK;
+  if (f->kind == STRUT_FIGURE_MOTION)
+    status = draw_motion(plan, directory, f, file, &error);
+  else if (of_runs(f))
+    status = strut_study_pictures(plan, directory, f, PAGE, &error);
+  else
+    status = draw_table(f, file, table, &error);
+  if (error.message[0]) strut_complain(&error);
+  return status;
+}
+
+strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *directory,
                                       const char *path) {
+  const strut_study *study = plan->study;
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
   strut_status status = strut_table_read(path, &table);
-  for (size_t i = 0; i < study->figure_count && !status; i++) {
-    strut_error error = {0};
-    const char *file =
-        strut_arena_format(&table.arena, "%s/%s.svg", directory, study->figures[i].name);
-    if (!file) status = strut_complain_of_memory();
-    if (!status) status = draw(&study->figures[i], file, &table, &error);
-    if (error.message[0]) strut_complain(&error);
-  }
+  for (size_t i = 0; i < study->figure_count && !status; i++)
+    status = draw(plan, directory, &study->figures[i], &table);
   strut_arena_free(&table.arena);
   return status;
 }

@@ -7,10 +7,13 @@
 
 #include "engine/study/sweep.h"
 
-/** Do all figures name columns of the table? STRUT_BAD_SCENE with the reason. */
+/** Do all figures name columns of what they draw? STRUT_BAD_SCENE with the reason. */
 strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error);
-/** Draws each as directory/NAME.svg, of the table at `path`. Messages go to stderr. */
-strut_status strut_sweep_figures_draw(const strut_study *study, const char *directory,
+/**
+ * Draws each as directory/NAME.svg, of the table at `path` or of the runs beside it. Messages go to
+ * stderr.
+ */
+strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *directory,
                                       const char *path);
 
 #endif

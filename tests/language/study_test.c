@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Studies that are read, and studies that are refused with exactly the messages they announce. */
 #include <dirent.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -180,7 +181,13 @@ static void a_study_is_what_it_says(void **state) {
   strut_study_value values[5];
   open_good("every-key.yaml", &file);
   assert_int_equal(strut_grid_points(&file.study), 2 * 3 * 2 * 3);
-  assert_int_equal(file.study.figure_count, 3);
+  assert_int_equal(file.study.figure_count, 6);
+  const strut_study_figure *figures = file.study.figures;
+  assert_true(figures[0].kind == STRUT_FIGURE_LINES && isinf(figures[0].to));
+  assert_true(figures[3].kind == STRUT_FIGURE_MOTION && figures[3].from == 0.1 &&
+              figures[3].to == 0.2);
+  assert_int_equal(figures[4].time_count, 2);
+  assert_true(figures[4].times[1] == 0.12 && figures[5].scale[0] == 10);
   assert_true(file.study.half_step);
   assert_int_equal(file.study.keep,
                    1 << STRUT_KEEP_VELOCITY | 1 << STRUT_KEEP_WORK | 1 << STRUT_KEEP_POSITIONS);

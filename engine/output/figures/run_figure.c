@@ -74,8 +74,7 @@ static double largest(const double *values, size_t count) {
   return most;
 }
 
-/* What is known before anything is drawn. */
-static void prepare(strut_run_scene *run) {
+void strut_run_count_frames(strut_run_scene *run) {
   const strut_trajectory *m = run->motion;
   while (run->frames < m->frames && is_shape(run, run->frames)) run->frames++;
   run->force_limit = largest(m->force, run->frames * m->member_count);
@@ -90,7 +89,7 @@ strut_status strut_run_figure_draw(const char *path, const strut_run_figure *fig
                                    const strut_summary *summary, strut_error *error) {
   strut_run_scene run = {
       .figure = figure, .model = model, .motion = motion, .summary = summary, .arrow = 24};
-  if (motion->position) prepare(&run);
+  if (motion->position) strut_run_count_frames(&run);
   if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
   strut_canvas *canvas = NULL;

@@ -23,6 +23,10 @@ typedef struct strut_run_figure {
   double scale[2];     /* of PERIOD: motion along x and y is drawn so many times; 0: once */
   size_t time_count;   /* of SNAPSHOTS; 0: six, spread over what was recorded */
   const double *times; /* (time_count) [s]; the frame nearest to each is drawn */
+  /* Of PERIOD and SNAPSHOTS: another motion of the same nodes, dashed over it, and what it is
+     called; or NULL. */
+  const strut_trajectory *other;
+  const char *other_name;
 } strut_run_figure;
 
 /** Channels that a view needs, strut_channel bits. */

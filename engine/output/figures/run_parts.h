@@ -34,6 +34,8 @@ typedef struct strut_run_scene {
 /** A length of time [s] less than any between two frames. */
 #define STRUT_RUN_MOMENT 1e-9
 
+/** Finds what is known before anything is drawn: frames, period, force_limit. */
+void strut_run_count_frames(strut_run_scene *run);
 /** Positions (nodes, 2) of a frame. */
 const double *strut_run_positions(const strut_run_scene *run, size_t frame);
 /** Those as the model's coordinates, padded, in the arena; NULL: no memory. */
@@ -69,6 +71,19 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
 /** A way through (count) positions [m] inside the window's box. */
 void strut_run_draw_way(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                         const double (*way)[2], size_t count, double width);
+/**
+ * The figure's other motion as one being drawn, in an arena of its own, to be freed; false where there
+ * is none.
+ */
+bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
+/** Its members in a frame, dashed. */
+void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
+                          const strut_window *window, size_t frame);
+/** Its way through (count) positions [m], dashed. */
+void strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
+                              const strut_window *window, const double (*way)[2], size_t count);
+/** Appends ", dashed: NAME" to a text where there is another motion. */
+void strut_run_tell_other(const strut_run_scene *run, char *text, size_t size);
 /** Names of the nodes of a shape, off all that was drawn since the last names. */
 void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                           const double *q);

@@ -86,6 +86,27 @@ static double foot_height(const strut_run_scene *run) {
   return run->figure->width < WIDE && exaggerated(run) ? KEY + NOTE : KEY;
 }
 
+/* The ways of the other motion, moved to the places of this one. */
+static void add_other(const ways *w, ways *o, size_t nodes) {
+  for (size_t i = 0; i < nodes; i++)
+    for (size_t f = 0; f < o->count; f++)
+      for (int d = 0; d < 2; d++)
+        o->way[i * o->count + f][d] += w->rest[2 * i + (size_t)d] - o->rest[2 * i + (size_t)d];
+}
+
+static void draw_other(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
+                       const strut_window *window) {
+  strut_run_scene other;
+  ways o;
+  if (strut_run_find_other(run, &other) && find_ways(&other, &o)) {
+    add_other(w, &o, run->motion->node_count);
+    for (size_t i = 0; i < run->motion->node_count; i++)
+      strut_run_draw_other_way(&other, canvas, window,
+                               (const double(*)[2])(o.way + i * o.count), o.count);
+  }
+  strut_arena_free(&other.arena);
+}
+
 double strut_run_period_height(strut_run_scene *run) {
   ways w;
   double width = run->figure->width - 2 * STRUT_RUN_EDGE;
@@ -143,6 +164,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   double end = page - STRUT_RUN_EDGE - foot_height(run);
   if (!find_ways(run, &w)) return STRUT_NO_MEMORY;
   describe(run, &w, text, sizeof text);
+  strut_run_tell_other(run, text, sizeof text);
   strut_run_draw_title(run, canvas, text, run->figure->width >= WIDE);
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width,
                    end - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
@@ -154,6 +176,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   for (size_t i = 0; i < run->motion->node_count; i++)
     strut_run_draw_way(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
                        1.5);
+  draw_other(run, canvas, &w, &window);
   strut_run_draw_names(run, canvas, &window, w.shape);
   window.box.y = page - STRUT_RUN_EDGE - box.height; /* at the foot, where no structure is */
   strut_draw_yardstick(canvas, &window);

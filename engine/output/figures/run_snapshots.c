@@ -46,6 +46,15 @@ static size_t frame_of(const strut_run_scene *run, size_t i, size_t count) {
   return best;
 }
 
+/* The frame of the other motion nearest to one of this. */
+static size_t beside(const strut_run_scene *run, const strut_run_scene *other, size_t frame) {
+  double time = run->motion->time[frame];
+  size_t best = 0;
+  for (size_t f = 1; f < other->frames; f++)
+    if (fabs(other->motion->time[f] - time) < fabs(other->motion->time[best] - time)) best = f;
+  return best;
+}
+
 /* Instants to draw: those asked for that the run came to. */
 static size_t count_of(const strut_run_scene *run) {
   const strut_run_figure *figure = run->figure;
@@ -60,9 +69,15 @@ static size_t count_of(const strut_run_scene *run) {
 
 static void find_sizes(const strut_run_scene *run, grid *g) {
   double shape[2] = {0, 0};
+  strut_run_scene other;
+  bool compared = strut_run_find_other(run, &other);
   g->all = strut_bounds_none();
   for (size_t i = 0; i < g->count; i++) {
     strut_bounds b = strut_run_frame_bounds(run, frame_of(run, i, g->count));
+    if (compared) {
+      size_t frame = beside(run, &other, frame_of(run, i, g->count));
+      strut_bounds_add(&b, run->model, strut_run_positions(&other, frame));
+    }
     strut_run_add_ground(run, &b);
     for (int d = 0; d < 2; d++) {
       shape[d] = fmax(shape[d], b.high[d] - b.low[d]);
@@ -179,6 +194,9 @@ static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, 
   mark_start(run, canvas, g, &window);
   bool good = q && strut_run_draw_frame(run, canvas, &window, frame);
   strut_run_draw_reactions(run, canvas, &window, frame);
+  strut_run_scene other;
+  if (strut_run_find_other(run, &other))
+    strut_run_draw_other(&other, canvas, &window, beside(run, &other, frame));
   if (good && run->model->node_count <= MOST_NAMED && cell.width > NAMED)
     strut_run_draw_names(run, canvas, &window, q);
   strut_canvas_unclip(canvas);
@@ -216,6 +234,7 @@ strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   snprintf(what, sizeof what, "%zu instants at one scale%s%s%s", g.count,
            marked ? "; dashed: where " : g.common[0] ? "" : "; each in the middle",
            marked ? strut_run_measured_name(run) : "", marked ? " was at first" : "");
+  strut_run_tell_other(run, what, sizeof what);
   strut_run_draw_title(run, canvas, what, false);
   run->arrow = ARROW;
   for (size_t i = 0; i < g.count; i++) strut_run_expect_frame(run, frame_of(run, i, g.count));

@@ -196,8 +196,9 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
 strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
                                 const strut_table *table, strut_error *error) {
   strut_table_chosen chosen = {0};
-  const strut_table_pairing pairing = {.keys = {figure->x, figure->by, figure->panels},
+  const strut_table_pairing pairing = {.keys = {figure->by, figure->panels, figure->x},
                                        .key_count = 3,
+                                       .between = figure->between,
                                        .values = figure->y,
                                        .value_count = (size_t)figure->y_count};
   strut_status status = strut_table_choose(table, &figure->choice, pairing, &chosen, error);

@@ -33,6 +33,7 @@ typedef struct strut_table_figure {
   const char *band_value;
   bool log_x, log_y;
   strut_table_choice choice;
+  bool between; /* of a difference: straight lines between the points of the first side */
 } strut_table_figure;
 
 /**

@@ -26,7 +26,7 @@ static strut_status take_rows(const strut_table *table, const size_t *rows, size
     double *value = strut_arena_allocate(&some->arena, count, sizeof *value);
     if (!text || !value) return no_memory(error);
     for (size_t k = 0; k < count; k++) {
-      text[k] = from->text[rows[k]];
+      if (from->text) text[k] = from->text[rows[k]];
       if (from->value) value[k] = from->value[rows[k]];
     }
     some->columns[i] = (strut_table_column){
@@ -110,38 +110,80 @@ static strut_status find_sides(const strut_table *table, const strut_table_pairi
   return STRUT_OK;
 }
 
+/* The rows of the first side that a row of the second belongs to. */
+typedef struct partner {
+  size_t row, next; /* SIZE_MAX: there is none */
+  double weight;    /* of `next` */
+} partner;
+
+/* Do both differ in the last key alone? */
+static bool alongside(const keyed *a, const keyed *b) {
+  strut_table_pairing but_last = *a->pairing;
+  but_last.key_count--;
+  const keyed one = {.table = a->table, .pairing = &but_last, .row = a->row};
+  const keyed two = {.table = b->table, .pairing = &but_last, .row = b->row};
+  return compare_keys(&one, &two) == 0;
+}
+
+static partner find_partner(const sides *s, const keyed *wanted) {
+  const strut_table_pairing *p = wanted->pairing;
+  size_t low = 0, high = s->first_count;
+  while (low < high) { /* the first that is not before */
+    size_t middle = (low + high) / 2;
+    if (compare_keys(&s->first[middle], wanted) < 0) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  const keyed *after = s->first + low, *before = after - 1;
+  if (low < s->first_count && compare_keys(after, wanted) == 0)
+    return (partner){after->row, after->row, 0};
+  if (!p->between || low == 0 || low == s->first_count || !alongside(before, wanted) ||
+      !alongside(after, wanted))
+    return (partner){SIZE_MAX, SIZE_MAX, 0};
+  const double *x = wanted->table->columns[p->keys[p->key_count - 1]].value;
+  return (partner){before->row, after->row,
+                   (x[wanted->row] - x[before->row]) / (x[after->row] - x[before->row])};
+}
+
 /* What the rows say of one column: numbers are subtracted, different texts marked. */
-static bool compare_column(const strut_table *table, const sides *s, const size_t *partner,
+static bool compare_column(const strut_table *table, const sides *s, const partner *partners,
                            int column, strut_table *out, const char **mark) {
   strut_table_column *to = &out->columns[column];
   const strut_table_column *from = &table->columns[column];
   for (size_t k = 0; !from->value && k < s->second_count; k++)
-    if (partner[k] == SIZE_MAX || strcmp(from->text[partner[k]], to->text[k]) != 0) mark[k] = "1";
+    if (partners[k].row == SIZE_MAX || strcmp(from->text[partners[k].row], to->text[k]) != 0)
+      mark[k] = "1";
   if (!from->value) return true;
   double *value = strut_arena_allocate(&out->arena, s->second_count, sizeof *value);
   to->name = strut_arena_format(&out->arena, "%s, %s less %s", from->name, s->names.name[1],
                                 s->names.name[0]);
   if (!value || !to->name) return false;
-  for (size_t k = 0; k < s->second_count; k++)
-    value[k] = partner[k] == SIZE_MAX ? (double)NAN : to->value[k] - from->value[partner[k]];
+  for (size_t k = 0; k < s->second_count; k++) {
+    const partner *p = &partners[k];
+    value[k] = (double)NAN;
+    if (p->row == SIZE_MAX) continue;
+    value[k] = to->value[k] - from->value[p->row];
+    if (p->weight > 0) value[k] -= p->weight * (from->value[p->next] - from->value[p->row]);
+  }
   to->value = value;
   return true;
 }
 
 static strut_status compare(const strut_table *table, const strut_table_pairing *p, const sides *s,
                             strut_table *out, strut_error *error) {
-  size_t *partner = strut_arena_allocate(&out->arena, s->second_count, sizeof *partner);
+  partner *partners = strut_arena_allocate(&out->arena, s->second_count, sizeof *partners);
   const char **mark = strut_arena_allocate(&out->arena, s->second_count, sizeof *mark);
   const char *name = strut_arena_format(&out->arena, "%s: other", s->names.name[0]);
-  if (!partner || !mark || !name) return no_memory(error);
+  if (!partners || !mark || !name) return no_memory(error);
   for (size_t k = 0; k < s->second_count; k++) {
     const keyed wanted = {.table = table, .pairing = p, .row = s->second[k]};
-    const keyed *found = bsearch(&wanted, s->first, s->first_count, sizeof *s->first, compare_keys);
-    partner[k] = found ? found->row : SIZE_MAX;
+    partners[k] = find_partner(s, &wanted);
     mark[k] = "0";
   }
   for (size_t i = 0; i < p->value_count; i++)
-    if (!compare_column(table, s, partner, p->values[i], out, mark)) return no_memory(error);
+    if (!compare_column(table, s, partners, p->values[i], out, mark)) return no_memory(error);
   out->columns[out->column_count++] = (strut_table_column){.name = name, .unit = "", .text = mark};
   return STRUT_OK;
 }

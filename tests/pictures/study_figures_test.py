@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures of what the runs of a study recorded: closed forms found again in the pictures.
+
+usage: study_figures_test.py STRUT
+"""
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+from svg_paths import near, read
+
+strut = os.path.abspath(sys.argv[1])
+FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.05, 0.05, 0.05)
+failures = 0
+
+
+def check(good, text):
+    global failures
+    if not good:
+        failures += 1
+        print("FAILED:", text)
+
+
+def write(name, text):
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def sweep(text, code=0):
+    write("study.yaml", text)
+    done = subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet"],
+                          capture_output=True, text=True)
+    check(done.returncode == code, f"exit code {done.returncode}: {done.stderr}")
+    return done.stderr
+
+
+def curve(name):
+    found = [line for path in read(name)[2] if near(path.stroke, FIRST) and not path.curved
+             for line in path.lines if len(line) > 20]
+    check(len(found) == 1, f"{name}: {len(found)} curves of 1")
+    return found[0] if found else []
+
+
+def close(name, end, wanted, tolerance):
+    """Is the curve the function, up to the scales of the axes? Its times go from 0 to `end`."""
+    line = curve(name)
+    if not line:
+        return
+    left, right = line[0][0], line[-1][0]
+    times = [end * (x - left) / (right - left) for x, _ in line]
+    values = [wanted(t) for t in times]
+    low, high = values.index(min(values)), values.index(max(values))
+    scale = (line[high][1] - line[low][1]) / (values[high] - values[low])
+    worst = max(abs(line[low][1] + scale * (v - values[low]) - p[1])
+                for v, p in zip(values, line))
+    height = abs(line[high][1] - line[low][1])
+    check(scale < 0 and worst < tolerance * height, f"{name}: off by {worst / height:.2g}")
+
+
+os.chdir(tempfile.mkdtemp())
+# x = 1 + a cos(10 t); two masses, the second at rest.
+write("block.yaml", """strut: 1
+name: Block
+parameters: {far: 0.2, mass: 1 kg}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  block: {position: [1, 0], mass: mass, fixed: y}
+members:
+  spring: {kind: spring, nodes: [wall, block], stiffness: 100 N/m}
+configurations: {drawn: {}, out: {block: [1 + far, 0]}}
+initial: {configuration: out}
+solver: {step: 0.5 ms}
+run: {duration: 1 s, measure: {node: block}}
+output: {every: 3 ms, channels: [position]}
+""")
+# At rest first `far` is used nowhere: the axis is the mass.
+STUDY = """strut: 1
+study: motion
+model: block.yaml
+axes: [{mass: [1 kg]}]
+variants:
+  rest: {initial: {configuration: drawn, velocities: {block: [1, 0]}}}
+  out: {output: {every: 8 ms}}
+trajectories: yes
+keep: [velocity]
+figures:
+"""
+sweep(STUDY + """  one: {kind: motion, x: time, y: x, only: node=block, difference: variant}
+  begun: {kind: motion, x: elapsed, y: dx, series: variant, panels: node}
+  late: {kind: motion, x: time, y: dx, only: variant=out, series: node, from: 0.5 s}
+  seen: {kind: snapshots, times: [0 s, 0.1 s], difference: variant}
+  alone: {kind: snapshots, times: [0 s], only: variant=out}
+""")
+# The first has a sample at 0.999 s, none after it.
+close("out/one.svg", 0.992, lambda t: 0.2 * math.cos(10 * t) - 0.1 * math.sin(10 * t), 2e-3)
+names = sorted(name for name in os.listdir("out") if name.endswith(".svg"))
+check(names == ["alone.svg", "begun.svg", "late.svg", "one.svg", "seen.svg"], f"pictures: {names}")
+# The other motion: one dashed member at each of two times, as long as it is then.
+dashed = [path.lines[0] for path in read("out/seen.svg")[2]
+          if path.dash and near(path.stroke, DASHED) and len(path.lines) == 1]
+check(len(dashed) == 2, f"seen.svg: {len(dashed)} dashed members of 2")
+if len(dashed) == 2:
+    lengths = [math.dist(line[0], line[-1]) for line in dashed]
+    ratio = (1 + 0.1 * math.sin(10 * 0.096))  # the frame nearest to 0.096 s, which is drawn
+    check(abs(lengths[1] / lengths[0] - ratio) < 2e-3,
+          f"seen.svg: {lengths[1] / lengths[0]}, expected {ratio}")
+check(not [p for p in read("out/alone.svg")[2] if p.dash and near(p.stroke, DASHED)],
+      "alone.svg: there is no other motion")
+late = [line for path in read("out/late.svg")[2] if near(path.stroke, FIRST) and not path.curved
+        for line in path.lines if len(line) > 20]
+check(not late, "late.svg: the wall does not move, so that its curve has no bends")
+
+os.rename("out", "free")
+
+# A driven structure: a period each, one file for each point; the same motion dashed upon itself.
+write("driven.yaml", open("block.yaml").read().replace("initial:", """actuators:
+  drive: {member: spring, signal: {sine: {amplitude: 0.1, frequency: 2 Hz}}}
+initial:""").replace("{duration: 1 s, ", "{periods: 2, of: drive, "))
+sweep(STUDY.replace("block.yaml", "driven.yaml").replace("[1 kg]", "[1 kg, 2 kg]")
+      .replace("  rest: {initial: {configuration: drawn, velocities: {block: [1, 0]}}}",
+               "  same: {output: {every: 8 ms}}") +
+      "  way: {kind: period, scale: [2, 1], difference: variant}\n"
+      "  one: {kind: period, only: variant=out}\n")
+names = sorted(name for name in os.listdir("out") if name.startswith(("way", "one-")))
+check(names == ["one-1.svg", "one-2.svg", "way-1.svg", "way-2.svg"], f"pictures: {names}")
+ways = [path.lines[0] for path in read("out/way-2.svg")[2]
+        if path.dash and near(path.stroke, DASHED)]
+check(ways and max(abs(a[1] - b[1]) for way in ways for a, b in zip(way, way[1:])) < 0.01,
+      "way-2.svg: the other's way lies along x")
+
+# Refusals.
+for figure, wanted in (
+        ("{kind: motion, x: time, y: dz}", "the motion has no column 'dz'; did you mean 'dx'?"),
+        ("{kind: motion, x: time, y: node}", "column 'node' holds texts, not numbers"),
+        ("{kind: motion, x: time, y: velocity}", "the motion has no column 'velocity'"),
+        ("{kind: motion, x: time}", "figure 'bad' lacks 'y'"),
+        ("{kind: map, x: mass, y: velocity}", "map 'bad' lacks 'color'"),
+        ("{kind: snapshots, times: 3 s}", "expected a list of times such as"),
+        ("{kind: snapshots, times: [3 kg]}", "expected a time such as"),
+        ("{x: time, y: velocity}", "the table has no column 'time'"),
+        ("{kind: snapshots, only: node}", "'only' expects COLUMN=TEXT")):
+    said = sweep(STUDY + f"  bad: {figure}\n", code=2)
+    check(wanted in said, f"{figure}: {said}")
+said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n", code=2)
+check("lacks 'trajectories: yes'" in said, said)
+os.rename("out", "before")
+said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1)
+check("no run recorded any of it" in said, said)
+said = sweep(STUDY + "  bad: {kind: snapshots, difference: mass}\n", code=1)
+check("'difference' needs an axis of two values; 'mass' has 1" in said, said)
+print(f"{failures} failures")
+sys.exit(failures > 0)
