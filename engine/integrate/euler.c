@@ -3,8 +3,8 @@
  * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
  * the cheapest step there is.
  */
-#include "engine/forces/forces_kernel.h"
 #include "engine/integrate/integrator.h"
+#include "engine/integrate/plain_steps.h"
 
 static void *euler_create(const strut_model *model, strut_state *state) {
   return strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
@@ -25,24 +25,11 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
   }
 }
 
-STRUT_CLONES
-static void euler_plain(const strut_model *model, strut_state *state, double *a, double dt,
-                        int64_t count) {
-  run_steps(model, state, a, dt, count, false);
-}
-
-STRUT_CLONES
-static void euler_with_ledger(const strut_model *model, strut_state *state, double *a, double dt,
-                              int64_t count) {
-  run_steps(model, state, a, dt, count, true);
-}
+STRUT_PLAIN_STEPS(double, run_steps)
 
 static void euler_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                           int64_t count) {
-  if (state->ledger)
-    euler_with_ledger(model, state, workspace, dt, count);
-  else
-    euler_plain(model, state, workspace, dt, count);
+  advance_plain(model, state, workspace, dt, count);
 }
 
 const strut_integrator strut_integrator_euler = {

@@ -3,9 +3,9 @@
  * The classical Runge-Kutta method of fourth order with a fixed step, as the paper uses it: the
  * force law, contact and friction included, is evaluated at every stage.
  */
-#include "engine/forces/forces_kernel.h"
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
+#include "engine/integrate/plain_steps.h"
 
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
 typedef struct rk4_workspace {
@@ -72,17 +72,12 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
   }
 }
 
-STRUT_CLONES
-static void advance_plain(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
-                          int64_t count) {
-  run_steps(model, state, w, dt, count, false, false);
+STRUT_INLINE void run_elastic(const strut_model *model, strut_state *state, rk4_workspace *w,
+                              double dt, int64_t count, bool ledger) {
+  run_steps(model, state, w, dt, count, ledger, false);
 }
 
-STRUT_CLONES
-static void advance_with_ledger(const strut_model *model, strut_state *state, rk4_workspace *w,
-                                double dt, int64_t count) {
-  run_steps(model, state, w, dt, count, true, false);
-}
+STRUT_PLAIN_STEPS(rk4_workspace, run_elastic)
 
 STRUT_CLONES
 static void advance_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
@@ -94,8 +89,6 @@ static void rk4_advance(const strut_model *model, strut_state *state, void *work
                         int64_t count) {
   if (state->rigid)
     advance_rigid(model, state, workspace, dt, count);
-  else if (state->ledger)
-    advance_with_ledger(model, state, workspace, dt, count);
   else
     advance_plain(model, state, workspace, dt, count);
 }

@@ -3,8 +3,8 @@
  * Velocity Verlet with a fixed step and one evaluation of the forces per step. Forces that depend on
  * velocities see the predicted v + h a, which keeps the second order.
  */
-#include "engine/forces/forces_kernel.h"
 #include "engine/integrate/integrator.h"
+#include "engine/integrate/plain_steps.h"
 
 /* Accelerations at both ends of a step, predicted velocities, and the powers at its begin. */
 typedef struct verlet_workspace {
@@ -55,26 +55,13 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
   }
 }
 
-STRUT_CLONES
-static void verlet_plain(const strut_model *model, strut_state *state, verlet_workspace *w,
-                         double dt, int64_t count) {
-  run_steps(model, state, w, dt, count, false);
-}
-
-STRUT_CLONES
-static void verlet_with_ledger(const strut_model *model, strut_state *state, verlet_workspace *w,
-                               double dt, int64_t count) {
-  run_steps(model, state, w, dt, count, true);
-}
+STRUT_PLAIN_STEPS(verlet_workspace, run_steps)
 
 static void verlet_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                            int64_t count) {
   verlet_workspace *w = workspace;
   if (!w->started) verlet_restart(model, state, workspace, dt);
-  if (state->ledger)
-    verlet_with_ledger(model, state, w, dt, count);
-  else
-    verlet_plain(model, state, w, dt, count);
+  advance_plain(model, state, w, dt, count);
 }
 
 const strut_integrator strut_integrator_verlet = {

@@ -20,18 +20,14 @@ except ImportError as missing:
     print(f"{missing}: stiffness cannot be computed here")
     sys.exit(77)
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 models = os.path.abspath("models")
 CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
 SQUARE, PENDULUM = f"{models}/basics/x-frame.yaml", f"{models}/basics/pendulum.yaml"
 TWO, SNAP = f"{models}/gallery/two-mass-crawler.yaml", f"{models}/gallery/von-mises.yaml"
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def run(*words, code=0, stdin=""):
@@ -339,4 +335,4 @@ run: {duration: 1 s}
             "falls" not in done.stderr or told[0]["values"]["velocity"] is not None:
         fail(f"a model that fails: {told[0]['status']}, {done.stderr}")
 
-sys.exit(failures > 0)
+finish()

@@ -10,14 +10,10 @@ import re
 import subprocess
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def run(*words):
@@ -87,4 +83,4 @@ if len(shown) < 30:
 if alike("  velocity   10.03 mm/s" + LAST * " ", "  velocity   10.33 mm/s" + LAST * " "):
     fail("numbers that differ are taken for alike")
 
-sys.exit(failures > 0)
+finish()

@@ -9,16 +9,11 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.realpath(sys.argv[1])
 os.chdir(tempfile.mkdtemp())
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def write(name, text):
@@ -114,5 +109,4 @@ for shard in ("0/4", "1/4", "2/4", "3/4"):
     sweep("shards", variants, "--shard", shard)
 subprocess.run([strut, "merge", "shards"], check=True, capture_output=True)
 check(open("shards/table.csv").read() == open("all/table.csv").read(), "shards: table")
-print(f"{failures} failures")
-sys.exit(failures > 0)
+finish()

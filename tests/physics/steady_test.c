@@ -2,31 +2,12 @@
 /* Runs that stop when they are steady: what they call so, and what they must not. */
 #include <math.h>
 
+#include "tests/physics/driven_scenes.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;
-
-static void watch(strut_scene *scene, double step, double periods, double tolerance) {
-  strut_experiment *e = &scene->experiment;
-  e->step = step;
-  e->periods = periods;
-  e->period_signal = 0;
-  e->measure_last = 1;
-  e->steady.wanted = true;
-  e->steady.tolerance = tolerance;
-}
-
-/* A mass of 1 kg on a spring of natural frequency w with a damping ratio, pushed at 1 Hz. */
-static void oscillator(strut_scene *scene, double w, double zeta) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0, 1);
-  build_member(scene, STRUT_SPRING, 0, 1, w * w, 2 * zeta * w, 0);
-  build_load(scene, 1, 1, 0, build_sine(scene, 1, 1));
-  scene->nodes[1].fixed[1] = true;
-}
 
 /*
  * The transient is as large as the motion, at w = sqrt(1.5) 2 pi: its beat with the drive is not
@@ -35,8 +16,8 @@ static void oscillator(strut_scene *scene, double w, double zeta) {
 static void slow(double zeta, double tolerance, double periods) {
   strut_scene scene;
   double w = 2 * PI * sqrt(1.5);
-  oscillator(&scene, w, zeta);
-  watch(&scene, 0.005, periods, tolerance);
+  driven_oscillator(&scene, w, zeta);
+  driven_watch(&scene, 0.005, periods, tolerance);
   strut_summary s = motion_simulate(&scene);
   double left = exp(-zeta * w * s.duration);
   if (s.steady.kind == STRUT_MOTION_PERIODIC)
@@ -60,8 +41,8 @@ static void test_slow_transients_are_not_steady(void **unused) {
 static void test_a_damped_oscillator_becomes_steady(void **unused) {
   (void)unused;
   strut_scene scene;
-  oscillator(&scene, 2 * PI * sqrt(1.5), 0.05);
-  watch(&scene, 0.005, 400, 0.005);
+  driven_oscillator(&scene, 2 * PI * sqrt(1.5), 0.05);
+  driven_watch(&scene, 0.005, 400, 0.005);
   strut_summary s = motion_simulate(&scene);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
@@ -75,8 +56,8 @@ static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
   (void)unused;
   strut_scene scene;
   double w = 2 * PI * sqrt(1.5), zeta = 0.05, drive = 2 * PI;
-  oscillator(&scene, w, zeta);
-  watch(&scene, 0.0005, 400, 0.02);
+  driven_oscillator(&scene, w, zeta);
+  driven_watch(&scene, 0.0005, 400, 0.02);
   scene.experiment.steady.shooting = true;
   strut_summary s = motion_simulate(&scene);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
@@ -99,9 +80,9 @@ static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
 static void test_a_motion_that_repeats_every_second_period(void **unused) {
   (void)unused;
   strut_scene scene;
-  oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
+  driven_oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
   build_load(&scene, 1, 1, 0, build_sine(&scene, 1, 0.5));
-  watch(&scene, 0.005, 400, 0.001);
+  driven_watch(&scene, 0.005, 400, 0.001);
   scene.experiment.steady.shooting = true;
   strut_summary s = motion_simulate(&scene);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
@@ -117,15 +98,8 @@ static void test_a_motion_that_repeats_every_second_period(void **unused) {
 /* A shallow truss pushed through its flat shape, regularly or not: what is claimed holds later. */
 static void claim_holds(double amplitude, double frequency) {
   strut_scene scene;
-  strut_scene_init(&scene);
-  build_support(&scene, -1, 0);
-  build_support(&scene, 1, 0);
-  build_mass(&scene, 0, 0.3, 1);
-  for (int32_t k = 0; k < 2; k++) build_member(&scene, STRUT_SPRING, k, 2, 500, 0.4, 0);
-  scene.nodes[2].fixed[0] = true;
-  build_load(&scene, 2, 0, 1, build_sine(&scene, amplitude, frequency));
-  watch(&scene, 0.002 / frequency, 1500, 0.005);
-  scene.experiment.measure_node = 2;
+  driven_snap(&scene, 0.4, amplitude, frequency);
+  driven_watch(&scene, 0.002 / frequency, 1500, 0.005);
   strut_summary s = motion_simulate(&scene);
   if (s.steady.kind == STRUT_MOTION_PERIODIC) { /* 480 is a multiple of all n */
     scene.experiment.steady.wanted = false;
@@ -153,11 +127,11 @@ static void test_late_loads_and_beats_are_not_steady(void **unused) {
   (void)unused;
   for (int k = 0; k < 3; k++) {
     strut_scene scene;
-    oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
+    driven_oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
     int32_t signal = build_sine(&scene, 0.3, k == 0 ? 1 : k == 1 ? 1.001 : 1.37);
     if (k == 0) scene.signals[signal].start = 100;
     build_load(&scene, 1, 1, 0, signal);
-    watch(&scene, 0.005, 250, 0.005);
+    driven_watch(&scene, 0.005, 250, 0.005);
     strut_summary s = motion_simulate(&scene);
     if (k == 0) {
       assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
@@ -179,7 +153,7 @@ static void test_standing_still_is_steady(void **unused) {
   scene.gravity[1] = -9.81;
   build_rough_contact(&scene, 0, 1e5, 300, 0.5, 0.5, 1e-3);
   build_load(&scene, 0, 1, 0, build_sine(&scene, 1, 5));
-  watch(&scene, 1e-4, 1000, 0.005);
+  driven_watch(&scene, 1e-4, 1000, 0.005);
   strut_summary s = motion_simulate(&scene);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);

@@ -7,21 +7,12 @@
 #include <string.h>
 
 #include "engine/run/shooting.h"
+#include "tests/physics/driven_scenes.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;
-
-static void watch(strut_scene *scene, double step, double periods, double tolerance) {
-  strut_experiment *e = &scene->experiment;
-  e->step = step;
-  e->periods = periods;
-  e->period_signal = 0;
-  e->measure_last = 1;
-  e->steady.wanted = true;
-  e->steady.tolerance = tolerance;
-}
 
 /* ---- a mass of 1 kg between two springs, pushed through their line ---- */
 
@@ -75,15 +66,8 @@ static int snap_truth(double push, double frequency, double *lyapunov) {
 }
 
 static void snap_scene(strut_scene *scene, double push, double frequency) {
-  strut_scene_init(scene);
-  build_support(scene, -1, 0);
-  build_support(scene, 1, 0);
-  build_mass(scene, 0, RISE, 1);
-  for (int32_t k = 0; k < 2; k++) build_member(scene, STRUT_SPRING, k, 2, K, C, 0);
-  scene->nodes[2].fixed[0] = true;
-  build_load(scene, 2, 0, 1, build_sine(scene, push, frequency));
-  watch(scene, 1 / frequency / STEPS, 1000, 0.005);
-  scene->experiment.measure_node = 2;
+  driven_snap(scene, C, push, frequency);
+  driven_watch(scene, 1 / frequency / STEPS, 1000, 0.005);
 }
 
 /*
@@ -174,7 +158,7 @@ static void test_multipliers_of_a_bouncing_mass(void **unused) {
   scene.gravity[1] = -9.81;
   build_contact(&scene, 0, stiffness, damping);
   build_load(&scene, 0, 0, 1, build_sine(&scene, push, frequency));
-  watch(&scene, 1 / frequency / 2000, 400, 0.001);
+  driven_watch(&scene, 1 / frequency / 2000, 400, 0.001);
   scene.experiment.integrator = "rk4-events";
   scene.experiment.steady.shooting = true;
   strut_summary s = motion_simulate(&scene);
@@ -196,13 +180,8 @@ static void test_multipliers_of_a_bouncing_mass(void **unused) {
 static double left_over(double ratio, double zeta, double tolerance, double periods) {
   strut_scene scene;
   double w = 2 * PI * ratio, drive = 2 * PI;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1, 0, 1);
-  build_member(&scene, STRUT_SPRING, 0, 1, w * w, 2 * zeta * w, 0);
-  build_load(&scene, 1, 1, 0, build_sine(&scene, 1, 1));
-  scene.nodes[1].fixed[1] = true;
-  watch(&scene, 0.01, periods, tolerance);
+  driven_oscillator(&scene, w, zeta);
+  driven_watch(&scene, 0.01, periods, tolerance);
   strut_summary s = motion_simulate(&scene);
   assert_int_not_equal(s.steady.kind, STRUT_MOTION_IRREGULAR);
   double re = w * w - drive * drive, im = 2 * zeta * w * drive, size = hypot(re, im);
@@ -247,7 +226,7 @@ static void test_a_swing_that_grows_from_almost_nothing(void **unused) {
     build_member(&scene, STRUT_SPRING, 0, 1, 400, 6, 0);
     scene.gravity[1] = -9.81;
     build_load(&scene, 1, 0, 1, build_sine(&scene, 20, 0.985));
-    watch(&scene, 0.005 / 0.985, 300, 0.005);
+    driven_watch(&scene, 0.005 / 0.985, 300, 0.005);
     strut_summary s = motion_simulate(&scene);
     assert_int_not_equal(s.steady.kind,
                          STRUT_MOTION_PERIODIC); /* it is so at the earliest at 500 */
@@ -273,7 +252,7 @@ static void test_a_drift_that_ends_in_a_jolt(void **unused) {
   build_sized(&scene, STRUT_CABLE, 2, 1, 400, 1, 0, 2 - 0.05 * drift);
   scene.nodes[1].fixed[1] = true;
   build_load(&scene, 1, 1, 0, build_sine(&scene, push, 1));
-  watch(&scene, 0.01, 4000, 0.005);
+  driven_watch(&scene, 0.01, 4000, 0.005);
   strut_summary s = motion_simulate(&scene);
   double sway = push / (2 * PI * hypot(damping, 2 * PI)),
          when = log(drift / (0.05 * drift + 2 * sway));
@@ -293,7 +272,7 @@ static void test_standing_still_under_its_weight(void **unused) {
   build_member(&scene, STRUT_SPRING, 0, 1, 981, 20, 0);
   scene.gravity[1] = -9.81;
   build_load(&scene, 1, 1, 0, build_sine(&scene, 0, 2));
-  watch(&scene, 1e-3, 1000, 0.005);
+  driven_watch(&scene, 1e-3, 1000, 0.005);
   strut_summary s = motion_simulate(&scene);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);

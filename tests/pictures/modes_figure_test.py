@@ -13,17 +13,13 @@ import tempfile
 
 from svg_paths import has_segment, near, read, segments
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 SWING = 0.12  # of the structure's larger extent
 UNSTRAINED = 1e-9  # rounding
 REST = (0.8, 0.8, 0.8)
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def members_of(model):
@@ -142,4 +138,4 @@ for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
                          capture_output=True)
     if run.returncode != code or run.stdout or not run.stderr:
         fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
-sys.exit(failures > 0)
+finish()

@@ -12,17 +12,13 @@ import subprocess
 import sys
 import tempfile
 
-from svg_paths import has_segment, near, read, segments
+from svg_paths import distance, has_segment, near, read, segments
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
 
 strut = os.path.abspath(sys.argv[1])
 CURVE, CURVE_WIDTH = (0.15, 0.15, 0.15), 1.2
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def members_of(model):
@@ -36,18 +32,6 @@ def centres(paths, page):
              (min(p[1] for p in line) + max(p[1] for p in line)) / 2, path.fill)
             for path in paths if path.curved and path.fill and not near(path.fill, (1, 1, 1))
             for line in path.lines if max(p[0] for p in line) - min(p[0] for p in line) < 6]
-
-
-def off(point, line):
-    """Distance of a point from a line through points."""
-    best = math.inf
-    for a, b in zip(line, line[1:]):
-        along = (b[0] - a[0], b[1] - a[1])
-        square = along[0] ** 2 + along[1] ** 2
-        t = ((point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1]) / square if square else 0
-        t = max(0, min(1, t))
-        best = min(best, math.dist(point, (a[0] + t * along[0], a[1] + t * along[1])))
-    return best
 
 
 def check_curve(what, paths, rows, column, sign):
@@ -72,7 +56,7 @@ def check_curve(what, paths, rows, column, sign):
         wanted = unstable[k] if not rows[k]["event"] else unstable[k + 1]
         if rows[k]["event"] and rows[k + 1]["event"]:
             wanted = next(u for r, u in zip(rows[k:], unstable[k:]) if not r["event"])
-        if min(off(middle, line) for line, dashed in pieces if dashed == wanted) > 0.02:
+        if min(distance(middle, line) for line, dashed in pieces if dashed == wanted) > 0.02:
             fail(f"{what}: the curve does not lead from row {k} of path.csv to the next, "
                  f"{'un' if wanted else ''}stable")
     for line, _ in pieces:
@@ -173,4 +157,4 @@ for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
                           "--plot", bad], capture_output=True)
     if run.returncode != code or run.stdout or not run.stderr:
         fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
-sys.exit(failures > 0)
+finish()

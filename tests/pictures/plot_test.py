@@ -12,17 +12,12 @@ import time
 
 from svg_paths import near, read
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 FIRST, SECOND = (0, 0x60 / 255, 0xA8 / 255), (0xD5 / 255, 0x5E / 255, 0)
 BAND, FRAME = (0.86, 0.86, 0.86), (0.25, 0.25, 0.25)
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def plot(*words, code=0, err=""):
@@ -238,5 +233,4 @@ begin = time.monotonic()
 plot("long.csv", "--plot", "long.svg")
 check(time.monotonic() - begin < 60, "a million rows take a minute")
 check(os.path.getsize("long.svg") < 1e6, "a million rows make a large picture")
-print(f"{failures} failures")
-sys.exit(failures > 0)
+finish()

@@ -12,14 +12,10 @@ import tempfile
 
 from svg_compare import differ
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 if not shutil.which("jq"):
@@ -46,5 +42,4 @@ for row in csv.DictReader(again):
         fail(f"figure 8: {old} is now {row}")
 if len(again) != 7:
     fail(f"figure 8 at one frequency has {len(again)} lines")
-print(f"{failures} failures")
-sys.exit(failures > 0)
+finish()

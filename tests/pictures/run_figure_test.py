@@ -13,18 +13,14 @@ import sys
 import tempfile
 import time
 
-from svg_paths import has_segment, near, read, segments
+from svg_paths import distance, has_segment, near, read, segments
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
 
 strut = os.path.abspath(sys.argv[1])
 crawler = open("models/crawler/crawler.yaml").read()
 EDGE, PALE, WHITE = (0.1, 0.1, 0.1), (0.72, 0.72, 0.72), (1, 1, 1)
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def run(*words, code=0, err=""):
@@ -145,22 +141,10 @@ def check_period(here, model, factors):
             if min(math.dist(point, w) for w in wanted) > 0.03:
                 return fail(f"period {factors}: the way of node {i + 1} goes through {point}")
         for w in wanted:
-            if off(w, ways[i]) > 0.05:
+            if distance(w, ways[i]) > 0.05:
                 return fail(f"period {factors}: the way of node {i + 1} misses {w}")
     if not max(f[3][1] for f in last) > 1e-4 > max(f[0][1] for f in last):
         fail("node 4 does not lift, or node 1 does")
-
-
-def off(point, line):
-    """Distance of a point from a line through points."""
-    best = math.inf
-    for a, b in zip(line, line[1:]):
-        along = (b[0] - a[0], b[1] - a[1])
-        square = along[0] ** 2 + along[1] ** 2
-        t = ((point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1]) / square if square else 0
-        t = max(0, min(1, t))
-        best = min(best, math.dist(point, (a[0] + t * along[0], a[1] + t * along[1])))
-    return best
 
 
 def check_overview(here, model):
@@ -270,4 +254,4 @@ with tempfile.TemporaryDirectory() as here:
     check_same_bytes(here, short)
     check_refusals(here, short)
     check_stopped(here, short)
-sys.exit(failures > 0)
+finish()

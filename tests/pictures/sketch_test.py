@@ -10,16 +10,12 @@ import sys
 import tempfile
 import unicodedata
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
-failures = 0
 MARKS = {"●": "free", "▲": "held", "△": "y", "▷": "x"}
 ASCII = {"o": "free", "#": "held", "^": "y", ">": "x"}
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def check(text, locale="C.UTF-8", columns=None):
@@ -200,4 +196,4 @@ def test_sizes():
 for test in [test_scale, test_extent, test_typo, test_crowd, test_supports_and_ground,
              test_names, test_sizes]:
     test()
-sys.exit(1 if failures else 0)
+finish()

@@ -15,16 +15,11 @@ import xml.etree.ElementTree as tree
 
 from svg_paths import has_segment, near, read, segments
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 EDGE, WHITE, BLUE = (0.1, 0.1, 0.1), (1, 1, 1), (0, 0x60 / 255, 0xA8 / 255)
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def run(*words, code=0, err=""):
@@ -190,5 +185,4 @@ run("equilibria", crawler, "--plot", "x.svg", "--width", "3 s", code=1, err="exp
 run("form", arm, "--plot", "x.svg", "--width", "5 m", code=1, err="between 40 mm and 1 m")
 run("form", arm, "--plot", "nowhere/x.svg", code=4, err="nowhere")
 check(not os.path.exists("x.svg"), "a refusal left a picture")
-print(f"{failures} failures")
-sys.exit(failures > 0)
+finish()

@@ -4,6 +4,7 @@
 Cairo 1.16 puts colours into style="...", 1.18 into attributes of their own; both place things with
 matrices, docs/smaller.awk tells lines by their steps. What is read here is the same for all.
 """
+import math
 import re
 import xml.etree.ElementTree as tree
 
@@ -122,3 +123,15 @@ def has_segment(found, a, b, tolerance=0.02):
         if (close(start, a) and close(end, b)) or (close(start, b) and close(end, a)):
             return path
     return None
+
+
+def distance(point, line):
+    """Distance of a point from a line through points."""
+    best = math.inf
+    for a, b in zip(line, line[1:]):
+        along = (b[0] - a[0], b[1] - a[1])
+        square = along[0] ** 2 + along[1] ** 2
+        t = ((point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1]) / square if square else 0
+        t = max(0, min(1, t))
+        best = min(best, math.dist(point, (a[0] + t * along[0], a[1] + t * along[1])))
+    return best

@@ -13,16 +13,11 @@ import sys
 import tempfile
 import zlib
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 models = os.path.abspath("models")
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def run(*words, code=0):
@@ -273,5 +268,4 @@ with tempfile.TemporaryDirectory() as work:
     hostile()
     diverged()
     alone()
-print("ok" if failures == 0 else f"{failures} failed")
-sys.exit(failures > 0)
+finish()
