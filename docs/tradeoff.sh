@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures what accuracy costs, for the crawler and five scenes of other kinds: the diagrams and
-# tables of docs/numerics.md, section "What accuracy costs". Takes some ten minutes of CPU time. With names
-# behind the directory, only those.
+# Measures what accuracy costs, for the crawler and five scenes of other kinds, at one operating point and
+# at many: the diagrams and tables of docs/numerics.md, section "What accuracy costs". Takes some twelve
+# minutes of CPU time. With names behind the directory, only those.
 #
 #   sh docs/tradeoff.sh build/release/strut docs/tradeoff [NAME]...
 set -eu
@@ -16,24 +16,36 @@ wanted=" $* "
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# study NAME MODEL OPTION...: NAME.svg and what was printed, NAME.txt.
+# study NAME MODEL OPTION...: what was printed, NAME.txt, and NAME.svg, which points-... have none of.
 study() {
   name=$1 model=$2
   shift 2
   case $wanted in "  " | *" $name "*) ;; *) return 0 ;; esac
   "$strut" tradeoff "$here/../models/$model.yaml" "$@" -o "$work/$name" |
     sed '/^  took /d' >"$output/$name.txt"
-  awk -f "$here/smaller.awk" "$work/$name/tradeoff.svg" >"$output/$name.svg"
+  case $name in points-*) ;; *)
+    awk -f "$here/smaller.awk" "$work/$name/tradeoff.svg" >"$output/$name.svg" ;;
+  esac
   echo "$name"
 }
 
-study crawler crawler/crawler --periods 60 --steps 4 --budget "40 s"
-study smooth gallery/double-pendulum --budget "20 s"
-study contact basics/bouncing-node --budget "20 s"
-study friction gallery/two-mass-crawler --budget "30 s"
-study stiff basics/pendulum --budget "20 s"
-study cable gallery/d-bar --budget "15 s"
+study crawler crawler/crawler --periods 60 --steps 4 --budget "60 s"
+study smooth gallery/double-pendulum --budget "12 s"
+study contact basics/bouncing-node --budget "10 s"
+study friction gallery/two-mass-crawler --budget "25 s"
+study stiff basics/pendulum --set stiffness="1e8 N/m" --budget "12 s"
+study cable gallery/d-bar --budget "12 s"
 # Many operating points: the errors that one point hides.
 study points crawler/crawler --vary frequency=9.8..15 --vary friction=0.05..0.5 \
-  --vary start=I,II --points 40 --seed 1 --periods 60 --steps 4 --own-model --budget "400 s" \
-  --methods rk4,rk4-events,verlet-events
+  --vary start=I,II --points 40 --seed 1 --periods 60 --steps 3 --own-model --budget "400 s" \
+  --methods rk4,rk4-events,verlet-events,adaptive
+study points-smooth gallery/double-pendulum --vary length=0.5..2 --vary mass=0.5..2 --points 20 \
+  --seed 1 --steps 6 --own-model --budget "20 s"
+study points-contact basics/bouncing-node --vary height=0.05..0.3 --vary zeta=0.02..0.5 \
+  --points 40 --seed 1 --steps 6 --own-model --budget "12 s"
+study points-friction gallery/two-mass-crawler --set step="50 us" --vary friction=0.05..0.3 \
+  --vary frequency=6..15 --points 20 --seed 1 --steps 6 --own-model --budget "25 s"
+study points-stiff basics/pendulum --vary stiffness=1e7..1e9 --vary length=0.5..2 --points 20 \
+  --seed 1 --steps 6 --own-model --budget "20 s"
+study points-cable gallery/d-bar --vary bars=1e7..1e9 --points 20 --seed 1 --steps 4 --own-model \
+  --budget "15 s"
