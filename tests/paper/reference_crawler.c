@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The crawler straight from the paper, slowly: equations (1) to (10) and (14), Table 1.
+ * The crawler straight from the paper, slowly: equations (1) to (10), (14) and (15), Table 1.
  *
  * It shares no code with strut, so that strut can be compared with it. The mass matrix is the dense
  * one of all ten coordinates, inverted by Gauss elimination.
@@ -86,7 +86,8 @@ static void applied_forces(const crawler *it, double t, const double *q, const d
       if (j == driven) {
         double omega = 2 * acos(-1.0) * it->frequency;
         double s = it->amplitude * sin(omega * t), sdot = it->amplitude * omega * cos(omega * t);
-        drive = (table1[j].c * s + table1[j].k * sdot) * lambda[axis] / length;
+        bool rests = it->half_wave && t > 0.5 / it->frequency; /* (15), as the notes settle it */
+        if (!rests) drive = (table1[j].c * s + table1[j].k * sdot) * lambda[axis] / length;
       }
       force[b + axis] += spring + damper + drive;
       force[a + axis] -= spring + damper + drive;
@@ -171,7 +172,7 @@ int reference_settle(const crawler *with_drive, double dt, double *z) {
   return 0;
 }
 
-static double centre_of_mass(const double *q) {
+double reference_centre(const double *q) {
   double moment = 0.0, mass = 0.0;
   for (int j = 0; j < MEMBERS; j++) {
     double middle = 0.5 * (q[2 * (table1[j].i1 - 1)] + q[2 * (table1[j].i2 - 1)]);
@@ -205,7 +206,7 @@ void reference_run(const crawler *it, double dt, double periods, double window, 
   long touching[NODES] = {0};
   for (int i = 0; i < NODES; i++) figures->highest[i] = -(double)INFINITY;
   for (long n = 0; n < steps; n++) {
-    if (n == first) start_com = centre_of_mass(z), start_one = z[0];
+    if (n == first) start_com = reference_centre(z), start_one = z[0];
     reference_step(it, n, dt, z);
     if (n < first) continue;
     for (int i = 0; i < NODES; i++) {
@@ -214,7 +215,7 @@ void reference_run(const crawler *it, double dt, double periods, double window, 
     }
   }
   double span = (double)(steps - first) * dt;
-  figures->velocity = (centre_of_mass(z) - start_com) / span;
+  figures->velocity = (reference_centre(z) - start_com) / span;
   figures->velocity_one = (z[0] - start_one) / span;
   for (int i = 0; i < NODES; i++) figures->duty[i] = (double)touching[i] / (double)(steps - first);
 }

@@ -7,11 +7,14 @@
 #ifndef STRUT_TESTS_PAPER_REFERENCE_CRAWLER_H
 #define STRUT_TESTS_PAPER_REFERENCE_CRAWLER_H
 
+#include <stdbool.h>
+
 enum { REFERENCE_NODES = 5, REFERENCE_STATE = 4 * REFERENCE_NODES };
 
 typedef struct reference_crawler {
   double inverse_mass[2 * REFERENCE_NODES][2 * REFERENCE_NODES]; /* filled by reference_prepare */
   double frequency, amplitude, mu;                               /* [Hz], [m], [1] */
+  bool half_wave; /* drives during the first half of its first period only: (15) */
 } reference_crawler;
 
 /** Over the window at the run's end: (14) in [m/s], fractions of steps, heights in [m]. */
@@ -29,6 +32,8 @@ void reference_prepare(reference_crawler *it, int mirrored, double *z);
 int reference_settle(const reference_crawler *it, double dt, double *z);
 /** The step from n dt to (n + 1) dt. */
 void reference_step(const reference_crawler *it, long n, double dt, double *z);
+/** The centre of mass, along the ground [m]. */
+double reference_centre(const double *q);
 /** Runs so many periods from z on, and measures over the last `window` of them. */
 void reference_run(const reference_crawler *it, double dt, double periods, double window, double *z,
                    reference_figures *figures);
