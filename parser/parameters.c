@@ -36,12 +36,13 @@ static const char *stacked_name(strut_reader *reader, size_t i) {
   return reader->parameter_stack[i]->name;
 }
 
-/* Reports the circle that leads back to p, which is being read. */
+/* Reports the circle that leads back to p, which is being read, where p has its expression. */
 static void report_circle(strut_reader *reader, const strut_parameter_state *p) {
   size_t first = 0;
+  bool given = p->set && !p->set->known && p->set->place.line;
   while (reader->parameter_stack[first] != p) first++;
-  strut_say(reader, p->key->place, "parameter '%s' depends on itself: %s", p->name,
-            strut_circle(reader, stacked_name, first, reader->parameter_depth));
+  strut_say(reader, given ? p->set->place : p->key->place, "parameter '%s' depends on itself: %s",
+            p->name, strut_circle(reader, stacked_name, first, reader->parameter_depth));
 }
 
 /* Reports about what was given from outside: where a study gives it, else where it is declared. */
@@ -179,10 +180,10 @@ static void set(strut_reader *reader, const strut_setting *setting) {
   strut_parameter_state *p = strut_parameter_find(reader, setting->name);
   char message[300];
   if (!p) {
-    snprintf(message, sizeof message, "the scene has no parameter '%s'%s",
-             strut_shown(reader, setting->name),
-             strut_hint(reader, setting->name, strut_parameter_name, reader,
-                        reader->parameter_count));
+    snprintf(
+        message, sizeof message, "the scene has no parameter '%s'%s",
+        strut_shown(reader, setting->name),
+        strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
     object(reader, setting, section_place(reader), message);
   } else if (p->set) {
     strut_say(reader, setting->place.line ? setting->place : p->key->place, "%s%s is given twice",

@@ -120,6 +120,12 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   check_overrides(r, count);
 }
 
+/* A model in the place of a study would be wrong in every line. */
+static bool is_model(const strut_tree *root) {
+  return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "nodes", NULL) &&
+         !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
+}
+
 static strut_status read_all(strut_study_reader *r, const strut_override *overrides, size_t count,
                              strut_error *error) {
   strut_study_file *file = r->file;
@@ -130,6 +136,11 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   reader->document.root = file->document.root;
   reader->holes = status == STRUT_BAD_SCENE;
   if (reader->holes) reader->failed = true;
+  if (is_model(file->document.root)) {
+    strut_say(reader, strut_root_place(reader),
+              "this is a model, expected a study, which names one");
+    return STRUT_BAD_SCENE;
+  }
   strut_read_fields(reader, STRUT_ROOM_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));

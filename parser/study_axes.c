@@ -94,6 +94,8 @@ static bool count_even(strut_study_reader *r, along *a, double count, bool logar
   strut_study_column *c = a->column;
   if (count != floor(count) || count > (double)STRUT_STUDY_MOST_POINTS)
     return refuse_range(r, a, "needs a whole 'count' from 1 to 1e9");
+  if (count == 1.0 && c->from != c->to)
+    return refuse_range(r, a, "of one value cannot have both 'from' and 'to'");
   if (logarithmic && !(c->from * c->to > 0.0))
     return refuse_range(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
   a->count = (int64_t)count;
@@ -130,10 +132,23 @@ static bool read_range(strut_study_reader *r, along *a) {
   return count_steps(r, a, step);
 }
 
+/* Columns of the table that no axis can bear the name of. */
+static bool is_reserved(const strut_study_reader *r, const char *name) {
+  static const char *const names[] = {"point", "status", "message"};
+  bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+    found = found || strcmp(name, names[i]) == 0;
+  return found;
+}
+
 /* A parameter with its values. */
 static bool read_along(strut_study_reader *r, along *a) {
   a->parameter = strut_study_parameter(r, a->key);
   if (!a->parameter) return false;
+  if (is_reserved(r, a->parameter->name))
+    strut_say(r->reader, a->key->place,
+              "the table has a column '%s' of its own: give the model's parameter another name",
+              a->parameter->name);
   *a->column = (strut_study_column){.name = a->parameter->name, .word = a->parameter->text};
   *a->setting = (strut_setting){.name = a->parameter->name,
                                 .text = "",
@@ -215,8 +230,8 @@ static void add_variants(strut_study_reader *r) {
   strut_study_file *file = r->file;
   strut_study_column *column = strut_take(r->reader, &file->arena, 1, sizeof *column);
   if (!column) return;
-  *column = (strut_study_column){
-      .name = "variant", .unit = "1", .word = true, .words = r->variant_names};
+  *column =
+      (strut_study_column){.name = "variant", .unit = "1", .word = true, .words = r->variant_names};
   file->columns[file->column_count++] = (strut_setting){.name = column->name, .bare = true};
   file->study.axes[file->study.axis_count++] =
       (strut_study_axis){.count = (int64_t)r->variant_count, .column_count = 1, .columns = column};

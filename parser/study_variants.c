@@ -29,12 +29,31 @@ static bool lay_over(strut_document *document, const char *section, const strut_
   return slot->state != STRUT_GIVEN || strut_overlay(document, section, slot->value);
 }
 
+/* A model that cannot be read may be the study itself, or another: then that is all there is to say. */
+static bool is_study(const strut_study_file *file) {
+  strut_document document = {0};
+  strut_diagnostics unsaid = {0};
+  strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
+  strut_document_read(&document, &unsaid);
+  const strut_tree *root = document.root;
+  bool found = root && root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
+               !strut_tree_find(root, "nodes", NULL);
+  strut_document_free(&document);
+  strut_diagnostics_free(&unsaid);
+  return found;
+}
+
 /* The text of the model as a tree, with the study's keys over it and those of a variant, or NULL. */
 static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_fields *variant) {
   strut_study_file *file = r->file;
   strut_scene_source **source = &file->sources[file->source_count];
   strut_status status = strut_scene_source_open(
       file->model_path, file->model_text, file->model_length, &file->model_diagnostics, source);
+  if (status == STRUT_BAD_SCENE && is_study(file)) {
+    strut_diagnostics_free(&file->model_diagnostics);
+    strut_say(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
+              "'%s' is a study, expected a model", strut_shown(r->reader, file->study.model));
+  }
   if (status != STRUT_OK) return status;
   file->source_count++;
   strut_document *document = strut_scene_source_document(*source);
@@ -79,6 +98,10 @@ strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
     strut_say(r->reader, variants->value->place, "there are no variants in 'variants'");
   if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
   file->study.model = model->value->text;
+  if (!*file->study.model) {
+    strut_say(r->reader, model->value->place, "expected the path of a model for 'model', found ''");
+    return STRUT_BAD_SCENE;
+  }
   file->model_path = model_path(file->path, model->value->text);
   if (!file->model_path) return STRUT_NO_MEMORY;
   strut_status status =

@@ -52,30 +52,34 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
 
-static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
-                       const char *suffix, const char *unit, bool word) {
-  const char *text = strut_arena_format(&plan->arena, "%s%s%s", prefix, name, suffix);
-  plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
-  return text != NULL;
+/* An axis may bear the name of a column. */
+static bool is_axis(const strut_sweep_plan *plan, const char *name) {
+  bool found = false;
+  for (size_t i = 0; i < plan->axis_columns && !found; i++)
+    found = strcmp(plan->columns[i].name, name) == 0;
+  return found;
 }
 
-/* An axis may bear the name of a column: then the column is that of the run. */
-static const char *prefix_of(const strut_sweep_plan *plan, const char *name) {
-  for (size_t i = 0; i < plan->axis_columns; i++)
-    if (strcmp(plan->columns[i].name, name) == 0) return "run_";
-  return "";
+/* Then the column, which is behind the axes, is that of the run. */
+static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
+                       const char *unit, bool word) {
+  const char *text = strut_arena_format(&plan->arena, "%s%s", prefix, name);
+  while (text && plan->column_count >= plan->axis_columns && is_axis(plan, text))
+    text = strut_arena_format(&plan->arena, "run_%s", text);
+  plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
+  return text != NULL;
 }
 
 static bool add_things(strut_sweep_plan *plan, const strut_scene *scene) {
   bool fine = true;
   for (size_t i = 0; i < scene->contact_count && keeps(plan, STRUT_KEEP_CONTACTS); i++) {
     const char *node = scene->nodes[scene->contacts[i].node].name;
-    fine = fine && add_column(plan, "duty_", node, "", "1", false) &&
-           add_column(plan, "height_", node, "", "m", false);
+    fine = fine && add_column(plan, "duty_", node, "1", false) &&
+           add_column(plan, "height_", node, "m", false);
   }
   for (size_t i = 0; i < scene->node_count && keeps(plan, STRUT_KEEP_POSITIONS); i++)
-    fine = fine && add_column(plan, "x_", scene->nodes[i].name, "", "m", false) &&
-           add_column(plan, "y_", scene->nodes[i].name, "", "m", false);
+    fine = fine && add_column(plan, "x_", scene->nodes[i].name, "m", false) &&
+           add_column(plan, "y_", scene->nodes[i].name, "m", false);
   return fine;
 }
 
@@ -83,19 +87,17 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   bool fine = true;
   for (size_t i = 0; i < plan->axis_columns && fine; i++) {
     const strut_study_column *c = strut_grid_column(plan->study, i, NULL);
-    fine = add_column(plan, "", c->name, "", c->unit, c->word);
+    fine = add_column(plan, "", c->name, c->unit, c->word);
   }
   for (size_t i = 0; i < ENTRIES && fine; i++)
     if (keeps(plan, entries[i].keep))
-      fine = add_column(plan, prefix_of(plan, entries[i].name), entries[i].name, "",
-                        entries[i].unit, entries[i].word);
+      fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
   fine = fine && add_things(plan, scene);
-  if (fine && keeps(plan, STRUT_KEEP_OUTCOME))
-    fine = add_column(plan, prefix_of(plan, "outcome"), "outcome", "", "1", true);
+  if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
   if (fine && plan->check)
-    fine = add_column(plan, "check_", "velocity", "", "m/s", false) &&
-           add_column(plan, "check_", plan->flips ? "outcome" : "motion", "", "1", true) &&
-           add_column(plan, "", "flips", "", "1", false);
+    fine = add_column(plan, "check_", "velocity", "m/s", false) &&
+           add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
+           add_column(plan, "", "flips", "1", false);
   return fine;
 }
 

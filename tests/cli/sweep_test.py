@@ -403,6 +403,76 @@ def what_has_changed_is_refused():
     write("block.yaml", BLOCK)
 
 
+def names_of_columns():
+    """A parameter may bear a column's name; no two columns bear the same."""
+    names = ("velocity", "run_velocity", "check_velocity", "flips", "x_block", "outcome")
+    extra = "".join(f"{name}: 1, " for name in names)
+    write("names.yaml", BLOCK.replace("parameters: {", "parameters: {" + extra).replace(
+        "stiffness: stiffness,", "stiffness: stiffness*" + "*".join(names) + ","))
+    axes = "".join(f"  - {name}: [1]\n" for name in names)
+    write("columns.yaml", f"""strut: 1
+study: columns
+model: names.yaml
+axes:
+{axes}keep: [velocity, positions, outcome]
+check: {{half_step: yes}}
+""")
+    run("sweep", "columns.yaml", "-o", "columns", "--quiet")
+    head = [name.split(" ")[0] for name in read("columns/table.csv").decode().splitlines()[0].split(",")]
+    check(len(set(head)) == len(head), f"columns of one name: {head}")
+    for name in ("run_run_velocity", "run_check_velocity", "run_flips", "run_x_block", "run_outcome"):
+        check(name in head, f"no column {name}: {head}")
+
+
+def two_at_once():
+    """The second is told of the first, and what the first makes is the table."""
+    write("two.yaml", read("crawler.yaml").decode())
+    words = [strut, "sweep", "two.yaml", "-o", "two", "--threads", "1", "--quiet"]
+    children = [subprocess.Popen(words, cwd=work, stderr=subprocess.PIPE, text=True)
+                for _ in range(2)]
+    said = [child.communicate()[1] for child in children]
+    codes = sorted(child.returncode for child in children)
+    check(codes in ([0, 4], [0, 0]), f"two at once: exit codes {codes}")  # [0, 0]: one after another
+    check(codes[1] == 0 or "is at work on" in "".join(said), f"two at once: {said}")
+    check(read("two/table.csv") == read("one/table.csv"), "two at once: table")
+
+
+def no_room():
+    """A full disk and one that cannot be written: exit code 4, and then the sweep goes on."""
+    os.makedirs(f"{work}/disk")
+
+    def mount(*options):
+        return subprocess.run(["mount", *options, f"{work}/disk"], capture_output=True).returncode == 0
+    write("room.yaml", """strut: 1
+study: room
+model: block.yaml
+axes: [{mass: {from: 1 kg, to: 2 kg, count: 900}}]
+set: {seconds: 1 ms}
+keep: [velocity]
+""")
+    said = run("sweep", "room.yaml", "-o", "block.yaml", code=4).stderr
+    check("block.yaml" in said, said)
+    run("sweep", "room.yaml", "-o", "room", "--quiet")
+    if os.getuid() or not mount("-t", "tmpfs", "-o", "size=80k", "none"):
+        print("no disk of its own: a full disk is not tested")
+        return
+    try:
+        said = run("sweep", "room.yaml", "-o", "disk/x", "--quiet", code=4).stderr
+        check("No space left on device" in said, said)
+        check(not os.path.exists(f"{work}/disk/x/table.csv"), "a table on a full disk")
+        mount("-o", "remount,rw,size=1000k")
+        done = json.loads(run("sweep", "room.yaml", "-o", "disk/x", "--status", "--json").stdout)
+        end = json.loads(run("sweep", "room.yaml", "-o", "disk/x", "--json").stdout)
+        check(0 < end["computed"] == done["missing"] < 900, f"after a full disk: {end}, {done}")
+        check(read("disk/x/table.csv") == read("room/table.csv"), "after a full disk: table")
+        mount("-o", "remount,ro")
+        run("sweep", "room.yaml", "-o", "disk/y", code=4)
+        run("sweep", "room.yaml", "-o", "disk/x", code=4)
+        check(read("disk/x/table.csv") == read("room/table.csv"), "on a disk for reading: table")
+    finally:
+        subprocess.run(["umount", f"{work}/disk"], check=True)
+
+
 def wrong_use():
     check("-o DIR is missing" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
     run("sweep", "fails.yaml", "-o", "other", "--threads", "0", code=1)
@@ -451,7 +521,8 @@ try:
                  lanes_change_nothing, killed_and_resumed, interrupted, points_that_fail,
                  failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
                  trajectories,
-                 what_has_changed_is_refused, wrong_use, memory_is_flat):
+                 what_has_changed_is_refused, names_of_columns, two_at_once,
+                 no_room, wrong_use, memory_is_flat):
         began = time.time()
         test()
         print(f"{test.__name__}: {time.time() - began:.1f} s")
