@@ -3,8 +3,10 @@
  * Hot: the forces of STRUT_LANE_WIDTH models at once, a vector register of lanes for each number.
  *
  * The order of operations is that of members_kernel.h, ground_kernel.h and mass_kernel.h lane by
- * lane, so that each lane has the bits of a single run. What is a branch there is a choice here. A file
- * includes this once, and before that may define STRUT_LANE_WIDTH and the functions' STRUT_LANE_TARGET.
+ * lane, so that each lane has the bits of a single run. What is a branch there is a choice here. A row
+ * of lanes is one vector register or two parts, where registers are narrower: more is under way then,
+ * and indices are found once for both. A file includes this once, and before that may define
+ * STRUT_LANE_WIDTH, STRUT_LANE_PARTS and the functions' STRUT_LANE_TARGET.
  */
 #ifndef STRUT_ENGINE_FORCES_LANE_KERNEL_H
 #define STRUT_ENGINE_FORCES_LANE_KERNEL_H
@@ -18,25 +20,45 @@
 #ifndef STRUT_LANE_WIDTH
 #define STRUT_LANE_WIDTH 2
 #endif
+#ifndef STRUT_LANE_PARTS
+#define STRUT_LANE_PARTS 1
+#endif
 #ifndef STRUT_LANE_TARGET
 #define STRUT_LANE_TARGET
 #endif
 #define STRUT_LANE_INLINE static inline __attribute__((always_inline)) STRUT_LANE_TARGET
 
-enum { LANE_WIDTH = STRUT_LANE_WIDTH };
+enum {
+  LANE_ROW = STRUT_LANE_WIDTH,
+  LANE_PARTS = STRUT_LANE_PARTS,
+  LANE_WIDTH = LANE_ROW / LANE_PARTS
+};
 
-/* One number of each lane; arrays of them are aligned to whole vectors. */
-typedef double lane_real __attribute__((vector_size(8 * STRUT_LANE_WIDTH)));
-typedef long long lane_mask __attribute__((vector_size(8 * STRUT_LANE_WIDTH)));
+/* The statement for each part p of a row; p is a constant. */
+#define LANE_EACH(statement)                                                                       \
+  do {                                                                                             \
+    {                                                                                              \
+      enum { p = 0 };                                                                              \
+      statement;                                                                                   \
+    }                                                                                              \
+    if (LANE_PARTS > 1) {                                                                          \
+      enum { p = LANE_PARTS - 1 };                                                                 \
+      statement;                                                                                   \
+    }                                                                                              \
+  } while (0)
 
-STRUT_LANE_INLINE lane_real lane_load(const double *p) { return *(const lane_real *)p; }
-STRUT_LANE_INLINE void lane_store(double *p, lane_real x) { *(lane_real *)p = x; }
-/* Row i of a table. */
-STRUT_LANE_INLINE lane_real lane_row(const double *table, size_t i) {
-  return lane_load(table + i * LANE_WIDTH);
+/* One number of each lane of a part; arrays of them are aligned to whole vectors. */
+typedef double lane_real __attribute__((vector_size(8 * STRUT_LANE_WIDTH / STRUT_LANE_PARTS)));
+typedef long long lane_mask __attribute__((vector_size(8 * STRUT_LANE_WIDTH / STRUT_LANE_PARTS)));
+
+STRUT_LANE_INLINE lane_real lane_load(const double *x) { return *(const lane_real *)x; }
+STRUT_LANE_INLINE void lane_store(double *to, lane_real x) { *(lane_real *)to = x; }
+/* Part p of row i of a table. */
+STRUT_LANE_INLINE lane_real lane_row(const double *table, size_t i, int p) {
+  return lane_load(table + i * LANE_ROW + p * LANE_WIDTH);
 }
-STRUT_LANE_INLINE void lane_put(double *table, size_t i, lane_real x) {
-  lane_store(table + i * LANE_WIDTH, x);
+STRUT_LANE_INLINE void lane_put(double *table, size_t i, int p, lane_real x) {
+  lane_store(table + i * LANE_ROW + p * LANE_WIDTH, x);
 }
 
 /* mask ? x : y */
@@ -51,9 +73,15 @@ STRUT_LANE_INLINE lane_real lane_sign(lane_real x) {
   return lane_choose(x > zero, one, lane_choose(x < zero, -one, zero));
 }
 STRUT_LANE_INLINE bool lane_any(lane_mask mask) {
+#if defined(__x86_64__) && STRUT_LANE_WIDTH == 8 && STRUT_LANE_PARTS == 1
+  return __builtin_ia32_cvtq2mask512(mask) != 0;
+#elif defined(__x86_64__) && STRUT_LANE_WIDTH == 4 * STRUT_LANE_PARTS
+  return __builtin_ia32_movmskpd256((lane_real)mask) != 0;
+#else
   long long any = 0;
   for (int l = 0; l < LANE_WIDTH; l++) any |= mask[l];
   return any != 0;
+#endif
 }
 STRUT_LANE_INLINE lane_real lane_root(lane_real x) {
   lane_real root;
@@ -81,16 +109,16 @@ STRUT_LANE_INLINE void lane_sincos(lane_real turns, lane_real *sine, lane_real *
   *cosine = lane_choose(-(((quadrant + 1) >> 1) & 1), -second, second);
 }
 
-/* Value and rate of the signal of drive or load i at the lanes' times. */
-STRUT_LANE_INLINE void lane_signal(const strut_lane_tables *t, bool load, int32_t i, lane_real time,
-                                   lane_real *value, lane_real *rate) {
+/* Value and rate of the signal of drive or load i at the times of a part's lanes. */
+STRUT_LANE_INLINE void lane_signal(const strut_lane_tables *t, bool load, int32_t i, int p,
+                                   lane_real time, lane_real *value, lane_real *rate) {
   size_t at = (size_t)(load ? t->first->drives.count + i : i);
-  const double *wave = t->wave + at * STRUT_LANE_WAVE_ROWS * LANE_WIDTH;
+  const double *wave = t->wave + at * STRUT_LANE_WAVE_ROWS * LANE_ROW;
   lane_real zero = {0}, sine, cosine;
   if (!t->all_waves[at]) {
     *value = *rate = zero;
     for (int l = 0; l < LANE_WIDTH; l++) {
-      const strut_model *m = t->model[l];
+      const strut_model *m = t->model[p * LANE_WIDTH + l];
       double one, its_rate;
       strut_signal_evaluate(m->scene->signals, load ? m->loads.signal[i] : m->drives.signal[i],
                             time[l], &one, &its_rate);
@@ -98,45 +126,51 @@ STRUT_LANE_INLINE void lane_signal(const strut_lane_tables *t, bool load, int32_
     }
     return;
   }
-  lane_real start = lane_row(wave, STRUT_LANE_START);
-  lane_real turns =
-      lane_row(wave, STRUT_LANE_FREQUENCY) * (time - start) + lane_row(wave, STRUT_LANE_PHASE);
-  lane_mask on = (time >= start) & (time < lane_row(wave, STRUT_LANE_STOP)) &
-                 (turns < lane_row(wave, STRUT_LANE_MOST_TURNS));
+  lane_real start = lane_row(wave, STRUT_LANE_START, p);
+  lane_real turns = lane_row(wave, STRUT_LANE_FREQUENCY, p) * (time - start) +
+                    lane_row(wave, STRUT_LANE_PHASE, p);
+  lane_mask on = (time >= start) & (time < lane_row(wave, STRUT_LANE_STOP, p)) &
+                 (turns < lane_row(wave, STRUT_LANE_MOST_TURNS, p));
   lane_sincos(turns, &sine, &cosine);
-  *value = lane_choose(on, lane_row(wave, STRUT_LANE_AMPLITUDE) * sine, zero);
-  *rate = lane_choose(on, lane_row(wave, STRUT_LANE_RATE) * cosine, zero);
+  *value = lane_choose(on, lane_row(wave, STRUT_LANE_AMPLITUDE, p) * sine, zero);
+  *rate = lane_choose(on, lane_row(wave, STRUT_LANE_RATE, p) * cosine, zero);
 }
 
-/* All that depends on time alone, at the lanes' times [s]. */
-STRUT_LANE_INLINE void lane_drive(strut_lane_tables *t, lane_real time) {
+STRUT_LANE_INLINE void lane_drive_part(strut_lane_tables *t, int p, lane_real time) {
   const strut_drive_table *d = &t->first->drives;
   lane_real value, rate;
   for (int32_t i = 0; i < d->count; i++) {
     size_t j = (size_t)d->member[i];
-    lane_signal(t, false, i, time, &value, &rate);
-    lane_put(t->rest, j, lane_row(d->first[i] ? t->rest0 : t->rest, j) + value);
-    lane_put(t->rest_rate, j, d->first[i] ? rate : lane_row(t->rest_rate, j) + rate);
+    lane_signal(t, false, i, p, time, &value, &rate);
+    lane_put(t->rest, j, p, lane_row(d->first[i] ? t->rest0 : t->rest, j, p) + value);
+    lane_put(t->rest_rate, j, p, d->first[i] ? rate : lane_row(t->rest_rate, j, p) + rate);
   }
   for (int32_t i = 0; i < t->first->loads.count; i++) {
-    lane_signal(t, true, i, time, &value, &rate);
-    lane_put(t->load_factor, (size_t)i, value);
+    lane_signal(t, true, i, p, time, &value, &rate);
+    lane_put(t->load_factor, (size_t)i, p, value);
   }
 }
 
-STRUT_LANE_INLINE void lane_loads(strut_lane_tables *t, const double *restrict v, bool ledger) {
+/* All that depends on time alone, at the times (step + ahead) dt [s]. */
+STRUT_LANE_INLINE void lane_drive(strut_lane_tables *t, const lane_real *step, double ahead,
+                                  const lane_real *dt) {
+  LANE_EACH(lane_drive_part(t, p, (step[p] + ahead) * dt[p]));
+}
+
+STRUT_LANE_INLINE void lane_loads(strut_lane_tables *t, int p, const double *restrict v,
+                                  bool ledger) {
   const strut_load_table *loads = &t->first->loads;
   for (int32_t i = 0; i < loads->count; i++) {
     size_t k = (size_t)i, at = 2 * (size_t)loads->node[i];
-    lane_real factor = lane_row(t->load_factor, k);
-    lane_real px = factor * lane_row(t->load_x, k), py = factor * lane_row(t->load_y, k);
-    lane_put(t->force, at, lane_row(t->force, at) + px);
-    lane_put(t->force, at + 1, lane_row(t->force, at + 1) + py);
+    lane_real factor = lane_row(t->load_factor, k, p);
+    lane_real px = factor * lane_row(t->load_x, k, p), py = factor * lane_row(t->load_y, k, p);
+    lane_put(t->force, at, p, lane_row(t->force, at, p) + px);
+    lane_put(t->force, at + 1, p, lane_row(t->force, at + 1, p) + py);
     if (!ledger) continue;
-    lane_real power = px * lane_row(v, at) + py * lane_row(v, at + 1);
-    lane_put(t->power, STRUT_POWER_LOAD, lane_row(t->power, STRUT_POWER_LOAD) + power);
-    lane_put(t->power, STRUT_POWER_MOVED,
-             lane_row(t->power, STRUT_POWER_MOVED) + lane_magnitude(power));
+    lane_real power = px * lane_row(v, at, p) + py * lane_row(v, at + 1, p);
+    lane_put(t->power, STRUT_POWER_LOAD, p, lane_row(t->power, STRUT_POWER_LOAD, p) + power);
+    lane_put(t->power, STRUT_POWER_MOVED, p,
+             lane_row(t->power, STRUT_POWER_MOVED, p) + lane_magnitude(power));
   }
 }
 
@@ -148,22 +182,22 @@ typedef struct lane_powers {
 } lane_powers;
 
 /* See members_tension. */
-STRUT_LANE_INLINE lane_real lane_tension(const strut_lane_tables *t, size_t j, unsigned terms,
-                                         bool ledger, lane_real length, lane_real rate,
-                                         lane_powers *powers) {
+STRUT_LANE_INLINE lane_real lane_tension(const strut_lane_tables *t, size_t j, int p,
+                                         unsigned terms, bool ledger, lane_real length,
+                                         lane_real rate, lane_powers *powers) {
   bool driven = terms & STRUT_TERM_DRIVE;
-  lane_real stretch = length - lane_row(t->rest, j), zero = {0};
-  lane_real elastic = lane_row(t->stiffness, j) * stretch, tension = elastic;
-  lane_real own_rate = driven ? rate - lane_row(t->rest_rate, j) : rate;
-  if (terms & STRUT_TERM_DAMPING) tension = elastic + lane_row(t->damping, j) * own_rate;
+  lane_real stretch = length - lane_row(t->rest, j, p), zero = {0};
+  lane_real elastic = lane_row(t->stiffness, j, p) * stretch, tension = elastic;
+  lane_real own_rate = driven ? rate - lane_row(t->rest_rate, j, p) : rate;
+  if (terms & STRUT_TERM_DAMPING) tension = elastic + lane_row(t->damping, j, p) * own_rate;
   if (terms & STRUT_TERM_SLACK) {
-    lane_mask taut = stretch > lane_row(t->taut_stretch, j);
-    lane_mask pulling = taut & (tension > lane_row(t->taut_tension, j));
+    lane_mask taut = stretch > lane_row(t->taut_stretch, j, p);
+    lane_mask pulling = taut & (tension > lane_row(t->taut_tension, j, p));
     tension = lane_choose(pulling, tension, zero);
     if (ledger) elastic = lane_choose(taut, elastic, zero);
   }
   if (ledger && driven) {
-    lane_real power = -tension * lane_row(t->rest_rate, j);
+    lane_real power = -tension * lane_row(t->rest_rate, j, p);
     powers->drive += power;
     powers->moved += lane_magnitude(power);
   }
@@ -171,53 +205,68 @@ STRUT_LANE_INLINE lane_real lane_tension(const strut_lane_tables *t, size_t j, u
   return tension;
 }
 
-/* Roots and quotients take long and wait for nothing: they are begun so many members ahead. */
-enum { LANE_AHEAD = 2 };
-
 /* Vector from the first to the second node, length, and its inverse or 0. */
 typedef struct lane_span {
   lane_real x, y, length, inverse;
 } lane_span;
 
 STRUT_LANE_INLINE void lane_measure(const strut_member_table *m, const double *restrict q, size_t j,
-                                    lane_span *d) {
+                                    int p, lane_span *d) {
   size_t a = m->from[j], b = m->to[j];
   lane_real zero = {0};
-  d->x = lane_row(q, b) - lane_row(q, a), d->y = lane_row(q, b + 1) - lane_row(q, a + 1);
+  d->x = lane_row(q, b, p) - lane_row(q, a, p),
+  d->y = lane_row(q, b + 1, p) - lane_row(q, a + 1, p);
   d->length = lane_root(d->x * d->x + d->y * d->y);
   d->inverse = lane_choose(d->length > zero, 1.0 / d->length, zero);
 }
 
 STRUT_LANE_INLINE void lane_pull(const strut_lane_tables *t, const strut_member_table *m,
                                  const lane_span *d, const double *restrict v,
-                                 double *restrict force, size_t j, unsigned terms, bool ledger,
-                                 lane_powers *powers) {
+                                 double *restrict force, size_t j, int p, unsigned terms,
+                                 bool ledger, lane_powers *powers) {
   size_t a = m->from[j], b = m->to[j];
   lane_real rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
-    lane_real wx = lane_row(v, b) - lane_row(v, a), wy = lane_row(v, b + 1) - lane_row(v, a + 1);
+    lane_real wx = lane_row(v, b, p) - lane_row(v, a, p),
+              wy = lane_row(v, b + 1, p) - lane_row(v, a + 1, p);
     rate = (wx * d->x + wy * d->y) * d->inverse;
   }
-  lane_real tension = lane_tension(t, j, terms, ledger, d->length, rate, powers);
+  lane_real tension = lane_tension(t, j, p, terms, ledger, d->length, rate, powers);
   lane_real density = tension * d->inverse, px = density * d->x, py = density * d->y;
-  lane_put(force, a, lane_row(force, a) + px);
-  lane_put(force, a + 1, lane_row(force, a + 1) + py);
-  lane_put(force, b, lane_row(force, b) - px);
-  lane_put(force, b + 1, lane_row(force, b + 1) - py);
+  lane_put(force, a, p, lane_row(force, a, p) + px);
+  lane_put(force, a + 1, p, lane_row(force, a + 1, p) + py);
+  lane_put(force, b, p, lane_row(force, b, p) - px);
+  lane_put(force, b + 1, p, lane_row(force, b + 1, p) - py);
 }
 
 STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *restrict q,
                                   const double *restrict v, double *restrict force, int32_t begin,
-                                  int32_t end, unsigned terms, bool ledger, lane_powers *powers) {
+                                  int32_t end, unsigned terms, bool ledger,
+                                  lane_powers (*powers)[LANE_PARTS]) {
   const strut_member_table m = t->first->members;
-  lane_span spans[LANE_AHEAD];
-  for (int32_t j = begin; j < end && j < begin + LANE_AHEAD; j++)
-    lane_measure(&m, q, (size_t)j, &spans[j % LANE_AHEAD]);
   for (int32_t j = begin; j < end; j++) {
-    lane_span *d = &spans[j % LANE_AHEAD];
-    lane_pull(t, &m, d, v, force, (size_t)j, terms, ledger, &powers[ledger ? j % STRUT_LANES : 0]);
-    if (j + LANE_AHEAD < end) lane_measure(&m, q, (size_t)(j + LANE_AHEAD), d);
+    lane_span d[LANE_PARTS];
+    lane_powers *sums = powers[ledger ? j % STRUT_LANES : 0];
+    LANE_EACH(lane_measure(&m, q, (size_t)j, p, d + p));
+    LANE_EACH(lane_pull(t, &m, d + p, v, force, (size_t)j, p, terms, ledger, sums + p));
   }
+}
+
+/* The members' powers, place by place within groups as a single run sums them. */
+STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
+                                       lane_powers (*powers)[LANE_PARTS]) {
+  lane_real drive = {0}, lost = {0}, zero = {0}, moved = lane_row(t->power, STRUT_POWER_MOVED, p);
+  for (int l = 0; l < STRUT_LANES; l++) {
+    drive += powers[l][p].drive;
+    lost += powers[l][p].lost;
+    moved += powers[l][p].moved + powers[l][p].lost;
+  }
+  lane_put(t->power, STRUT_POWER_DRIVE, p, drive);
+  lane_put(t->power, STRUT_POWER_BELT, p, zero);
+  lane_put(t->power, STRUT_POWER_MEMBERS, p, lost);
+  lane_put(t->power, STRUT_POWER_CONTACT, p, zero);
+  lane_put(t->power, STRUT_POWER_FRICTION, p, zero);
+  lane_put(t->power, STRUT_POWER_MOVED, p, moved);
 }
 
 /* Slots of padding pull with no force, and no one asks for the place where they do. */
@@ -225,9 +274,10 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
                                     const double *restrict v, bool ledger) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   const strut_member_table *m = &t->first->members;
-  lane_powers powers[STRUT_LANES];
+  lane_powers powers[STRUT_LANES][LANE_PARTS];
   lane_real none = {0};
-  for (int l = 0; l < STRUT_LANES && ledger; l++) powers[l] = (lane_powers){none, none, none};
+  for (int l = 0; l < STRUT_LANES && ledger; l++)
+    LANE_EACH((powers[l][p] = (lane_powers){.drive = none, .moved = none, .lost = none}));
   for (int32_t b = 0; b < m->blocks; b++) {
     int32_t begin = b * STRUT_BLOCK,
             end = begin + STRUT_BLOCK < m->count ? begin + STRUT_BLOCK : m->count;
@@ -247,77 +297,69 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
     }
 #undef STRUT_CASE
   }
-  if (!ledger) return;
-  lane_real drive = {0}, lost = {0}, zero = {0}, moved = lane_row(t->power, STRUT_POWER_MOVED);
-  for (int l = 0; l < STRUT_LANES; l++) {
-    drive += powers[l].drive;
-    lost += powers[l].lost;
-    moved += powers[l].moved + powers[l].lost;
-  }
-  lane_put(t->power, STRUT_POWER_DRIVE, drive);
-  lane_put(t->power, STRUT_POWER_BELT, zero);
-  lane_put(t->power, STRUT_POWER_MEMBERS, lost);
-  lane_put(t->power, STRUT_POWER_CONTACT, zero);
-  lane_put(t->power, STRUT_POWER_FRICTION, zero);
-  lane_put(t->power, STRUT_POWER_MOVED, moved);
+  if (ledger) LANE_EACH(lane_sum_powers(t, p, powers));
 }
 
 /* Ground */
 
 /* See strut_friction_force. */
-STRUT_LANE_INLINE lane_real lane_friction(const double *entry, lane_real normal, lane_real slip,
-                                          lane_real applied) {
-  lane_mask slides = lane_magnitude(slip) >= lane_row(entry, STRUT_LANE_STICK);
-  lane_mask pushed = lane_magnitude(applied) >= lane_row(entry, STRUT_LANE_MU_STATIC) * normal;
-  lane_real most = -lane_row(entry, STRUT_LANE_MU_KINETIC) * normal;
+STRUT_LANE_INLINE lane_real lane_friction(const double *entry, int p, lane_real normal,
+                                          lane_real slip, lane_real applied) {
+  lane_mask slides = lane_magnitude(slip) >= lane_row(entry, STRUT_LANE_STICK, p);
+  lane_mask pushed = lane_magnitude(applied) >= lane_row(entry, STRUT_LANE_MU_STATIC, p) * normal;
+  lane_real most = -lane_row(entry, STRUT_LANE_MU_KINETIC, p) * normal;
   return lane_choose(slides | pushed, most * lane_sign(lane_choose(slides, slip, applied)),
                      -applied);
 }
 
-STRUT_LANE_INLINE void lane_add(double *table, size_t i, lane_mask where, lane_real x) {
-  lane_real before = lane_row(table, i);
-  lane_put(table, i, lane_choose(where, before + x, before));
+STRUT_LANE_INLINE void lane_add(double *table, size_t i, int p, lane_mask where, lane_real x) {
+  lane_real before = lane_row(table, i, p);
+  lane_put(table, i, p, lane_choose(where, before + x, before));
 }
 
 /* See ground_touch; where: the lanes in which it does. */
 STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v, size_t at,
-                                  const double *entry, lane_mask where, lane_real gap, bool sloped,
-                                  bool rough, bool ledger) {
+                                  const double *entry, int p, lane_mask where, lane_real gap,
+                                  bool sloped, bool rough, bool ledger) {
   const double *g = t->ground;
-  lane_real tx = lane_row(g, STRUT_LANE_TANGENT_X), ty = lane_row(g, STRUT_LANE_TANGENT_Y);
-  lane_real nx = lane_row(g, STRUT_LANE_NORMAL_X), ny = lane_row(g, STRUT_LANE_NORMAL_Y);
-  lane_real vx = lane_row(v, at), vy = lane_row(v, at + 1), zero = {0}, friction = zero;
-  lane_real fx = lane_row(t->force, at), fy = lane_row(t->force, at + 1);
+  lane_real tx = lane_row(g, STRUT_LANE_TANGENT_X, p), ty = lane_row(g, STRUT_LANE_TANGENT_Y, p);
+  lane_real nx = lane_row(g, STRUT_LANE_NORMAL_X, p), ny = lane_row(g, STRUT_LANE_NORMAL_Y, p);
+  lane_real vx = lane_row(v, at, p), vy = lane_row(v, at + 1, p), zero = {0}, friction = zero;
+  lane_real fx = lane_row(t->force, at, p), fy = lane_row(t->force, at + 1, p);
   lane_real into = sloped ? vx * nx + vy * ny : vy, along = sloped ? vx * tx + vy * ty : vx;
-  lane_real belt_speed = lane_row(g, STRUT_LANE_BELT), slip = along - belt_speed;
-  lane_real damper = lane_choose(into < zero, -lane_row(entry, STRUT_LANE_DAMPING) * into, zero);
-  lane_real normal = -lane_row(entry, STRUT_LANE_STIFFNESS) * gap + damper;
-  if (rough) friction = lane_friction(entry, normal, slip, sloped ? fx * tx + fy * ty : fx);
-  lane_add(t->force, at, where, sloped ? friction * tx + normal * nx : friction);
-  lane_add(t->force, at + 1, where, sloped ? friction * ty + normal * ny : normal);
+  lane_real belt_speed = lane_row(g, STRUT_LANE_BELT, p), slip = along - belt_speed;
+  lane_real damper = lane_choose(into < zero, -lane_row(entry, STRUT_LANE_DAMPING, p) * into, zero);
+  lane_real normal = -lane_row(entry, STRUT_LANE_STIFFNESS, p) * gap + damper;
+  if (rough) friction = lane_friction(entry, p, normal, slip, sloped ? fx * tx + fy * ty : fx);
+  lane_add(t->force, at, p, where, sloped ? friction * tx + normal * nx : friction);
+  lane_add(t->force, at + 1, p, where, sloped ? friction * ty + normal * ny : normal);
   if (!ledger) return;
   lane_real damped = -damper * into, rubbed = -friction * slip, belt = friction * belt_speed;
-  lane_add(t->power, STRUT_POWER_CONTACT, where, damped);
-  lane_add(t->power, STRUT_POWER_FRICTION, where, rubbed);
-  lane_add(t->power, STRUT_POWER_BELT, where, belt);
-  lane_add(t->power, STRUT_POWER_MOVED, where,
+  lane_add(t->power, STRUT_POWER_CONTACT, p, where, damped);
+  lane_add(t->power, STRUT_POWER_FRICTION, p, where, rubbed);
+  lane_add(t->power, STRUT_POWER_BELT, p, where, belt);
+  lane_add(t->power, STRUT_POWER_MOVED, p, where,
            damped + lane_magnitude(rubbed) + lane_magnitude(belt));
+}
+
+/* One node, in those lanes of a part in which it touches. */
+STRUT_LANE_INLINE void lane_contact(strut_lane_tables *t, const double *restrict q,
+                                    const double *restrict v, size_t at, const double *entry, int p,
+                                    bool sloped, bool rough, bool ledger) {
+  lane_real zero = {0}, gap = lane_row(q, at + 1, p) - lane_row(t->ground, STRUT_LANE_HEIGHT, p);
+  if (sloped)
+    gap = lane_row(q, at, p) * lane_row(t->ground, STRUT_LANE_NORMAL_X, p) +
+          gap * lane_row(t->ground, STRUT_LANE_NORMAL_Y, p);
+  lane_mask touches = gap < zero;
+  if (lane_any(touches)) lane_touch(t, v, at, entry, p, touches, gap, sloped, rough, ledger);
 }
 
 STRUT_LANE_INLINE void lane_ground(strut_lane_tables *t, const double *restrict q,
                                    const double *restrict v, bool sloped, bool rough, bool ledger) {
   const strut_contact_table *c = &t->first->contacts;
-  lane_real height = lane_row(t->ground, STRUT_LANE_HEIGHT), zero = {0};
   for (int32_t i = 0; i < c->count; i++) {
-    size_t at = c->at[i];
-    lane_real gap = lane_row(q, at + 1) - height;
-    if (sloped)
-      gap = lane_row(q, at) * lane_row(t->ground, STRUT_LANE_NORMAL_X) +
-            gap * lane_row(t->ground, STRUT_LANE_NORMAL_Y);
-    lane_mask touches = gap < zero;
-    if (lane_any(touches))
-      lane_touch(t, v, at, t->contact + i * STRUT_LANE_CONTACT_ROWS * LANE_WIDTH, touches, gap,
-                 sloped, rough, ledger);
+    const double *entry = t->contact + i * STRUT_LANE_CONTACT_ROWS * LANE_ROW;
+    LANE_EACH(lane_contact(t, q, v, c->at[i], entry, p, sloped, rough, ledger));
   }
 }
 
@@ -326,10 +368,12 @@ STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict 
                                    const double *restrict v, bool ledger) {
   const strut_model *m = t->first;
   lane_real zero = {0};
-  for (size_t p = 0; p < STRUT_POWER_COUNT && ledger; p++) lane_put(t->power, p, zero);
+  for (size_t k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+    LANE_EACH(lane_put(t->power, k, p, zero));
   for (size_t i = 0; i < 2 * (size_t)m->node_count; i++)
-    lane_put(t->force, i, (m->plan & STRUT_TERM_CONSTANT) ? lane_row(t->constant, i) : zero);
-  if (m->plan & STRUT_TERM_LOADS) lane_loads(t, v, ledger);
+    LANE_EACH(lane_put(t->force, i, p,
+                       (m->plan & STRUT_TERM_CONSTANT) ? lane_row(t->constant, i, p) : zero));
+  if (m->plan & STRUT_TERM_LOADS) LANE_EACH(lane_loads(t, p, v, ledger));
   if (m->plan & STRUT_TERM_MEMBERS) lane_members(t, q, v, ledger);
   if (!(m->plan & STRUT_TERM_CONTACT)) return;
   if (m->plan & STRUT_TERM_SLOPE)
@@ -342,15 +386,46 @@ STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict 
 
 /* Masses */
 
-/* One coordinate of a dense block of n nodes; f and a are those of that coordinate of node 0. */
-STRUT_LANE_INLINE void lane_mass_block(int32_t n, const double *restrict inverse,
+/* A row of a dense block's inverse times the forces of one coordinate, or of x and y together. */
+STRUT_LANE_INLINE void lane_mass_row(int32_t n, bool pair, const double *restrict inverse,
+                                     const uint32_t *restrict at, const double *restrict f,
+                                     double *restrict a, int p) {
+  lane_real one = lane_row(inverse, 0, p), zero = {0};
+  lane_real x = one * lane_row(f, at[0], p), y = pair ? one * lane_row(f, at[0] + 1, p) : zero;
+  for (int32_t j = 1; j < n; j++) {
+    one = lane_row(inverse, (size_t)j, p);
+    x += one * lane_row(f, at[j], p);
+    if (pair) y += one * lane_row(f, at[j] + 1, p);
+  }
+  lane_put(a, 0, p, x);
+  if (pair) lane_put(a, 1, p, y);
+}
+
+STRUT_LANE_INLINE void lane_mass_block(int32_t n, bool pair, const double *restrict inverse,
                                        const uint32_t *restrict at, const double *restrict f,
                                        double *restrict a) {
   for (int32_t i = 0; i < n; i++) {
-    lane_real sum = lane_row(inverse, (size_t)(i * n)) * lane_row(f, at[0]);
-    for (int32_t j = 1; j < n; j++)
-      sum += lane_row(inverse, (size_t)(i * n + j)) * lane_row(f, at[j]);
-    lane_put(a, at[i], sum);
+    const double *row = inverse + i * n * LANE_ROW;
+    double *to = a + (size_t)at[i] * LANE_ROW;
+    LANE_EACH(lane_mass_row(n, pair, row, at, f, to, p));
+  }
+}
+
+/* f and a are those of the coordinate of node 0, or of both of them. */
+STRUT_LANE_INLINE void lane_mass_blocks(const strut_mass_operator *op, bool pair,
+                                        const double *restrict inverse, const double *restrict f,
+                                        double *restrict a) {
+  const uint32_t *restrict at = op->block_at;
+  for (int32_t b = 0, count = op->block_count; b < count; b++) {
+    int32_t n = op->block_size[b];
+    if (n == 2)
+      lane_mass_block(2, pair, inverse, at, f, a);
+    else if (n == 3)
+      lane_mass_block(3, pair, inverse, at, f, a);
+    else
+      lane_mass_block(n, pair, inverse, at, f, a);
+    at += n;
+    inverse += (size_t)(n * n) * LANE_ROW;
   }
 }
 
@@ -359,26 +434,15 @@ STRUT_LANE_INLINE void lane_mass(const strut_lane_tables *t, double *restrict a)
   const strut_mass *mass = t->first->mass;
   const double *restrict f = t->force;
   for (size_t i = 0; i < 2 * (size_t)t->first->node_count && mass->any_single; i++)
-    lane_put(a, i, lane_row(f, i) * lane_row(t->inverse, i));
+    LANE_EACH(lane_put(a, i, p, lane_row(f, i, p) * lane_row(t->inverse, i, p)));
   if (mass->diagonal) return;
-  for (size_t c = 0; c < 2; c++) {
-    const strut_mass_operator *op = &mass->coordinate[c];
-    const uint32_t *restrict at = op->block_at;
-    const double *restrict inverse = t->block_inverse[c];
-    for (int32_t b = 0; b < op->block_count; b++) {
-      int32_t n = op->block_size[b];
-      const double *from = f + c * LANE_WIDTH;
-      double *to = a + c * LANE_WIDTH;
-      if (n == 2)
-        lane_mass_block(2, inverse, at, from, to);
-      else if (n == 3)
-        lane_mass_block(3, inverse, at, from, to);
-      else
-        lane_mass_block(n, inverse, at, from, to);
-      at += n;
-      inverse += (size_t)(n * n) * LANE_WIDTH;
-    }
+  if (mass->shared) {
+    lane_mass_blocks(&mass->coordinate[0], true, t->block_inverse[0], f, a);
+    return;
   }
+  for (size_t c = 0; c < 2; c++)
+    lane_mass_blocks(&mass->coordinate[c], false, t->block_inverse[c], f + c * LANE_ROW,
+                     a + c * LANE_ROW);
 }
 
 #endif

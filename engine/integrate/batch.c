@@ -3,16 +3,18 @@
 
 #include <math.h>
 
-int32_t strut_batch_widest(void) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    return 8;
-  return __builtin_cpu_supports("avx2") ? 4 : 2;
-#else
-  return 2;
-#endif
+static bool has_eight(void) {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl");
 }
+static bool has_four(void) { return __builtin_cpu_supports("avx2"); }
+#else
+static bool has_eight(void) { return false; }
+static bool has_four(void) { return false; }
+#endif
+
+int32_t strut_batch_widest(void) { return has_four() ? 8 : 2; }
 
 bool strut_batch_knows(const strut_integrator *method) { return method == &strut_integrator_rk4; }
 
@@ -27,7 +29,10 @@ strut_batch *strut_batch_create(const strut_model *first, const strut_integrator
   size_t row = (size_t)width, both = (size_t)first->length * row;
   b->method = method;
   b->ledger = ledger;
-  b->run = width == 8 ? strut_batch_rk4_8 : width == 4 ? strut_batch_rk4_4 : strut_batch_rk4_2;
+  b->run = width == 4    ? strut_batch_rk4_4
+           : width == 2  ? strut_batch_rk4_2
+           : has_eight() ? strut_batch_rk4_8
+                         : strut_batch_rk4_8_halves;
   bool good = strut_lane_tables_create(first, width, &b->arena, &b->tables);
   double **const all[] = {&b->q,          &b->v,    &b->stage_q, &b->stage_v[1], &b->stage_v[2],
                           &b->stage_v[3], &b->a[0], &b->a[1],    &b->a[2],       &b->a[3]};
@@ -39,6 +44,10 @@ strut_batch *strut_batch_create(const strut_model *first, const strut_integrator
   if (good && b->dt && b->step && b->work) return b;
   strut_batch_free(b);
   return NULL;
+}
+
+void strut_batch_halve(strut_batch *b) {
+  if (b->tables.width == 8) b->run = strut_batch_rk4_8_halves;
 }
 
 void strut_batch_free(strut_batch *b) {

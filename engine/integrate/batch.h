@@ -13,7 +13,7 @@
 
 typedef struct strut_batch strut_batch;
 
-/** The most lanes that this processor steps at once: 8, 4 or 2. */
+/** The most lanes that this processor steps at once: 8 (from AVX2 on) or 2. */
 STRUT_API int32_t strut_batch_widest(void);
 /** Has the method lanes at all? */
 STRUT_API bool strut_batch_knows(const strut_integrator *method);
@@ -27,6 +27,8 @@ STRUT_API bool strut_batch_possible(const strut_model *model, const strut_integr
 STRUT_API strut_batch *strut_batch_create(const strut_model *first, const strut_integrator *method,
                                           int32_t width, bool ledger);
 STRUT_API void strut_batch_free(strut_batch *batch);
+/** Steps 8 lanes in registers of 4, as is done where there are no wider ones (AVX2). */
+STRUT_API void strut_batch_halve(strut_batch *batch);
 /** Puts a model, which must be like the first one (strut_lanes_alike), into a lane. */
 STRUT_API void strut_batch_fill(strut_batch *batch, int32_t lane, const strut_model *model,
                                 double dt);
@@ -61,5 +63,6 @@ struct strut_batch {
 void strut_batch_rk4_2(strut_batch *batch, int64_t count);
 void strut_batch_rk4_4(strut_batch *batch, int64_t count);
 void strut_batch_rk4_8(strut_batch *batch, int64_t count);
+void strut_batch_rk4_8_halves(strut_batch *batch, int64_t count);
 
 #endif

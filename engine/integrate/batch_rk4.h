@@ -9,25 +9,37 @@
 #include "engine/integrate/batch.h"
 
 /* Positions and velocities of the next stage: q + h v, v0 + h a. */
-STRUT_LANE_INLINE void batch_stage(size_t n, lane_real h, const double *restrict q0,
-                                   const double *restrict v0, const double *restrict v,
-                                   const double *restrict a, double *restrict q,
-                                   double *restrict next) {
+STRUT_LANE_INLINE void batch_stage(size_t n, double ahead, const lane_real *dt,
+                                   const double *restrict q0, const double *restrict v0,
+                                   const double *restrict v, const double *restrict a,
+                                   double *restrict q, double *restrict next) {
   for (size_t i = 0; i < n; i++) {
-    lane_put(q, i, lane_row(q0, i) + h * lane_row(v, i));
-    lane_put(next, i, lane_row(v0, i) + h * lane_row(a, i));
+    LANE_EACH(lane_put(q, i, p, lane_row(q0, i, p) + ahead * dt[p] * lane_row(v, i, p)));
+    LANE_EACH(lane_put(next, i, p, lane_row(v0, i, p) + ahead * dt[p] * lane_row(a, i, p)));
   }
 }
 
 /* z += h/6 (k1 + 2 (k2 + k3) + k4) */
-STRUT_LANE_INLINE void batch_combine(size_t n, lane_real sixth, double *restrict z,
+STRUT_LANE_INLINE void batch_combine_row(size_t i, int p, lane_real sixth, double *restrict z,
+                                         const double *k1, const double *restrict k2,
+                                         const double *restrict k3, const double *restrict k4) {
+  lane_real inner = lane_row(k2, i, p) + lane_row(k3, i, p);
+  lane_real sum = lane_row(k1, i, p) + 2.0 * inner + lane_row(k4, i, p);
+  lane_put(z, i, p, lane_row(z, i, p) + sixth * sum);
+}
+
+STRUT_LANE_INLINE void batch_combine(size_t n, const lane_real *sixth, double *restrict z,
                                      const double *k1, const double *restrict k2,
                                      const double *restrict k3, const double *restrict k4) {
-  for (size_t i = 0; i < n; i++) {
-    lane_real inner = lane_row(k2, i) + lane_row(k3, i);
-    lane_real sum = lane_row(k1, i) + 2.0 * inner + lane_row(k4, i);
-    lane_put(z, i, lane_row(z, i) + sixth * sum);
-  }
+  for (size_t i = 0; i < n; i++) LANE_EACH(batch_combine_row(i, p, sixth[p], z, k1, k2, k3, k4));
+}
+
+/* Powers enter the works with the stage's weight. */
+STRUT_LANE_INLINE void batch_work(const strut_batch *b, const double *power, double weight,
+                                  const lane_real *sixth) {
+  for (size_t k = 0; k < STRUT_POWER_COUNT; k++)
+    LANE_EACH(lane_put(b->work, k, p,
+                       lane_row(b->work, k, p) + weight * sixth[p] * lane_row(power, k, p)));
 }
 
 STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledger) {
@@ -38,23 +50,25 @@ STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledge
   const double *const at[4] = {q, b->stage_q, b->stage_q, b->stage_q};
   const double *const speed[4] = {v, b->stage_v[1], b->stage_v[2], b->stage_v[3]};
   size_t n = 2 * (size_t)tables.first->node_count;
-  lane_real dt = lane_load(b->dt), step = lane_load(b->step), sixth = dt / 6.0;
-  if (!b->driven) lane_drive(&tables, step * dt);
-  for (; count > 0; count--, step += 1.0) {
+  lane_real dt[LANE_PARTS], step[LANE_PARTS], sixth[LANE_PARTS];
+  LANE_EACH(
+      (dt[p] = lane_row(b->dt, 0, p), step[p] = lane_row(b->step, 0, p), sixth[p] = dt[p] / 6.0));
+  if (!b->driven) lane_drive(&tables, step, 0.0, dt);
+  for (; count > 0; count--) {
     for (int k = 0; k < 4; k++) {
       /* stages 1 and 3 are at the times of the ones before */
-      if (k == 1 || k == 3) lane_drive(&tables, (step + ahead[k]) * dt);
+      if (k == 1 || k == 3) lane_drive(&tables, step, ahead[k], dt);
       lane_forces(&tables, at[k], speed[k], ledger);
       lane_mass(&tables, b->a[k]);
-      for (size_t p = 0; p < STRUT_POWER_COUNT && ledger; p++)
-        lane_put(b->work, p, lane_row(b->work, p) + weight[k] * sixth * lane_row(tables.power, p));
+      if (ledger) batch_work(b, tables.power, weight[k], sixth);
       if (k < 3)
-        batch_stage(n, ahead[k + 1] * dt, q, v, speed[k], b->a[k], b->stage_q, b->stage_v[k + 1]);
+        batch_stage(n, ahead[k + 1], dt, q, v, speed[k], b->a[k], b->stage_q, b->stage_v[k + 1]);
     }
     batch_combine(n, sixth, q, v, b->stage_v[1], b->stage_v[2], b->stage_v[3]);
     batch_combine(n, sixth, v, b->a[0], b->a[1], b->a[2], b->a[3]);
+    LANE_EACH((step[p] += 1.0));
   }
-  lane_store(b->step, step);
+  LANE_EACH(lane_put(b->step, 0, p, step[p]));
 }
 
 STRUT_LANE_TARGET

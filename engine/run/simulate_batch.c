@@ -18,7 +18,7 @@ typedef struct seat {
 typedef struct hall {
   const strut_batch_source *source;
   strut_batch *batch; /* NULL: all runs are run alone */
-  bool more; /* the next point is worth asking for */
+  bool more;          /* the next point is worth asking for */
   int32_t width, taken;
   strut_step_limits limits;
   seat seats[STRUT_MOST_LANES];
@@ -148,6 +148,7 @@ static strut_batch *batch_for(const strut_batch_source *source, int32_t wanted, 
   if (wanted < 2 || !method || !strut_batch_possible(m, method)) return NULL;
   strut_batch *batch = strut_batch_create(m, method, wanted, !source->without_ledger);
   if (batch) *width = wanted;
+  if (batch && source->halves) strut_batch_halve(batch);
   return batch;
 }
 

@@ -31,6 +31,7 @@ typedef struct strut_batch_source {
   const strut_model *example;
   bool without_ledger; /* as in the options of those points that are to run in lanes */
   int32_t width;       /* 1, 2, 4 or 8 lanes; 0: as many as the processor is good for */
+  bool halves;         /* 8 lanes in registers of 4 whatever the processor has; see batch.h */
 } strut_batch_source;
 
 /** Runs all points. Calls back from this thread only. */

@@ -82,11 +82,22 @@ static void check_point(point *p, bool ledger) {
   if (ledger) check_array(a->power, b->power, STRUT_POWER_COUNT);
 }
 
+/* All ways to step in lanes that this processor has: how many, and whether in halves. */
+typedef struct way {
+  int32_t width;
+  bool halves;
+} way;
+static const way ways[] = {{2, false}, {4, false}, {8, true}, {8, false}};
+
+static size_t way_count(void) { return strut_batch_widest() == 8 ? 4 : 1; }
+
 /* All points through one batch; each has its own length, and makes room for the next. */
-static void run_in_lanes(point *points, int count, int32_t width, bool ledger) {
+static void run_in_lanes(point *points, int count, way how, bool ledger) {
   point *in[STRUT_MOST_LANES] = {NULL};
+  int32_t width = how.width;
   strut_batch *b = strut_batch_create(points[0].lane.model, points[0].lane.method, width, ledger);
   assert_non_null(b);
+  if (how.halves) strut_batch_halve(b);
   for (int next = 0, left = count; left > 0;) {
     int64_t stop = INT64_MAX;
     for (int32_t l = 0; l < width; l++) {
@@ -114,7 +125,7 @@ static void run_in_lanes(point *points, int count, int32_t width, bool ledger) {
   strut_batch_free(b);
 }
 
-static void compare_random(uint64_t seed, int32_t width, bool ledger, int *done) {
+static void compare_random(uint64_t seed, way how, bool ledger, int *done) {
   enum { POINTS = 11 };
   static point points[POINTS];
   uint64_t r = seed;
@@ -128,7 +139,7 @@ static void compare_random(uint64_t seed, int32_t width, bool ledger, int *done)
     possible = strut_batch_possible(points[0].lane.model, points[0].lane.method) &&
                strut_lanes_alike(points[0].lane.model, points[count].lane.model);
   }
-  if (possible) run_in_lanes(points, count, width, ledger);
+  if (possible) run_in_lanes(points, count, how, ledger);
   *done += possible;
   for (int i = 0; i < count; i++) end_point(&points[i]);
 }
@@ -137,16 +148,16 @@ static void test_random_structures(void **unused) {
   (void)unused;
   int done = 0, seeds = 150;
   for (int seed = 1; seed <= seeds; seed++)
-    for (int32_t width = 2; width <= strut_batch_widest(); width *= 2)
-      compare_random((uint64_t)seed, width, seed % 2, &done);
-  assert_true(done > seeds); /* of up to three widths; those with a sparse factor have no lanes */
+    for (size_t w = 0; w < way_count(); w++)
+      compare_random((uint64_t)seed, ways[w], seed % 2, &done);
+  assert_true(done > seeds / 2 * (int)way_count()); /* those with a sparse factor have no lanes */
 }
 
 static void test_crawler(void **unused) {
   (void)unused;
   enum { POINTS = 21 };
   static point points[POINTS];
-  for (int32_t width = 2; width <= strut_batch_widest(); width *= 2)
+  for (size_t w = 0; w < way_count(); w++)
     for (int ledger = 0; ledger < 2; ledger++) {
       uint64_t r = 7;
       for (int i = 0; i < POINTS; i++) {
@@ -158,7 +169,7 @@ static void test_crawler(void **unused) {
                     ledger);
         assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
       }
-      run_in_lanes(points, POINTS, width, ledger);
+      run_in_lanes(points, POINTS, ways[w], ledger);
       for (int i = 0; i < POINTS; i++) end_point(&points[i]);
     }
 }
