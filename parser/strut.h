@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * The front door of the libraries: everything a program needs to read a scene, compile it, know it
- * at rest, run it, write what came out and draw it (what draws is in the library strut_pictures,
- * which only programs that draw have to link). Installed as include/strut/strut.h, beside the tree it includes.
+ * at rest, run it, write what came out, run it at the points of a study and draw it (what draws is in
+ * the library strut_pictures and studies are in strut_study, which only programs that draw or sweep have
+ * to link). Installed as include/strut/strut.h, beside the tree it includes.
  *
  * The libraries are written in C17; C++ programs may include this header as it stands.
  */
@@ -57,10 +58,22 @@ extern "C" {
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/equilibria/stand.h"
+#include "engine/study/compare.h"
+#include "engine/study/compare_figure.h"
+#include "engine/study/compare_report.h"
+#include "engine/study/grid.h"
+#include "engine/study/merge.h"
+#include "engine/study/parallel_script.h"
+#include "engine/study/shard.h"
+#include "engine/study/slots.h"
+#include "engine/study/slurm_script.h"
+#include "engine/study/study_table.h"
+#include "engine/study/sweep.h"
 #include "engine/study/tradeoff.h"
 #include "engine/study/tradeoff_figure.h"
 #include "engine/study/tradeoff_report.h"
 #include "parser/read_scene.h"
+#include "parser/read_study.h"
 #include "parser/write_scene.h"
 
 #ifdef __cplusplus

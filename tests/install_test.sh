@@ -31,6 +31,18 @@ target_link_libraries(user PRIVATE strut::parser strut::output strut::engine)
 add_executable(drawer user.c)
 target_compile_definitions(drawer PRIVATE DRAW)
 target_link_libraries(drawer PRIVATE strut::parser strut::pictures strut::output strut::engine)
+add_executable(sweeper user.c)
+target_compile_definitions(sweeper PRIVATE SWEEP)
+target_link_libraries(sweeper PRIVATE strut::parser strut::study strut::engine)
+END
+sed -n 's/^ *"\(.*\)\\n".*/\1/p' user.c >model.yaml
+sed -i 's/^strut: 1$/&\nparameters: {pull: 10}/; s/stiffness: 10/stiffness: pull/' model.yaml
+cat >study.yaml <<'END'
+strut: 1
+study: pulls
+model: model.yaml
+axes: [{pull: [10, 20, 40]}]
+keep: [duration, positions]
 END
 cmake -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$compiler" \
   -DCMAKE_C_FLAGS="$sanitizers" -DCMAKE_BUILD_TYPE=Release >configure.log 2>&1 ||
@@ -45,6 +57,11 @@ test -s trajectory.h5
 ./build/drawer >by-cmake.drawer
 cmp by-cmake by-cmake.drawer
 mv shape.svg shape-by-cmake.svg
+./build/sweeper >by-cmake.sweeper
+cmp by-cmake by-cmake.sweeper
+[ "$(grep -c ',completed,$' table.csv)" -eq 3 ] || { cat table.csv; exit 1; }
+mv table.csv table-by-cmake.csv
+rm points.slots
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name strut.pc)")
 export PKG_CONFIG_PATH
@@ -60,6 +77,14 @@ cmp by-cmake by-pkg-config
 ./drawer >by-pkg-config
 cmp by-cmake by-pkg-config
 cmp shape-by-cmake.svg shape.svg
+# shellcheck disable=SC2046
+"$compiler" -std=c17 -DSWEEP $sanitizers user.c -o sweeper \
+  $(pkg-config --cflags --libs strut strut-pictures)
+./sweeper >by-pkg-config
+cmp by-cmake by-pkg-config
+cmp table-by-cmake.csv table.csv
+"$prefix/bin/strut" sweep study.yaml -o by-program --quiet
+cmp table-by-cmake.csv by-program/table.csv
 
 "$prefix/bin/strut" --version
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null

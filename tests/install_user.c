@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A program of somebody else's: reads a scene, runs it, prints the summary; with DRAW, which needs one
-   library more, draws where it ended. See install_test.sh. */
+   library more, draws where it ended; with SWEEP, for which there is another, runs it at three points.
+   See install_test.sh. */
 #include <strut.h>
 
 static const char scene_text[] =
@@ -26,6 +27,38 @@ static strut_status draw(const strut_model *model, strut_error *error) {
 }
 #endif
 
+#ifdef SWEEP
+static strut_status scene_at(void *context, const strut_study_value *values, strut_scene *scene,
+                             strut_error *error) {
+  return strut_study_scene(context, values, scene, error);
+}
+
+/* The points of study.yaml, into points.slots and table.csv. */
+static strut_status sweep(strut_error *error) {
+  strut_study_file file = {0};
+  strut_sweep_plan plan = {0};
+  strut_slots *slots = NULL;
+  strut_sweep_state state;
+  const strut_sweep_options options = {.threads = 2, .directory = "."};
+  strut_status status = strut_study_open("study.yaml", NULL, 0, &file, error);
+  const strut_sweep_scenes scenes = {scene_at, strut_scene_write, &file};
+  if (status == STRUT_OK) status = strut_sweep_plan_make(&file.study, &scenes, &plan, error);
+  const strut_slots_plan rows = {.version = "mine",
+                                 .name = "mine",
+                                 .points = plan.points,
+                                 .count = plan.points,
+                                 .columns = plan.columns,
+                                 .column_count = plan.column_count};
+  if (status == STRUT_OK) status = strut_slots_open("points.slots", &rows, &slots, error);
+  if (status == STRUT_OK) status = strut_sweep_run(&plan, slots, &options, &state, error);
+  if (status == STRUT_OK) status = strut_study_table_write(".", "table.csv", &slots, 1, error);
+  strut_slots_close(slots);
+  strut_sweep_plan_free(&plan);
+  strut_study_close(&file);
+  return status;
+}
+#endif
+
 int main(void) {
   strut_scene scene = {0};
   strut_model *model = NULL;
@@ -41,6 +74,9 @@ int main(void) {
   if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, &error);
 #ifdef DRAW
   if (status == STRUT_OK) status = draw(model, &error);
+#endif
+#ifdef SWEEP
+  if (status == STRUT_OK) status = sweep(&error);
 #endif
   if (status == STRUT_OK) {
     char *text = strut_summary_json(&summary, &scene, false);
