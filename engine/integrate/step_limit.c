@@ -6,6 +6,7 @@
 
 #include "engine/forces/rigid.h"
 #include "engine/forces/stiffness.h"
+#include "engine/integrate/tangent_bound.h"
 #include "engine/integrate/tangent_limits.h"
 
 /*
@@ -15,6 +16,8 @@
  * ARPACK, a floor above, knows the first-order form only.
  */
 enum { ROOM = 64, LARGE_ROOM = 48, LARGE = 100000, MOST_ROUNDS = 14 };
+/* From here on a search would take tens of seconds, and the bound is told. */
+enum { TOO_LARGE = 250000 };
 /* Quotients come from below; the space has converged to a fraction of this. */
 static const double MARGIN = 0.998, SETTLED = 2e-4;
 
@@ -23,7 +26,7 @@ typedef struct search {
   strut_arena *arena;
   strut_tangent_space space;
   strut_tangent_limits found;
-  bool damped, rk4;
+  bool damped, rk4, settled;
   double *x, *y, *other, *mix, *work; /* (n) twice and (n), coefficients */
 } search;
 
@@ -139,6 +142,33 @@ static bool improve(search *s) {
     if (!find(s)) return false;
     quiet = fallen(found, before) < SETTLED ? quiet + 1 : 0;
   }
+  s->settled = quiet >= 2;
+  return true;
+}
+
+/* Few coordinates: all motions; many: those that bind. False: out of memory. */
+static bool seek(search *s, const strut_model *model, bool all) {
+  int32_t n = s->tangent->n;
+  if (!begin(s, model, all ? n : n > LARGE ? LARGE_ROOM : ROOM)) return false;
+  return all ? take_all(s) : look_around(s) && improve(s);
+}
+
+static void tell_found(const search *s, bool all, strut_step_limit *limit) {
+  limit->exact = all && s->found.solved;
+  limit->largest_frequency = s->found.largest_frequency;
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of[region] = limit->exact ? s->found.of[region] : MARGIN * s->found.of[region];
+}
+
+/* What all motions keep to, in place of what could not be found. */
+static bool tell_bound(const strut_model *model, const strut_tangent *tangent, strut_arena *arena,
+                       strut_step_limit *limit) {
+  strut_tangent_bound bound;
+  if (!strut_tangent_bound_find(model, tangent, arena, &bound)) return false;
+  limit->exact = false;
+  limit->bound = true;
+  limit->largest_frequency = bound.frequency;
+  memcpy(limit->of, bound.of, sizeof limit->of);
   return true;
 }
 
@@ -155,17 +185,14 @@ static strut_status limits(const strut_model *model, const double *q, const doub
   if (status || tangent.n == 0) return status;
   if ((model->plan & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
     return STRUT_NO_MEMORY;
-  bool all = tangent.n <= STRUT_EXACT_LIMIT;
-  if (!begin(&s, model,
-             all                 ? tangent.n
-             : tangent.n > LARGE ? LARGE_ROOM
-                                 : ROOM) ||
-      !(all ? take_all(&s) : look_around(&s) && improve(&s)))
-    return STRUT_NO_MEMORY;
-  limit->exact = all && s.found.solved;
-  limit->largest_frequency = s.found.largest_frequency;
-  for (int region = 0; region < STRUT_REGIONS; region++)
-    limit->of[region] = limit->exact ? s.found.of[region] : MARGIN * s.found.of[region];
+  bool all = tangent.n <= STRUT_EXACT_LIMIT, room = true;
+  if (tangent.rigid || tangent.n <= TOO_LARGE) {
+    room = seek(&s, model, all);
+    if (room) tell_found(&s, all, limit);
+  }
+  if (room && !tangent.rigid && tangent.n > LARGE && !s.settled)
+    room = tell_bound(model, &tangent, arena, limit);
+  if (!room) return STRUT_NO_MEMORY;
   limit->limit = limit->of[STRUT_REGION_RK4];
   return STRUT_OK;
 }
@@ -178,19 +205,27 @@ static bool ground_damps(const strut_model *model) {
   return damped;
 }
 
-strut_status strut_step_limit_for(const strut_model *model, const strut_integrator *method,
-                                  double *limit, strut_error *error) {
+strut_status strut_step_limit_told(const strut_model *model, const strut_integrator *method,
+                                   double *limit, bool *bound, strut_error *error) {
   strut_arena arena = {0};
   strut_step_limit found;
   *limit = HUGE_VAL;
+  *bound = false;
   if (method->region == STRUT_REGION_ALL) return STRUT_OK;
   bool undamped = method->implicit_damper && ground_damps(model);
   strut_status status = limits(model, model->start, model->members.rest,
                                undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
                                method->region == STRUT_REGION_RK4, &arena, &found);
   *limit = found.of[method->region];
+  *bound = found.bound;
   strut_arena_free(&arena);
   return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+}
+
+strut_status strut_step_limit_for(const strut_model *model, const strut_integrator *method,
+                                  double *limit, strut_error *error) {
+  bool bound;
+  return strut_step_limit_told(model, method, limit, &bound, error);
 }
 
 strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
@@ -205,6 +240,7 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
     status = limits(model, q, rest, STRUT_CLOSED_UNDAMPED, false, &arena, &implicit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = implicit.of[region];
+  limit->bound = limit->bound || implicit.bound;
   strut_arena_free(&arena);
   return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
 }

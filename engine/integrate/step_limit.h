@@ -13,14 +13,16 @@ typedef struct strut_step_limit {
   double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
   double of[STRUT_REGIONS]; /* largest stable step of each region, RK4's being `limit` */
   double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
-  bool exact; /* from all eigenvalues; else from those that bind, within 1 % */
+  bool exact; /* from all eigenvalues; else from those that bind, within 1 %, or bounds */
+  bool bound; /* some are bounds: all smaller steps are stable, the largest stable one is not known */
 } strut_step_limit;
 
 /**
  * Limits at the model's start with every contact closed, its stiffness and damping counted. Up to
  * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
  * those that bind, from a space of motions that grows until they have settled: within 1 %, whatever
- * the damping. The model must have a mass.
+ * the damping. Above 250000 coordinates, and above 100000 where they do not settle, bounds from the
+ * entries of the matrices (tangent_bound.h) are told. The model must have a mass.
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);
@@ -34,6 +36,11 @@ STRUT_API strut_status strut_step_limit_at(const strut_model *model, const doubl
 STRUT_API strut_status strut_step_limit_for(const strut_model *model,
                                             const strut_integrator *method, double *limit,
                                             strut_error *error);
+
+/** The same; *bound: it is a bound. */
+STRUT_API strut_status strut_step_limit_told(const strut_model *model,
+                                             const strut_integrator *method, double *limit,
+                                             bool *bound, strut_error *error);
 
 /** Limits found lately. Zero-initialise it. */
 enum { STRUT_LIMITS_KEPT = 16 };

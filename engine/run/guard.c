@@ -85,17 +85,23 @@ static void iterate(const strut_model *model, const strut_state *state, strut_gu
   w->strength = weight > 0.0 ? product / weight : 0.0;
 }
 
-/* A shape's own limit; none where memory is out. */
+/*
+ * A shape's own limit; none where memory is out. Where only a bound of it is to be had, and the
+ * motions watched are those of this shape, no less than they say: a bound alone is no reason to stop.
+ */
 static double limit_at(const strut_model *model, const strut_guard *g, const double *q,
-                       const double *rest) {
+                       const double *rest, bool watched) {
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
   if (strut_step_limit_at(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
-  return limit.of[g->method->region];
+  double bound = limit.of[g->method->region], seen = HUGE_VAL;
+  if (!limit.bound || !watched) return bound;
+  for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->watch[i].strength);
+  return fmax(bound, seen);
 }
 
 static void compute(const strut_model *model, const strut_state *state, strut_guard *g) {
-  g->known_limit = limit_at(model, g, state->q, state->rest);
+  g->known_limit = limit_at(model, g, state->q, state->rest, true);
   for (int i = 0; i < g->count; i++) {
     strut_guard_watch *w = &g->watch[i];
     w->known = w->strength;
@@ -139,13 +145,13 @@ void strut_guard_look(const strut_model *model, const strut_state *state, strut_
 }
 
 double strut_guard_last_limit(const strut_model *model, const strut_guard *g) {
-  return g->count > 0 ? limit_at(model, g, g->shape, g->rest) : HUGE_VAL;
+  return g->count > 0 ? limit_at(model, g, g->shape, g->rest, false) : HUGE_VAL;
 }
 
 void strut_guard_blame(const strut_model *model, const strut_state *state, strut_guard *g) {
   if (g->count == 0) return;
   double before = strut_guard_last_limit(model, g);
-  g->known_limit = fmin(before, limit_at(model, g, state->q, state->rest));
+  g->known_limit = fmin(before, limit_at(model, g, state->q, state->rest, false));
   if (g->known_limit < g->step) note_below(g, (double)g->last * g->step, 0);
 }
 

@@ -27,7 +27,7 @@ typedef struct strut_plan {
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of */
-  bool step_limit_exact;    /* from all eigenvalues; else an estimate */
+  bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
   strut_plan_term terms[STRUT_PLAN_TERMS];
 } strut_plan;
 

@@ -7,9 +7,15 @@
 #include "engine/run/simulate_parts.h"
 #include "engine/run/settle.h"
 
-static strut_status refuse_large_step(const strut_run *r) {
+static strut_status refuse_large_step(const strut_run *r, bool bound) {
   double limit = r->summary->step_limit;
   if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (bound)
+    return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                      "the step %g s is above %.4g s, up to which %s is stable (all contacts closed; "
+                      "a bound, the structure being too large for its largest stable step to be "
+                      "found); use solver.step <= %.2g s, or --force to run all the same",
+                      r->dt, limit, r->method->name, limit);
   return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                     "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run all the same",
@@ -82,10 +88,11 @@ strut_status strut_run_prepare(strut_run *r) {
   if (!r->model->mass)
     return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
   double *limit = &r->summary->step_limit;
+  bool bound = false;
   status = r->limits ? strut_step_limit_recall(r->model, r->method, r->limits, limit, r->error)
-                     : strut_step_limit_for(r->model, r->method, limit, r->error);
+                     : strut_step_limit_told(r->model, r->method, limit, &bound, r->error);
   if (status) return status;
-  if ((status = refuse_large_step(r)) || (status = fill_names(r)) ||
+  if ((status = refuse_large_step(r, bound)) || (status = fill_names(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))
     return status;
   r->workspace = r->method->create(r->model, r->state);

@@ -18,7 +18,7 @@
 #include "parser/cli/streams.h"
 #include "parser/cli/terminal.h"
 
-enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
+enum { MOST_MEMBERS = 40, MOST_BANDS = 10, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 
 static const double TURN = 6.283185307179586476925;
 
@@ -71,10 +71,14 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
   double step = scene->experiment.step, hertz = plan->largest_frequency / TURN;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
          plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
-  printf("  highest frequency  %s, undamped, all contacts closed\n", in(hertz, "Hz").text);
-  printf("  largest step       %s for rk4, contacts and damping counted (%s)\n",
-         in(plan->step_limit, "s").text,
-         plan->step_limit_exact ? "from all eigenvalues" : "within 1 %");
+  bool bound = plan->limits.bound;
+  printf("  highest frequency  %s%s, undamped, all contacts closed\n", bound ? "at most " : "",
+         in(hertz, "Hz").text);
+  printf("  largest step       %s%s for rk4, contacts and damping counted (%s)\n",
+         bound ? "at least " : "", in(plan->step_limit, "s").text,
+         bound                    ? "a bound: too large a structure for an estimate"
+         : plan->step_limit_exact ? "from all eigenvalues"
+                                  : "within 1 %");
   print_limits(plan);
   const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
   double limit = method ? strut_step_limit_of(&plan->limits, method) : plan->step_limit;
@@ -90,10 +94,11 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
 static void print_bands(const strut_model *model) {
   const strut_scene *scene = model->scene;
   const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
+  int32_t narrow = 0;
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
     const strut_contact_entry *e = &model->contacts.entry[i];
     double needed = strut_stick_band_needed(model, method, i, scene->experiment.step);
-    if (!(needed * (1.0 - 1e-6) > e->stick_velocity)) continue;
+    if (!(needed * (1.0 - 1e-6) > e->stick_velocity) || ++narrow > MOST_BANDS) continue;
     fprintf(stderr,
             "strut: warning: stick_velocity %s of node '%s' is narrower than what a step of %s "
             "changes its slip by, so that it sticks by luck; use stick_velocity >= %s, a smaller "
@@ -101,6 +106,9 @@ static void print_bands(const strut_model *model) {
             in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name,
             in(scene->experiment.step, "s").text, in(needed, "m/s").text);
   }
+  if (narrow > MOST_BANDS)
+    fprintf(stderr, "strut: warning: ... and %d more nodes whose stick_velocity is too narrow\n",
+            (int)(narrow - MOST_BANDS));
 }
 
 static void print_terms(const strut_plan *plan, bool wanted, const char *title) {
@@ -186,6 +194,7 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene
   strut_json_number(json, root, "step", scene->experiment.step);
   strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
   strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);
+  strut_json_bool(json, root, "step_limit_bound", plan->limits.bound);
   struct cJSON *limits = strut_json_object(json, root, "step_limits");
   for (size_t i = 0; strut_integrator_at(i) && plan->runnable; i++)
     strut_json_number(json, limits, strut_integrator_at(i)->name,

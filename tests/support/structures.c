@@ -74,6 +74,32 @@ void structure_chain(strut_scene *scene, size_t frames, strut_mass_model mass_mo
   }
 }
 
+static void add_frames(strut_scene *scene, int32_t columns, int32_t rows, double damping) {
+  for (int32_t x = 0; x < columns; x++)
+    for (int32_t i = x * rows; i < (x + 1) * rows; i++) {
+      bool right = x + 1 < columns, up = i + 1 < (x + 1) * rows;
+      if (right) build_sized(scene, STRUT_CABLE, i, i + rows, 3000, damping, 0, 0.098);
+      if (up) build_sized(scene, STRUT_CABLE, i, i + 1, 3000, damping, 0, 0.098);
+      if (right && up) build_member(scene, STRUT_BAR, i, i + rows + 1, 1e5, damping, 0.1);
+      if (right && up) build_member(scene, STRUT_BAR, i + 1, i + rows, 1e5, damping, 0.1);
+    }
+}
+
+void structure_grid(strut_scene *scene, int32_t columns, int32_t rows, strut_mass_model mass_model,
+                    double y, double damping, double mu) {
+  const double side = 0.1;
+  scene->mass_model = mass_model;
+  scene->gravity[1] = -9.81;
+  for (int32_t c = 0; c < columns; c++)
+    for (int32_t r = 0; r < rows; r++) build_node(scene, side * c, y + side * r);
+  add_frames(scene, columns, rows, damping);
+  for (int32_t i = 0; i < columns * rows; i++)
+    if (mu > 0)
+      build_rough_contact(scene, i, 1e4, 2, mu, mu, 1e-3);
+    else
+      build_contact(scene, i, 1e4, 2);
+}
+
 void structure_pendulum(strut_scene *scene, double stiffness, double a, bool second, double b) {
   build_support(scene, 0, 0);
   build_node(scene, sin(a), -cos(a));

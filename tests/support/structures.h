@@ -36,6 +36,15 @@ void structure_crawler(strut_scene *scene, double frequency, double amplitude, d
 void structure_chain(strut_scene *scene, size_t frames, strut_mass_model mass_model);
 
 /**
+ * X-frames side by side and on top of each other, the lowest nodes at a height of y [m]: columns times
+ * rows nodes, column by column, bars of 0.1 kg as diagonals, cables along and up; damped as said
+ * [N s/m]. Under gravity, free, and every node may touch the ground at 0, with friction mu, or with
+ * none where mu is 0.
+ */
+void structure_grid(strut_scene *scene, int32_t columns, int32_t rows, strut_mass_model mass_model,
+                    double y, double damping, double mu);
+
+/**
  * Rods that hang from a pin at the origin, each a bar of 1 m and 1 kg: the first at angle a [rad]
  * from below, a second one at angle b if `second`.
  */

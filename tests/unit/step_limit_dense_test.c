@@ -9,6 +9,7 @@
 
 #include "engine/forces/stiffness.h"
 #include "engine/integrate/step_limit.h"
+#include "engine/integrate/tangent_bound.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
@@ -146,6 +147,29 @@ static gsl_vector_complex *spectrum(const dense *s) {
 /* Motions without stiffness have 1 twice, which is known to the root of rounding only. */
 static const double STAYS = 1 + 1e-5, GROWS = 1 + 1e-3;
 
+/* The bounds: stable, and not by far too small. */
+static void check_bound(const strut_model *model, const dense *s, const gsl_vector_complex *z,
+                        const strut_step_limit *limit) {
+  strut_arena arena = {0};
+  strut_tangent t;
+  strut_tangent_bound bound;
+  assert_int_equal(strut_tangent_assemble(model, model->start, model->members.rest,
+                                          STRUT_CLOSED_ALL, &arena, &t),
+                   STRUT_OK);
+  assert_true(strut_tangent_bound_find(model, &t, &arena, &bound));
+  assert_true(bound.frequency > limit->largest_frequency * (1 - 1e-9));
+  assert_true(rk4_growth(z, bound.of[STRUT_REGION_RK4]) < STAYS);
+  assert_true(verlet_growth(s, bound.of[STRUT_REGION_VERLET]) < STAYS);
+  assert_true(euler_growth(s, bound.of[STRUT_REGION_EULER]) < STAYS);
+  print_message("  bounds: %.2f, %.2f, %.2f of the limits\n",
+                bound.of[STRUT_REGION_RK4] / limit->of[STRUT_REGION_RK4],
+                bound.of[STRUT_REGION_VERLET] / limit->of[STRUT_REGION_VERLET],
+                bound.of[STRUT_REGION_EULER] / limit->of[STRUT_REGION_EULER]);
+  for (int region = STRUT_REGION_RK4; region < STRUT_REGIONS; region++)
+    assert_within(bound.of[region] / limit->of[region], 0.5, 1.01);
+  strut_arena_free(&arena);
+}
+
 static void check_plain(const strut_model *model, const strut_step_limit *limit) {
   dense s = dense_of(model, STRUT_CLOSED_ALL);
   gsl_vector_complex *z = spectrum(&s);
@@ -157,6 +181,7 @@ static void check_plain(const strut_model *model, const strut_step_limit *limit)
   print_message("  rk4 %.4f %.4f, verlet %.4f %.4f, euler %.4f %.4f\n", g[0], g[1], g[2], g[3],
                 g[4], g[5]);
   for (int i = 0; i < 6; i++) assert_true(i % 2 ? g[i] > GROWS : g[i] < STAYS);
+  check_bound(model, &s, z, limit);
   gsl_vector_complex_free(z);
   dense_free(&s);
 }
