@@ -8,6 +8,7 @@
 #include "engine/forces/stiffness.h"
 #include "engine/integrate/tangent_bound.h"
 #include "engine/integrate/tangent_limits.h"
+#include "engine/model/room.h"
 
 /*
  * Many coordinates: a space that grows by what the binding motions leave of K x and D x, Davidson's
@@ -219,7 +220,7 @@ strut_status strut_step_limit_told(const strut_model *model, const strut_integra
   *limit = found.of[method->region];
   *bound = found.bound;
   strut_arena_free(&arena);
-  return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
 }
 
 strut_status strut_step_limit_for(const strut_model *model, const strut_integrator *method,
@@ -242,7 +243,7 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
     limit->of_implicit[region] = implicit.of[region];
   limit->bound = limit->bound || implicit.bound;
   strut_arena_free(&arena);
-  return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
 }
 
 /* Takes bytes, a whole number of words, into both hashes. */
@@ -316,7 +317,7 @@ strut_status strut_step_limit_at(const strut_model *model, const double *q, cons
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = limit->of[region];
   strut_arena_free(&arena);
-  return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
 }
 
 double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method) {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/model/room.h"
 
 static void start_cholmod(cholmod_common *common) {
   cholmod_start(common);
@@ -96,9 +97,10 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
   start_cholmod(&common);
   cholmod_sparse a = view(matrix);
   cholmod_factor *l = cholmod_analyze(&a, &common);
-  strut_status status = STRUT_OK;
+  double nonzeros = common.lnz; /* counted by the analysis */
+  strut_status status = l ? strut_room_check_factor(matrix->n, nonzeros, error) : STRUT_OK;
   *factor = NULL;
-  if (l && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
+  if (l && !status && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
       cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common)) {
     int32_t row = bad_row(l);
     if (row < 0)
@@ -108,7 +110,8 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
                           "the matrix is not positive definite (row %d of %d)", row, matrix->n);
   }
   if (!*factor && status == STRUT_OK)
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
+    status = l ? strut_room_fail_factor(matrix->n, nonzeros, error)
+               : strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
   cholmod_free_factor(&l, &common);
   cholmod_finish(&common);
   return status;
@@ -173,10 +176,14 @@ strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, stru
   cholmod_sparse a = view(pattern);
   l->symbolic = cholmod_analyze(&a, &l->common);
   l->work = strut_allocate(3 * (size_t)pattern->n, sizeof *l->work);
-  if (l->symbolic && l->work) return STRUT_OK;
+  strut_status status =
+      l->symbolic && l->work
+          ? strut_room_check_factor(pattern->n, l->common.lnz, error)
+          : strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
+  if (status == STRUT_OK) return status;
   strut_ldl_free(l);
   *ldl = NULL;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
+  return status;
 }
 
 void strut_ldl_free(strut_ldl *ldl) {

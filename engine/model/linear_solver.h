@@ -31,7 +31,8 @@ typedef struct strut_factor {
 } strut_factor;
 
 /**
- * Factorises a positive definite matrix. STRUT_SINGULAR with the row if it is not, STRUT_NO_MEMORY.
+ * Factorises a positive definite matrix. STRUT_SINGULAR with the row if it is not. STRUT_NO_MEMORY,
+ * before its numbers are computed where the factor cannot be held (room.h).
  */
 strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **factor,
                                  strut_error *error);

@@ -4,11 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/room.h"
+
 strut_status strut_state_create(const strut_model *model, strut_state **result,
                                 strut_error *error) {
   strut_state *state = strut_allocate(1, sizeof *state);
   *result = state;
-  if (!state) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!state) return strut_room_fail(model->scene, error);
   size_t both = (size_t)model->length, slots = (size_t)model->members.slots;
   size_t contacts = (size_t)model->contacts.count;
   strut_arena *arena = &state->arena;
@@ -26,7 +28,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->normal || !state->friction || !state->scratch) {
     strut_state_free(state);
     *result = NULL;
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_room_fail(model->scene, error);
   }
   strut_state_reset(model, state);
   return STRUT_OK;

@@ -2,8 +2,10 @@
 #include "engine/run/recording.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory_limit.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
 
@@ -126,12 +128,17 @@ strut_status strut_recording_create(const strut_model *model, double step, doubl
   bool ready = r->length && r->force && lay_out(model, wanted, r);
   double expected = (span.duration - span.record_start) / fmax(span.record_every, step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
+  char what[80];
+  double bytes = sizeof(double) * (double)r->layout.width;
+  snprintf(what, sizeof what, "each row of a recording of %zu columns", r->layout.width);
+  strut_status status = strut_memory_check(bytes, what, error);
+  if (status) return status;
   if (ready) {
     r->capacity = 1 + 65536 / r->layout.width;
     r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
     ready = r->rows && make_parts(model, r);
   }
-  if (!ready) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!ready) return strut_memory_fail(bytes, what, error);
   return begin_sinks(r, error);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/integrate/step_limit.h"
+#include "engine/model/room.h"
 #include "engine/run/simulate_parts.h"
 #include "engine/run/settle.h"
 
@@ -30,7 +31,7 @@ static strut_status fill_names(strut_run *r) {
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
   s->contacts = strut_allocate(contacts, sizeof *s->contacts);
   if (!s->node_names || !s->positions || !s->contacts)
-    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+    return strut_room_fail(r->model->scene, r->error);
   s->node_count = scene->node_count;
   s->contact_count = contacts;
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
@@ -100,14 +101,14 @@ strut_status strut_run_prepare(strut_run *r) {
   if (!r->workspace ||
       strut_measure_create(r->model, r->dt, begin, (size_t)r->more_periods + 1, &r->measure) ||
       (r->watching && strut_watch_create(r->model, span.period, begin, &r->watch)))
-    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+    return strut_room_fail(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
   r->state->ledger = !r->options->without_ledger;
   r->state->interrupt = r->options->interrupt;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard) ||
       !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
-    return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+    return strut_room_fail(r->model->scene, r->error);
   strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, begin);
   return strut_recording_create(r->model, r->dt, begin, r->options->sinks, r->options->sink_count,

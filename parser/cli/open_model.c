@@ -8,6 +8,7 @@
 #include "engine/output/results.h"
 #include "engine/statics/equilibria/stand.h"
 #include "parser/cli/streams.h"
+#include "parser/document_room.h"
 #include "parser/read_scene.h"
 
 enum { MOST_MESSAGES = 50 };
@@ -21,15 +22,23 @@ typedef struct source {
 static strut_status read_source(const strut_arguments *arguments, const source *from,
                                 strut_purpose purpose, strut_scene *scene) {
   strut_diagnostics diagnostics = {0};
-  strut_status status =
-      strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
-                       arguments->override_count, purpose, &diagnostics);
+  strut_error error = {0};
+  strut_status status = strut_document_room_check(from->name, from->text, from->length, &error);
+  if (status == STRUT_NO_MEMORY) {
+    strut_complain(&error);
+    return status;
+  }
+  status = strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
+                            arguments->override_count, purpose, &diagnostics);
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
     if (messages) fputs(messages, stderr);
     if (!messages) status = STRUT_NO_MEMORY;
   }
-  if (status == STRUT_NO_MEMORY) strut_complain_of_memory();
+  if (status == STRUT_NO_MEMORY) {
+    strut_document_room_fail(from->name, from->text, from->length, &error);
+    strut_complain(&error);
+  }
   strut_diagnostics_free(&diagnostics);
   return status;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene that memory cannot hold is refused by its counts, before anything is allocated for it. */
+/* What memory cannot hold is refused before it is allocated: a scene by its counts, a factor by its
+   nonzeros, a text by its colons and commas. */
 #include "engine/model/room.h"
 
 #include <string.h>
@@ -7,6 +8,10 @@
 
 #include "engine/base/memory.h"
 #include "engine/model/model.h"
+#include "engine/model/sparse.h"
+#include "parser/document.h"
+#include "parser/document_room.h"
+#include "parser/read_scene.h"
 #include "tests/support/check.h"
 
 /* Nothing but its counts is looked at. */
@@ -54,11 +59,108 @@ static void test_a_small_scene_has_room(void **unused) {
   assert_int_equal(strut_room_check(&scene, NULL), STRUT_OK);
 }
 
+/* A plane grid's matrix, whose factor fills in: counted, refused, and not computed. */
+static void test_a_factor(void **unused) {
+  (void)unused;
+  enum { SIDE = 600 };
+  strut_arena arena = {0};
+  strut_triplets t = {0};
+  strut_factor *factor;
+  struct rlimit before, now;
+  strut_error error = {0};
+  assert_true(strut_triplets_reserve(&t, 3 * SIDE * SIDE, &arena));
+  for (int32_t i = 0; i < SIDE * SIDE; i++) {
+    strut_triplets_add(&t, i, i, 5);
+    if ((i + 1) % SIDE) strut_triplets_add(&t, i, i + 1, -1);
+    if (i + SIDE < SIDE * SIDE) strut_triplets_add(&t, i, i + SIDE, -1);
+  }
+  strut_sparse *matrix = strut_sparse_build(SIDE * SIDE, &t, &arena);
+  assert_non_null(matrix);
+  assert_int_equal(getrlimit(RLIMIT_DATA, &before), 0);
+  now = before, now.rlim_cur = 180000000;
+  assert_int_equal(setrlimit(RLIMIT_DATA, &now), 0);
+  strut_status status = strut_factor_create(matrix, &factor, &error);
+  assert_int_equal(setrlimit(RLIMIT_DATA, &before), 0);
+  print_message("%s\n", error.message);
+  assert_int_equal(status, STRUT_NO_MEMORY);
+  assert_null(factor);
+  assert_non_null(strstr(error.message, "the factor of a matrix of 360000 rows"));
+  assert_null(strstr(error.message, "out of memory"));
+  assert_int_equal(strut_factor_create(matrix, &factor, &error), STRUT_OK);
+  double kept = 12.0 * factor->start[factor->n];
+  print_message("%.0f MB are kept of it\n", kept / 1e6);
+  assert_true(kept > 50e6);
+  strut_factor_free(factor);
+  strut_arena_free(&arena);
+}
+
+static void test_a_factor_that_cannot_be_counted(void **unused) {
+  (void)unused;
+  strut_error error = {0};
+  assert_int_equal(strut_room_check_factor(100000000, 3e9, &error), STRUT_NO_MEMORY);
+  assert_non_null(strstr(error.message, "3e+09 nonzeros"));
+}
+
+static double values_of(const strut_tree *tree) {
+  double sum = 1;
+  for (const strut_tree *child = tree->first; child; child = child->next) sum += values_of(child);
+  return sum;
+}
+
+/* By hand; and hardly more than is read: a colon in running text counts for a pair. */
+static void test_a_text(void **unused) {
+  (void)unused;
+  static const char text[] = "a: {b: [1, 2], c: x, d: []}\n# e: f, [g, h]\ni: 'j: k, [l, m]'\n";
+  size_t length = sizeof text - 1;
+  assert_near(strut_document_needs(text, length),
+              12 * (double)sizeof(strut_tree) + (double)length, 0);
+  static const char *const files[] = {"models/crawler/crawler.yaml", "models/basics/belt.yaml",
+                                      "models/gallery/d-bar.yaml"};
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+    char *file;
+    strut_document document = {0};
+    strut_diagnostics diagnostics = {0};
+    assert_int_equal(strut_file_read(files[i], &file, &length, NULL), STRUT_OK);
+    strut_diagnostics_source(&diagnostics, files[i], file, length);
+    assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
+    double told = (strut_document_needs(file, length) - (double)length) / sizeof(strut_tree);
+    double read = values_of(document.root);
+    print_message("%s: %.0f values told, %.0f read\n", files[i], told, read);
+    assert_within(told, 0.8 * read, 1.02 * read);
+    strut_document_free(&document);
+    strut_diagnostics_free(&diagnostics);
+    strut_release(file);
+  }
+}
+
+static void test_a_large_text(void **unused) {
+  (void)unused;
+  enum { PAIRS = 4000000 };
+  char *text = strut_allocate(5 * PAIRS + 1, 1);
+  struct rlimit before, now;
+  strut_error error = {0};
+  assert_non_null(text);
+  for (int i = 0; i < PAIRS; i++) memcpy(text + 5 * i, "k: v\n", 5);
+  assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+  now = before, now.rlim_cur = 300000000;
+  assert_int_equal(setrlimit(RLIMIT_AS, &now), 0);
+  strut_status status = strut_document_room_check("large.yaml", text, 5 * PAIRS, &error);
+  assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
+  assert_int_equal(status, STRUT_NO_MEMORY);
+  print_message("%s\n", error.message);
+  assert_non_null(strstr(error.message, "reading 'large.yaml' needs at least 404 MB"));
+  strut_release(text);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_more_than_the_machine_has),
       cmocka_unit_test(test_more_than_the_process_may_have),
       cmocka_unit_test(test_a_small_scene_has_room),
+      cmocka_unit_test(test_a_factor),
+      cmocka_unit_test(test_a_factor_that_cannot_be_counted),
+      cmocka_unit_test(test_a_text),
+      cmocka_unit_test(test_a_large_text),
   };
   return cmocka_run_group_tests_name("room", tests, NULL, NULL);
 }

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Large grids of X-frames that land on the ground: energy, momentum, memory and pace over many steps.
+   Arguments: nodes and steps of the large one, steps of one of 1000 nodes, nodes of the largest. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "engine/forces/energy.h"
+#include "engine/integrate/step_limit.h"
+#include "engine/run/balance.h"
+#include "tests/support/allocations.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+enum { ROWS = 10, PARTS = 10 };
+static int32_t nodes = 2000, largest_nodes = 130000;
+static int64_t steps = 1000, many_steps = 4000;
+/* A third of the largest stable step; where nodes stick and slip it takes less for the balance. */
+static const double STEP = 5e-4, ROUGH_STEP = 1e-4;
+static const double HEIGHT = 0.001, FALL = 1.0;
+
+static double seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
+
+static long resident(void) {
+  struct rusage usage;
+  assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+  return usage.ru_maxrss;
+}
+
+/* A grid of about n nodes that falls at 1 m/s, and drifts where it may slide. */
+static void falling(strut_scene *scene, int32_t n, strut_mass_model mass, double mu) {
+  strut_scene_init(scene);
+  structure_grid(scene, n / ROWS, ROWS, mass, HEIGHT, 0.2, mu);
+  for (size_t i = 0; i < scene->node_count; i++) {
+    scene->nodes[i].velocity[0] = 0.3;
+    scene->nodes[i].velocity[1] = -FALL;
+  }
+}
+
+/* Sum of mass times velocity along x, and of its sizes; sums of rods do not hang on the mass model. */
+static double momentum(const motion *m, double *size) {
+  double sum = 0;
+  *size = 0;
+  for (int32_t i = 0; i < m->model->node_count; i++) {
+    double part = m->model->weight[i] * m->state->v[2 * i];
+    sum += part, *size += fabs(part);
+  }
+  return sum;
+}
+
+static double fastest(const motion *m) {
+  double most = 0;
+  for (int32_t i = 0; i < 2 * m->model->node_count; i++) {
+    assert_true(isfinite(m->state->q[i]) && isfinite(m->state->v[i]));
+    most = fmax(most, fabs(m->state->v[i]));
+  }
+  return most;
+}
+
+/* Of all that was exchanged [1]; times and losses are in the state's ledger. */
+static double residual(const motion *m, const strut_stored *begin) {
+  strut_energy e;
+  strut_balance_fill(m->model, m->state, begin, (double)m->state->step * m->step, &e);
+  assert_true(e.dissipated_contact > 0 && e.moved > 0);
+  return e.residual / e.moved;
+}
+
+static void begin(motion *m, const strut_scene *scene, double step, strut_stored *stored) {
+  motion_begin(m, scene, step);
+  m->state->ledger = true;
+  strut_energy_mark(m->model, m->state);
+  *stored = strut_energy_stored(m->model, m->state, 0);
+}
+
+/* Tenth by tenth: what a node and step takes must not grow, nor memory. */
+static void march(motion *m, int64_t count) {
+  double pace[PARTS], least = HUGE_VAL;
+  double unit = 1e9 / ((double)m->model->node_count * (double)(count / PARTS));
+  uint64_t calls = 0;
+  long memory = 0;
+  for (int part = 0; part < PARTS; part++) {
+    if (part == 1) calls = allocations_so_far(), memory = resident(); /* all has been touched */
+    double start = seconds();
+    motion_steps(m, count / PARTS);
+    pace[part] = (seconds() - start) * unit;
+    least = fmin(least, pace[part]);
+  }
+  assert_true(allocations_so_far() == calls);
+  assert_in_range((uint64_t)resident(), 0, (uint64_t)memory);
+  print_message(
+      "  ns per node and step: %.0f in the first tenth, %.0f in the last, %.0f at least\n", pace[0],
+      pace[PARTS - 1], least);
+}
+
+static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
+  strut_scene scene;
+  motion m;
+  strut_stored stored;
+  double size, start = seconds();
+  falling(&scene, n, mass, mu);
+  begin(&m, &scene, mu > 0 ? ROUGH_STEP : STEP, &stored);
+  double before = momentum(&m, &size);
+  print_message("%s mass, friction %g, %d nodes, %zu members, %lld steps; made in %.2f s\n",
+                mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", mu, (int)n, scene.member_count,
+                (long long)count, seconds() - start);
+  march(&m, count);
+  double after = momentum(&m, &size), left = residual(&m, &stored), speed = fastest(&m);
+  print_message("  residual %.1e of the energy moved, fastest %.2f m/s, momentum changed by %.1e\n",
+                left, speed, (after - before) / before);
+  assert_true(fabs(left) < (mu > 0 ? 5e-2 : 5e-3));
+  assert_true(speed < 20 * FALL);
+  /* each step and node rounds by half a unit, at random */
+  if (!(mu > 0))
+    assert_true(fabs(after - before) < 1e-13 * before * sqrt((double)count));
+  else
+    assert_true(fabs(after) < 0.9 * before);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
+static void test_many_nodes(void **unused) {
+  (void)unused;
+  land(nodes, steps, STRUT_MASS_LUMPED, 0);
+  land(nodes, steps, STRUT_MASS_LUMPED, 0.3);
+  land(nodes, steps, STRUT_MASS_CONSISTENT, 0.3);
+}
+
+static void test_many_steps(void **unused) {
+  (void)unused;
+  land(1000, many_steps, STRUT_MASS_LUMPED, 0);
+  land(1000, many_steps, STRUT_MASS_CONSISTENT, 0);
+}
+
+/* Grids beside each other in one scene, each where the one alone is, know nothing of each other. */
+static void test_copies(void **unused) {
+  (void)unused;
+  enum { COPIES = 50, EACH = 100 };
+  strut_scene one, all;
+  motion a, b;
+  strut_scene_init(&all);
+  for (int copy = 0; copy < COPIES; copy++) {
+    structure_grid(&all, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
+    for (size_t j = all.member_count / (size_t)(copy + 1) * (size_t)copy; j < all.member_count; j++)
+      for (int end = 0; end < 2; end++) all.members[j].node[end] += copy * EACH;
+    for (int32_t i = 0; i < EACH; i++)
+      all.contacts[copy * EACH + i].node = all.contacts[i].node + copy * EACH;
+  }
+  strut_scene_init(&one);
+  structure_grid(&one, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
+  motion_begin(&a, &one, STEP);
+  motion_begin(&b, &all, STEP);
+  motion_steps(&a, 400), motion_steps(&b, 400);
+  for (int32_t copy = 0; copy < COPIES; copy++)
+    for (int32_t i = 0; i < 2 * EACH; i++) {
+      assert_same_bits(b.state->q[2 * copy * EACH + i], a.state->q[i]);
+      assert_same_bits(b.state->v[2 * copy * EACH + i], a.state->v[i]);
+    }
+  motion_end(&a), motion_end(&b);
+  strut_scene_free(&one), strut_scene_free(&all);
+}
+
+/* Compiled, its step bounded, and a few steps taken by the run itself. */
+static void take_largest(strut_mass_model mass) {
+  strut_scene scene;
+  strut_run_options options = {0};
+  strut_summary summary;
+  strut_step_limit limit;
+  falling(&scene, largest_nodes, mass, 0.3);
+  motion_experiment(&scene, STEP, 10 * STEP);
+  double start = seconds();
+  strut_model *model = motion_compile(&scene);
+  double compiled = seconds() - start;
+  assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
+  double bounded = seconds() - start - compiled;
+  assert_int_equal(strut_simulate(model, &options, &summary, NULL), STRUT_OK);
+  print_message(
+      "%s mass, %d nodes, %zu members: compiled in %.2f s, largest step in %.2f s (%s "
+      "%.4g s), 10 steps in %.2f s, peak memory %.0f MB\n",
+      mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", (int)largest_nodes, scene.member_count,
+      compiled, bounded, limit.bound ? "at least" : "about", limit.limit,
+      seconds() - start - compiled - bounded, (double)resident() * 1024e-6);
+  assert_true(limit.bound);
+  /* 1.68 ms and 1.11 ms, which smaller grids of the kind are found to have */
+  assert_within(limit.limit, mass == STRUT_MASS_LUMPED ? 1.5e-3 : 0.85e-3,
+                mass == STRUT_MASS_LUMPED ? 1.70e-3 : 1.12e-3);
+  assert_true(fabs(summary.energy.residual) < 1e-3 * summary.energy.moved);
+  strut_summary_free(&summary);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_the_largest(void **unused) {
+  (void)unused;
+  take_largest(STRUT_MASS_LUMPED);
+  take_largest(STRUT_MASS_CONSISTENT);
+}
+
+int main(int count, char **words) {
+  if (count > 1) nodes = (int32_t)strtol(words[1], NULL, 10);
+  if (count > 2) steps = strtoll(words[2], NULL, 10);
+  if (count > 3) many_steps = strtoll(words[3], NULL, 10);
+  if (count > 4) largest_nodes = (int32_t)strtol(words[4], NULL, 10);
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_copies),
+      cmocka_unit_test(test_many_nodes),
+      cmocka_unit_test(test_many_steps),
+      cmocka_unit_test(test_the_largest),
+  };
+  return cmocka_run_group_tests_name("extremes: large", tests, NULL, NULL);
+}
