@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of the runs of a study, one each, or two over one another. See study_runs.h. */
+#include <stdint.h>
 #include <string.h>
 
 #include "engine/output/figures/run_figure.h"
@@ -34,9 +35,11 @@ static const char *file_of(const strut_sweep_plan *plan, const char *directory,
   char *name = strut_arena_format(&o->arena, "%s", figure->name);
   for (size_t i = 0; name && i < plan->axis_columns; i++) {
     const char *column = plan->columns[i].name;
-    size_t axis, length = figure->only ? strcspn(figure->only, "=") : 0;
+    size_t axis, before = SIZE_MAX, length = figure->only ? strcspn(figure->only, "=") : 0;
     strut_grid_column(plan->study, i, &axis);
-    bool told = plan->study->axes[axis].count > 1;
+    if (i > 0) strut_grid_column(plan->study, i - 1, &before);
+    bool told =
+        plan->study->axes[axis].count > 1 && axis != before; /* what is zipped by its first */
     if (figure->difference && strcmp(column, figure->difference) == 0) told = false;
     if (figure->only && strlen(column) == length && memcmp(column, figure->only, length) == 0)
       told = false;

@@ -40,6 +40,6 @@ void strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
 void strut_run_tell_other(const strut_run_scene *run, char *text, size_t size) {
   size_t used = strlen(text);
   if (run->figure->other)
-    snprintf(text + used, size - used, ", dashed: %s",
+    snprintf(text + used, size - used, ", black dashes: %s",
              run->figure->other_name ? run->figure->other_name : "another");
 }

@@ -82,7 +82,7 @@ void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
 /** Its way through (count) positions [m], dashed. */
 void strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
                               const strut_window *window, const double (*way)[2], size_t count);
-/** Appends ", dashed: NAME" to a text where there is another motion. */
+/** Appends ", black dashes: NAME" to a text where there is another motion. */
 void strut_run_tell_other(const strut_run_scene *run, char *text, size_t size);
 /** Names of the nodes of a shape, off all that was drawn since the last names. */
 void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,

@@ -231,7 +231,8 @@ strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   char what[200];
   bool marked = g.common[0] && g.moves;
   double top = STRUT_RUN_EDGE + STRUT_RUN_TITLE;
-  snprintf(what, sizeof what, "%zu instants at one scale%s%s%s", g.count,
+  snprintf(what, sizeof what, "%zu instant%s at one scale%s%s%s", g.count,
+           g.count == 1 ? "" : "s",
            marked ? "; dashed: where " : g.common[0] ? "" : "; each in the middle",
            marked ? strut_run_measured_name(run) : "", marked ? " was at first" : "");
   strut_run_tell_other(run, what, sizeof what);
