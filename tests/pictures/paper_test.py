@@ -46,12 +46,10 @@ shown = re.findall(r"!\[[^\]]+\]\(paper/([\w-]+\.svg)\)", page)
 there = [os.path.basename(f) for f in glob.glob("docs/paper/*.svg")]
 if sorted(shown) != sorted(there):
     fail(f"shown and there are not the same: {set(shown) ^ set(there)}")
-for study in glob.glob("models/crawler/figure-*.yaml"):
-    name = os.path.basename(study)[:-5]
-    if not re.search(rf"strut sweep models/crawler/{name}\.yaml", page):
-        fail(f"docs/paper.md has no command for {study}")
-    if not os.path.exists(f"docs/paper/{name}.csv"):
-        fail(f"docs/paper/{name}.csv is not there")
+for table in glob.glob("docs/paper/*.csv"):
+    study = f"models/crawler/{os.path.basename(table)[:-4]}.yaml"
+    if not os.path.exists(study) or f"strut sweep {study}" not in page:
+        fail(f"docs/paper.md has no command for {table}")
 size = sum(os.path.getsize(f) for f in glob.glob("docs/paper/*"))
 if size > MOST_BYTES:
     fail(f"docs/paper has {size} bytes")
