@@ -115,6 +115,11 @@ int strut_word_find(const char *words, const char *word) {
   return -1;
 }
 
+int strut_switch_find(const char *text) {
+  int found = strut_word_find("no|yes|false|true", text);
+  return found < 0 ? -1 : found % 2;
+}
+
 const char *strut_words_text(const char *words, char *buffer, size_t size) {
   char word[40], following[40];
   size_t used = 0;

@@ -132,6 +132,8 @@ STRUT_API const char *strut_key_expected(int key, char *buffer, size_t size);
 STRUT_API const char *strut_words_text(const char *words, char *buffer, size_t size);
 /** Index of a word in "bar|spring|cable", or -1. */
 STRUT_API int strut_word_find(const char *words, const char *word);
+/** 1 for yes and true, 0 for no and false, -1 for other texts. */
+int strut_switch_find(const char *text);
 /** The i-th word, copied into buffer, or NULL after the last. */
 STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size_t size);
 

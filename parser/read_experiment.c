@@ -22,8 +22,9 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
   strut_owner owner = {"the settling", NULL};
   settle->wanted = true;
   if (slot->value->kind == STRUT_TREE_SCALAR) {
-    settle->wanted = strcmp(slot->value->text, "true") == 0;
-    if (!slot->value->quoted && (settle->wanted || strcmp(slot->value->text, "false") == 0)) return;
+    int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
+    settle->wanted = wanted == 1;
+    if (wanted >= 0) return;
     strut_say(reader, slot->value->place,
               "expected true, or a mapping such as {limit: 100 s}, for 'settle' of the initial "
               "state, found %s",
@@ -186,8 +187,9 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
   strut_owner owner = {"the steady state", NULL};
   steady->wanted = true;
   if (slot->value->kind == STRUT_TREE_SCALAR) {
-    steady->wanted = strcmp(slot->value->text, "true") == 0;
-    if (!slot->value->quoted && (steady->wanted || strcmp(slot->value->text, "false") == 0)) return;
+    int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
+    steady->wanted = wanted == 1;
+    if (wanted >= 0) return;
     strut_say(reader, slot->value->place,
               "expected true, or a mapping such as {tolerance: 0.5 %%}, for 'steady' of the "
               "measurement, found %s",

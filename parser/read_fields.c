@@ -71,6 +71,10 @@ static bool read_word(strut_reader *reader, const strut_key *key, const strut_tr
   char expected[400];
   if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
     return true; /* scenes of a study are read by the million */
+  bool may_switch = value->kind == STRUT_TREE_SCALAR && !value->quoted;
+  if (may_switch && strcmp(key->words, "no|yes") == 0 &&
+      (*word = strut_switch_find(value->text)) >= 0)
+    return true;
   strut_words_text(key->words, expected, sizeof expected);
   if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
   words_context words = {.count = 0};

@@ -31,8 +31,9 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
   double scaled = rounded;
   for (int i = thousands; i < 0; i++) scaled *= 1000.0;
   for (int i = thousands; i > 0; i--) scaled /= 1000.0;
-  snprintf(text, STRUT_QUANTITY_TEXT, "%.*g %s%s", digits, scaled, prefixes[thousands - FIRST],
-           unit);
+  /* and with three digits at least: 680 us to two digits is not 6.8e+02 us */
+  snprintf(text, STRUT_QUANTITY_TEXT, "%.*g %s%s", digits < 3 ? 3 : digits, scaled,
+           prefixes[thousands - FIRST], unit);
   strut_c_locale_leave(locale);
   return text;
 }

@@ -59,8 +59,8 @@ double strut_grid_value(const strut_study_column *column, int64_t i, int64_t cou
     sum = from + (to - from) * (double)i / last;
     return rounded(sum, fmax(fabs(from), fabs(sum)));
   }
-  long double ratio = powl((long double)to / from, (long double)i / last);
-  double value = (double)(from * ratio);
+  long double first = from, ratio = powl((long double)to / first, (long double)i / (long double)last);
+  double value = (double)(first * ratio);
   return rounded(value, fabs(value));
 }
 

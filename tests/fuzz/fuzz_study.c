@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include "engine/study/grid.h"
 #include "parser/read_study.h"
@@ -20,7 +20,7 @@ static void require(bool promise) {
   if (!promise) abort();
 }
 
-/* Both files that a study needs, in a folder of this process's own; its name. */
+/* A folder of this process's own, with the model as it lies beside the folder of studies; its name. */
 static const char *folder(void) {
   static char name[] = "/tmp/strut-fuzz-XXXXXX";
   static bool made;
@@ -33,6 +33,8 @@ static const char *folder(void) {
   snprintf(path, sizeof path, "%s/model.yaml", name);
   FILE *copy = fopen(path, "wb");
   require(copy && fwrite(text, 1, length, copy) == length && fclose(copy) == 0);
+  snprintf(path, sizeof path, "%s/good", name);
+  require(mkdir(path, 0700) == 0);
   made = true;
   return name;
 }
@@ -64,7 +66,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   char path[64];
   strut_study_file file;
   strut_error error = {0};
-  snprintf(path, sizeof path, "%s/study.yaml", folder());
+  snprintf(path, sizeof path, "%s/good/study.yaml", folder());
   FILE *text = fopen(path, "wb");
   require(text != NULL);
   size_t written = fwrite(data, 1, size, text);
