@@ -70,10 +70,21 @@ static bool speaks_of_a_run(strut_reader *reader) {
          (solver->state == STRUT_GIVEN && strut_tree_find(solver->value, step, NULL));
 }
 
+/* A study in the place of a model would be wrong in every line. */
+static bool is_study(const strut_tree *root) {
+  return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
+         !strut_tree_find(root, "nodes", NULL);
+}
+
 /* Everything that can be said once there is a tree. */
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
+  if (is_study(reader->document.root)) {
+    strut_say(reader, strut_root_place(reader),
+              "this is a study, expected a model; 'strut sweep' runs studies");
+    return;
+  }
   strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));

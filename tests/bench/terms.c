@@ -96,7 +96,7 @@ static double now(void) {
 static double run(const strut_model *model, const side *it) {
   const double dt = 5e-5;
   strut_state *state = NULL;
-  double time = NAN;
+  double time = (double)NAN;
   if (strut_integrator_check(model, NULL) || strut_state_create(model, &state, NULL)) return time;
   const strut_integrator *method = strut_integrator_find(it->method);
   void *work = method->create(model, state);

@@ -15,7 +15,7 @@ typedef struct scene_file {
   size_t length;
 } scene_file;
 
-/** Every .yaml file below tests/language/good and models; at least one, or the test fails. */
+/** Every .yaml file below tests/language/good and models but for studies; none fails the test. */
 size_t scene_files(scene_file **files);
 void free_scene_files(scene_file *files, size_t count);
 
