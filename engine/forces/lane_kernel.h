@@ -363,9 +363,10 @@ STRUT_LANE_INLINE void lane_ground(strut_lane_tables *t, const double *restrict 
   }
 }
 
-/* All forces at positions q and velocities v, with rest lengths and loads as lane_drive left them. */
-STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict q,
-                                   const double *restrict v, bool ledger) {
+/* All forces but the ground's at positions q and velocities v, with rest lengths and loads as
+   lane_drive left them. */
+STRUT_LANE_INLINE void lane_structure(strut_lane_tables *t, const double *restrict q,
+                                      const double *restrict v, bool ledger) {
   const strut_model *m = t->first;
   lane_real zero = {0};
   for (size_t k = 0; k < STRUT_POWER_COUNT && ledger; k++)
@@ -375,6 +376,13 @@ STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict 
                        (m->plan & STRUT_TERM_CONSTANT) ? lane_row(t->constant, i, p) : zero));
   if (m->plan & STRUT_TERM_LOADS) LANE_EACH(lane_loads(t, p, v, ledger));
   if (m->plan & STRUT_TERM_MEMBERS) lane_members(t, q, v, ledger);
+}
+
+/* All forces, the same way. */
+STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict q,
+                                   const double *restrict v, bool ledger) {
+  const strut_model *m = t->first;
+  lane_structure(t, q, v, ledger);
   if (!(m->plan & STRUT_TERM_CONTACT)) return;
   if (m->plan & STRUT_TERM_SLOPE)
     lane_ground(t, q, v, true, m->plan & STRUT_TERM_FRICTION, ledger);

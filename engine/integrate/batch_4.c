@@ -5,5 +5,8 @@
 #define STRUT_LANE_TARGET __attribute__((target("avx2")))
 #endif
 #include "engine/integrate/batch_rk4.h"
+#include "engine/integrate/batch_verlet.h"
 
 void strut_batch_rk4_4(strut_batch *batch, int64_t count) { batch_rk4(batch, count); }
+
+const strut_batch_kernels strut_batch_verlet_4 = {verlet_predict_any, verlet_correct_any};

@@ -5,5 +5,8 @@
 #define STRUT_LANE_TARGET __attribute__((target("avx512f,avx512dq,avx512vl")))
 #endif
 #include "engine/integrate/batch_rk4.h"
+#include "engine/integrate/batch_verlet.h"
 
 void strut_batch_rk4_8(strut_batch *batch, int64_t count) { batch_rk4(batch, count); }
+
+const strut_batch_kernels strut_batch_verlet_8 = {verlet_predict_any, verlet_correct_any};

@@ -250,6 +250,12 @@ static void show_contacts(const strut_model *model, strut_state *state, const st
   }
 }
 
+void strut_located_step(const strut_model *model, strut_state *state, void *workspace, double dt) {
+  strut_located *l = workspace;
+  double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+  located_go_on(state, l, step(model, state, l, t, h, dt), dt);
+}
+
 void strut_located_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                            int64_t count) {
   strut_located *l = workspace;
@@ -257,8 +263,7 @@ void strut_located_advance(const strut_model *model, strut_state *state, void *w
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (l->stepper->quiet && l->at_once == 0) l->stepper->quiet(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
-    double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
-    located_go_on(state, l, step(model, state, l, t, h, dt), dt);
+    strut_located_step(model, state, l, dt);
   }
   show_contacts(model, state, l);
 }

@@ -126,6 +126,8 @@ void *strut_located_create(const strut_model *model, strut_state *state,
 /** Makes the modes anew from q and v. */
 void strut_located_restart(const strut_model *model, strut_state *state, void *workspace,
                            double dt);
+/** One step within the grid's, and what happens in it. */
+void strut_located_step(const strut_model *model, strut_state *state, void *workspace, double dt);
 /** `count` steps of dt. */
 void strut_located_advance(const strut_model *model, strut_state *state, void *workspace,
                            double dt, int64_t count);

@@ -67,7 +67,7 @@ static void seat_next(hall *h, int32_t lane) {
       s->taken = true;
       h->taken++;
       strut_batch_fill(h->batch, lane, s->run.model, s->run.dt);
-      strut_batch_put(h->batch, lane, s->run.state);
+      strut_batch_put(h->batch, lane, s->run.state, s->run.workspace);
     }
   }
 }
@@ -78,35 +78,34 @@ static void leave(hall *h, int32_t lane) {
   h->taken--;
 }
 
-static bool is_measured(const seat *s) {
-  return s->run.state->step >= strut_measure_first_step(&s->run.measure);
+static bool is_measured(const seat *s, int64_t step) {
+  return step >= strut_measure_first_step(&s->run.measure);
 }
 
-/* Steps to the next stop of some lane; by single steps while one is measured after each. */
+/* Steps to the next stop of some lane; by single steps where one is measured after each. */
 static void step(hall *h) {
-  int64_t count = INT64_MAX;
+  int64_t left[STRUT_MOST_LANES] = {0}, before[STRUT_MOST_LANES] = {0};
   for (int32_t l = 0; l < h->width; l++) {
     const seat *s = &h->seats[l];
     if (!s->taken) continue;
-    int64_t left = is_measured(s) ? 1 : s->stop - s->run.state->step;
-    count = left < count ? left : count;
+    before[l] = s->run.state->step;
+    left[l] = is_measured(s, before[l]) ? 1 : s->stop - before[l];
   }
-  unsigned before = strut_subnormals_off();
-  strut_batch_advance(h->batch, count);
+  unsigned subnormals = strut_subnormals_off();
+  strut_batch_advance(h->batch, left);
   for (int32_t l = 0; l < h->width; l++) {
     seat *s = &h->seats[l];
     if (!s->taken) continue;
-    bool measured = is_measured(s);
-    int64_t now = s->run.state->step + count;
-    if (now == s->stop)
+    bool measured = is_measured(s, before[l]);
+    strut_batch_count(h->batch, l, s->run.state);
+    if (s->run.state->step == before[l]) continue;
+    if (s->run.state->step == s->stop)
       strut_batch_get(h->batch, l, s->run.state);
     else if (measured)
       strut_batch_look(h->batch, l, s->run.state);
-    else
-      strut_batch_count(h->batch, l, s->run.state);
     if (measured) strut_measure_step(s->run.model, s->run.state, &s->run.measure);
   }
-  strut_subnormals_restore(before);
+  strut_subnormals_restore(subnormals);
 }
 
 /* Looks at the lanes that have come to their stop; those that have ended leave. */
@@ -120,7 +119,7 @@ static void look(hall *h) {
       leave(h, l);
       end(h, s, status);
     } else if (s->run.shot_periods != shot) {
-      strut_batch_put(h->batch, l, s->run.state); /* it goes on from the orbit */
+      strut_batch_put(h->batch, l, s->run.state, s->run.workspace); /* it goes on from the orbit */
     }
   }
 }
@@ -134,8 +133,6 @@ static void finish_last(hall *h) {
     if (!s->taken) continue;
     strut_batch_get(h->batch, l, s->run.state);
     leave(h, l);
-    if (s->run.method->restart)
-      s->run.method->restart(s->run.model, s->run.state, s->run.workspace, s->run.dt);
     finish_alone(h, s);
   }
 }

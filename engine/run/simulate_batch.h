@@ -3,9 +3,9 @@
  * Many runs on one core: those that are alike side by side in the lanes of a batch.
  *
  * Every summary, row of a recording and failure is what strut_simulate would give, bit for bit (a NAN's
- * sign aside). Runs that no lane can take (another method than rk4, another topology than the batch's,
- * bars that are rigid, other laws of the ground than the printed ones, mass groups too large for a dense
- * inverse) are run alone in between.
+ * sign aside). Runs that no lane can take are run alone in between: other methods than rk4 and
+ * verlet-events, another topology than the batch's, bars that are rigid, other laws of the ground than
+ * the printed ones, mass groups too large for a dense inverse; with events also cables and slopes.
  */
 #ifndef STRUT_ENGINE_RUN_SIMULATE_BATCH_H
 #define STRUT_ENGINE_RUN_SIMULATE_BATCH_H

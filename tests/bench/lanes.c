@@ -10,11 +10,13 @@
 #include "engine/run/simulate_batch.h"
 #include "tests/bench/scenes.h"
 
-enum { WIDTHS = 5, METHODS = 1, MOST = 1001 };
+enum { WIDTHS = 5, METHODS = 2, MOST = 1001 };
 /* The last one in registers of four, as on processors that have no wider ones. */
 static const int32_t widths[WIDTHS] = {1, 2, 4, 8, 8};
 static const char *const kinds[WIDTHS] = {"", "", "", "", "2 x 4"};
-static const char *const methods[METHODS] = {"rk4"};
+static const char *const methods[METHODS] = {"rk4", "verlet-events"};
+/* [s]; that of the crawler's model for rk4, and what verlet-events is stable with */
+static const double step_of[METHODS] = {1e-4, 8e-5};
 
 typedef struct lane {
   strut_scene scene;
@@ -22,6 +24,12 @@ typedef struct lane {
   strut_state *state;
   void *workspace;
 } lane;
+
+/* A batch and states of its own for it. */
+typedef struct together {
+  lane lanes[STRUT_MOST_LANES];
+  strut_batch *batch;
+} together;
 
 /* Of this process on its core, whoever else runs meanwhile. */
 static double seconds(void) {
@@ -35,7 +43,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static bool lane_make(lane *it, int i, const strut_integrator *method, bool ledger) {
+static bool lane_make(lane *it, int i, const strut_integrator *method, double step, bool ledger) {
   *it = (lane){0};
   if (bench_crawler_scene(&it->scene, 10.0 + 0.1 * i, 1e-4, 0.1) != STRUT_OK ||
       strut_model_compile(&it->scene, &it->model, NULL) != STRUT_OK ||
@@ -43,7 +51,7 @@ static bool lane_make(lane *it, int i, const strut_integrator *method, bool ledg
       !(it->workspace = method->create(it->model, it->state)))
     return false;
   it->state->ledger = ledger;
-  if (method->restart) method->restart(it->model, it->state, it->workspace, 1e-4);
+  if (method->restart) method->restart(it->model, it->state, it->workspace, step);
   return true;
 }
 
@@ -53,41 +61,64 @@ static void lane_free(lane *it) {
   strut_scene_free(&it->scene);
 }
 
-/* One method: the lanes, and a batch of each width made of them. */
-static void compare(const char *name, bool ledger, int repeats) {
+static bool together_make(together *it, int w, const strut_integrator *method, double step,
+                          bool ledger) {
+  bool good = true;
+  for (int i = 0; i < STRUT_MOST_LANES; i++)
+    good &= lane_make(&it->lanes[i], i, method, step, ledger);
+  it->batch = good && w && widths[w] <= strut_batch_widest()
+                  ? strut_batch_create(it->lanes[0].model, method, widths[w], ledger)
+                  : NULL;
+  for (int32_t l = 0; l < widths[w] && it->batch; l++) {
+    strut_batch_fill(it->batch, l, it->lanes[l].model, step);
+    strut_batch_put(it->batch, l, it->lanes[l].state, it->lanes[l].workspace);
+  }
+  if (w == WIDTHS - 1 && it->batch) strut_batch_halve(it->batch);
+  return good;
+}
+
+/* So many steps of the first lane, and about as many of the others. */
+static void together_step(together *it, int32_t width, const strut_integrator *method, double step,
+                          int64_t count) {
+  strut_state *first = it->lanes[0].state;
+  if (!it->batch) {
+    method->advance(it->lanes[0].model, first, it->lanes[0].workspace, step, count);
+    return;
+  }
+  for (int64_t end = first->step + count; first->step < end;) {
+    int64_t left[STRUT_MOST_LANES];
+    for (int32_t l = 0; l < width; l++) left[l] = l ? INT64_MAX : end - first->step;
+    strut_batch_advance(it->batch, left);
+    strut_batch_count(it->batch, 0, first);
+  }
+}
+
+/* One method: a run alone, and batches of each width. */
+static void compare(int m, bool ledger, int repeats) {
   static double times[WIDTHS][MOST];
-  const strut_integrator *method = strut_integrator_find(name);
-  lane lanes[STRUT_MOST_LANES];
-  strut_batch *batch[WIDTHS] = {NULL};
+  static together all[WIDTHS];
+  const strut_integrator *method = strut_integrator_find(methods[m]);
   bool good = true;
   const int64_t steps = 5000;
-  for (int i = 0; i < STRUT_MOST_LANES; i++) good &= lane_make(&lanes[i], i, method, ledger);
-  for (int w = 1; w < WIDTHS && good && widths[w] <= strut_batch_widest(); w++) {
-    batch[w] = strut_batch_create(lanes[0].model, method, widths[w], ledger);
-    for (int32_t l = 0; l < widths[w] && batch[w]; l++) {
-      strut_batch_fill(batch[w], l, lanes[l].model, 1e-4);
-      strut_batch_put(batch[w], l, lanes[l].state);
-    }
-    if (w == WIDTHS - 1 && batch[w]) strut_batch_halve(batch[w]);
-  }
+  for (int w = 0; w < WIDTHS; w++) good &= together_make(&all[w], w, method, step_of[m], ledger);
   for (int r = -1; r < repeats && good; r++) /* the first round is for warming up */
     for (int w = 0; w < WIDTHS; w++) {
+      if (w && !all[w].batch) continue;
       double start = seconds();
-      if (w && batch[w])
-        strut_batch_advance(batch[w], steps);
-      else if (!w)
-        method->advance(lanes[0].model, lanes[0].state, lanes[0].workspace, 1e-4, steps);
+      together_step(&all[w], widths[w], method, step_of[m], steps);
       if (r >= 0) times[w][r] = 1e9 * (seconds() - start) / (double)(steps * widths[w]);
     }
   for (int w = 0; w < WIDTHS && good; w++) {
-    if (w && !batch[w]) continue;
+    if (w && !all[w].batch) continue;
     qsort(times[w], (size_t)repeats, sizeof times[w][0], ascending);
     double typical = times[w][repeats / 2];
-    printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", name, ledger ? "ledger" : "", widths[w],
+    printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", methods[m], ledger ? "ledger" : "", widths[w],
            kinds[w], typical, times[0][repeats / 2] / typical);
   }
-  for (int w = 1; w < WIDTHS; w++) strut_batch_free(batch[w]);
-  for (int i = 0; i < STRUT_MOST_LANES; i++) lane_free(&lanes[i]);
+  for (int w = 0; w < WIDTHS; w++) {
+    strut_batch_free(all[w].batch);
+    for (int i = 0; i < STRUT_MOST_LANES; i++) lane_free(&all[w].lanes[i]);
+  }
 }
 
 /* Whole runs: the crawler at so many frequencies, a second of each measured over its last tenth. */
@@ -126,32 +157,36 @@ static double time_points(points *all, int32_t width, bool halves) {
   return POINTS / (seconds() - start);
 }
 
-static void compare_points(bool ledger, int repeats) {
+static void compare_points(int m, bool ledger, int repeats) {
   static points all;
   static double rates[WIDTHS][MOST];
   bool good = true;
   all = (points){.options = {.without_ledger = !ledger}};
   for (int i = 0; i < POINTS; i++) {
-    good &= lane_make(&all.at[i], 2 * i, strut_integrator_find("rk4"), ledger);
+    good &= lane_make(&all.at[i], 2 * i, strut_integrator_find(methods[m]), step_of[m], ledger);
+    all.at[i].scene.experiment.integrator = methods[m];
+    all.at[i].scene.experiment.step = step_of[m];
     all.at[i].scene.experiment.measure_last = 0.1;
   }
   for (int r = 0; r < repeats && good; r++)
     for (int w = 0; w < WIDTHS; w++)
-      if (widths[w] <= strut_batch_widest()) rates[w][r] = time_points(&all, widths[w], w == WIDTHS - 1);
+      if (widths[w] <= strut_batch_widest())
+        rates[w][r] = time_points(&all, widths[w], w == WIDTHS - 1);
   for (int w = 0; w < WIDTHS && good && widths[w] <= strut_batch_widest(); w++) {
     qsort(rates[w], (size_t)repeats, sizeof rates[w][0], ascending);
     double typical = rates[w][repeats / 2];
-    printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", all.failed ? "points FAILED" : "points",
+    printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", all.failed ? "FAILED" : methods[m],
            ledger ? "ledger" : "", widths[w], kinds[w], typical, typical / rates[0][repeats / 2]);
   }
   for (int i = 0; i < POINTS; i++) lane_free(&all.at[i]);
 }
 
 void bench_lanes(int repeats) {
-  printf("\nlanes: the crawler, 0.1 ms\n  %-14s %-8s %-12s %10s %10s\n", "", "", "lanes", "ns/step",
-         "times");
+  printf("\nlanes: the crawler, 0.1 and 0.08 ms\n  %-14s %-8s %-12s %10s %10s\n", "", "", "lanes",
+         "ns/step", "times");
   for (int m = 0; m < METHODS; m++)
-    for (int ledger = 0; ledger < 2; ledger++) compare(methods[m], ledger, repeats);
+    for (int ledger = 0; ledger < 2; ledger++) compare(m, ledger, repeats);
   printf("  whole runs of 1 s%23s\n", "points/s");
-  for (int ledger = 0; ledger < 2; ledger++) compare_points(ledger, repeats > 5 ? 5 : repeats);
+  for (int m = 0; m < METHODS; m++)
+    for (int ledger = 0; ledger < 2; ledger++) compare_points(m, ledger, repeats > 5 ? 5 : repeats);
 }

@@ -172,12 +172,15 @@ axes:
 run: {{periods: 10, measure: {{last: 1}}}}
 trajectories: yes
 """
+EVENTS = CRAWLER.replace("study: crawler", "study: events").replace(
+    "run:", "solver: {integrator: verlet-events, step: 0.05 ms}\nrun:")
 
 
 def lanes_change_nothing():
     write("mixed.yaml", MIXED)
     write("motions.yaml", MOTIONS)
-    ends = {"crawler": 0, "mixed": 3, "motions": 0}
+    write("events.yaml", EVENTS)
+    ends = {"crawler": 0, "events": 0, "mixed": 3, "motions": 0}
     for name, code in ends.items():
         run("sweep", f"{name}.yaml", "-o", f"{name}-1", "--lanes", "1", "--threads", "1",
             "--quiet", code=code)

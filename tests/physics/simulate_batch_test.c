@@ -127,7 +127,7 @@ static void same_summary(const strut_summary *a, const strut_summary *b) {
 }
 
 /* The crawler, sometimes as something that no lane takes, or that fails. */
-static void make_scene(strut_scene *scene, int i, uint64_t *r) {
+static void make_scene(strut_scene *scene, int i, const char *method, uint64_t *r) {
   strut_scene_init(scene);
   structure_crawler(scene, random_between(r, 2, 20), random_between(r, 1e-5, 3e-4),
                     random_between(r, 0.05, 0.6), i % 2);
@@ -138,7 +138,7 @@ static void make_scene(strut_scene *scene, int i, uint64_t *r) {
   if (i % 4 == 1) scene->contacts[0].stiffness *= 0.9; /* the limit of the step is another one */
   if (i % 8 == 4) scene->members[0].stiffness *= 0.95;
   if (i % 7 == 2) scene->signals[0].kind = STRUT_HALF_SINE;
-  if (i % 11 == 5) e->integrator = "verlet-events";
+  e->integrator = (i % 11 == 5) == (strcmp(method, "rk4") == 0) ? "verlet-events" : "rk4";
   if (i % 13 == 6) scene->contacts[1].friction.law = STRUT_FRICTION_SMOOTH;
   if (i % 13 == 6) scene->contacts[1].friction.width = 1e-3;
   if (i % 17 == 8) scene->members[3].node[0] = 4;       /* another topology */
@@ -152,12 +152,12 @@ static void make_scene(strut_scene *scene, int i, uint64_t *r) {
   e->steady.shooting = i % 2;
 }
 
-static void make_points(points *all, int count, bool without_ledger) {
+static void make_points(points *all, int count, const char *method, bool without_ledger) {
   uint64_t r = 20;
   *all = (points){.count = count};
   for (int i = 0; i < count; i++) {
     point *p = &all->at[i];
-    make_scene(&p->scene, i, &r);
+    make_scene(&p->scene, i, method, &r);
     p->model = motion_compile(&p->scene);
     p->options.without_ledger = without_ledger;
     p->sink = (strut_sink){&p->seen, trace_begin, trace_rows, trace_end, 0};
@@ -182,13 +182,14 @@ static void check_alone(point *p) {
   strut_model_free(model);
 }
 
-static void compare(int32_t width, int count, bool without_ledger) {
+static void compare(int32_t width, int count, const char *method, bool without_ledger) {
   static points all;
   strut_scene crawler;
   strut_scene_init(&crawler);
   structure_crawler(&crawler, 10, 1e-4, 0.1, false);
+  crawler.experiment.integrator = method;
   strut_model *example = motion_compile(&crawler);
-  make_points(&all, count, without_ledger);
+  make_points(&all, count, method, without_ledger);
   strut_simulate_batch(&(strut_batch_source){.context = &all,
                                              .next = next_point,
                                              .result = take_result,
@@ -209,17 +210,24 @@ static void compare(int32_t width, int count, bool without_ledger) {
 
 static void test_every_width(void **unused) {
   (void)unused;
-  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2) compare(width, POINTS, false);
+  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2) compare(width, POINTS, "rk4", false);
 }
 
 static void test_without_ledger(void **unused) {
   (void)unused;
-  compare(0, POINTS, true);
+  compare(0, POINTS, "rk4", true);
+}
+
+static void test_events(void **unused) {
+  (void)unused;
+  compare(2, POINTS, "verlet-events", false);
+  compare(4, POINTS, "verlet-events", true);
+  compare(0, POINTS, "verlet-events", false);
 }
 
 static void test_few_points(void **unused) {
   (void)unused;
-  for (int count = 0; count < 4; count++) compare(0, count, false);
+  for (int count = 0; count < 4; count++) compare(0, count, "rk4", false);
 }
 
 /* Lanes are no duty: without memory for them each run is made alone. */
@@ -230,7 +238,7 @@ static void test_no_memory_for_lanes(void **unused) {
   strut_scene_init(&crawler);
   structure_crawler(&crawler, 10, 1e-4, 0.1, false);
   strut_model *example = motion_compile(&crawler);
-  make_points(&all, 1, false);
+  make_points(&all, 1, "rk4", false);
   strut_fail_allocation_after(0);
   strut_simulate_batch(&(strut_batch_source){
       .context = &all, .next = next_point, .result = take_result, .example = example});
@@ -246,6 +254,6 @@ static void test_no_memory_for_lanes(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_width), cmocka_unit_test(test_without_ledger),
-      cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_memory_for_lanes)};
+      cmocka_unit_test(test_events), cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_memory_for_lanes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
