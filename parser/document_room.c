@@ -8,7 +8,8 @@
 #include "engine/base/memory_limit.h"
 #include "parser/document.h"
 
-enum { DEPTH_MOST = 64, WORDS = 400, SHORT = 100000 };
+/* MOST_PER_BYTE: of tree for a byte of text, as in [1,2,3]. */
+enum { DEPTH_MOST = 64, WORDS = 400, SHORT = 100000, MOST_PER_BYTE = 1 + sizeof(strut_tree) / 2 };
 
 /* Where a look at a text is: brackets that are open, and what stood before. */
 typedef struct look {
@@ -64,7 +65,9 @@ static const char *name_text(const char *name, char words[WORDS]) {
 strut_status strut_document_room_check(const char *name, const char *text, size_t length,
                                        strut_error *error) {
   char words[WORDS];
-  if (length < SHORT) return STRUT_OK;
+  const char *whose;
+  if (length < SHORT || MOST_PER_BYTE * (double)length <= strut_memory_most(&whose))
+    return STRUT_OK;
   return strut_memory_check(strut_document_needs(text, length), name_text(name, words), error);
 }
 

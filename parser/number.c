@@ -85,12 +85,14 @@ static bool read_fast(const literal *parts, long exponent, double *value) {
 static bool read_slow(const char *text, const literal *parts, long exponent, double *value) {
   char buffer[STRUT_NUMBER_MOST + 32], *end;
   memcpy(buffer, text, parts->mantissa_length);
-  int tail = snprintf(buffer + parts->mantissa_length, 32, "e%ld", exponent);
+  int tail = 0;
+  buffer[parts->mantissa_length] = '\0';
+  if (exponent) tail = snprintf(buffer + parts->mantissa_length, 32, "e%ld", exponent);
   strut_c_locale locale = strut_c_locale_enter();
   *value = strtod(buffer, &end);
   strut_c_locale_leave(locale);
   /* Under a foreign locale (memory was out) strtod stops at the point: refuse, never guess. */
-  return tail > 0 && end == buffer + parts->mantissa_length + tail;
+  return tail >= 0 && end == buffer + parts->mantissa_length + tail;
 }
 
 bool strut_number_read_scaled(const char *text, size_t length, int decimal, double *value) {
