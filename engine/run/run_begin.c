@@ -15,8 +15,8 @@ static strut_status refuse_large_step(const strut_run *r, bool bound) {
     return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                       "the step %g s is above %.4g s, up to which %s is stable (all contacts closed; "
                       "a bound, the structure being too large for its largest stable step to be "
-                      "found); use solver.step <= %.2g s, or --force to run all the same",
-                      r->dt, limit, r->method->name, limit);
+                      "found); use solver.step <= %.3g s, or --force to run all the same",
+                      r->dt, limit, r->method->name, 0.99 * limit);
   return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                     "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run all the same",
