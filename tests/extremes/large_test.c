@@ -163,6 +163,20 @@ static void test_copies(void **unused) {
   strut_scene_free(&one), strut_scene_free(&all);
 }
 
+/* A step above the bound is refused, and the one told in its place is below. */
+static void refuse_above(strut_scene *scene, const strut_model *model, double limit) {
+  strut_run_options options = {0};
+  strut_summary summary;
+  strut_error error = {0};
+  scene->experiment.step = 1.001 * limit;
+  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_STEP_TOO_LARGE);
+  strut_summary_free(&summary);
+  const char *told = strstr(error.message, "solver.step <= ");
+  assert_non_null(strstr(error.message, "a bound"));
+  assert_non_null(told);
+  assert_within(strtod(told + strlen("solver.step <= "), NULL), 0.97 * limit, limit);
+}
+
 /* Compiled, its step bounded, and a few steps taken by the run itself. */
 static void take_largest(strut_mass_model mass) {
   strut_scene scene;
@@ -189,6 +203,7 @@ static void take_largest(strut_mass_model mass) {
                 mass == STRUT_MASS_LUMPED ? 1.70e-3 : 1.12e-3);
   assert_true(fabs(summary.energy.residual) < 1e-3 * summary.energy.moved);
   strut_summary_free(&summary);
+  refuse_above(&scene, model, limit.limit);
   strut_model_free(model);
   strut_scene_free(&scene);
 }
