@@ -15,6 +15,8 @@ static const double FINE = 0.0019;
 static const double TOLERANCE_PER_ERROR = 1.0 / 1500.0;
 /* Periods without which runs are repeated rather than an orbit looked for. */
 static const double LEAST = 20.0;
+/* A first correction is believed without a second one if it is this part of what is enough. */
+static const double SMALL = 0.3;
 enum { MOST_CORRECTIONS = 4 };
 
 /* What the cheap map has cost until it was steady. */
@@ -156,7 +158,8 @@ static strut_status correct(way *w, double enough, int least) {
     double better = k == 0 ? 0.5 : fmax(0.1, w->orbit.defect / defect);
     defect = w->orbit.defect;
     w->error = better * fabs(w->orbit.correction);
-    if (k + 1 >= least && w->error <= enough) return STRUT_OK;
+    bool small = fabs(w->orbit.correction) <= SMALL * enough;
+    if ((k + 1 >= least || small) && w->error <= enough) return STRUT_OK;
   }
   return STRUT_OK;
 }

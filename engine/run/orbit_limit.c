@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * The limit of a sequence of periods without running all of them: reduced rank extrapolation
- * (Eddy 1979; Mesina 1977; Sidi 1991). Of the differences of successive periods the combination
- * with coefficients of sum 1 that is smallest is taken, and the periods are combined by the same.
- */
+/* The limit of a sequence of periods without running all of them, by extrapolation. */
 #include <math.h>
 #include <string.h>
 
+#include "engine/run/extrapolation.h"
 #include "engine/run/orbit.h"
 
-enum { WINDOW = 5, MOST_CYCLES = 8 };
+enum { WINDOW = STRUT_EXTRAPOLATION_WINDOW, MOST_CYCLES = 8 };
 
 /* A window of periods: y[k + 1] = C(y[k]), d[k] their difference, travel[k] on the way. */
 typedef struct window {
@@ -26,49 +23,15 @@ static bool make_window(size_t both, strut_arena *arena, window *w) {
   return ready && (w->best = strut_arena_allocate(arena, both, sizeof(double)));
 }
 
-/* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
-static bool solve_ones(double a[WINDOW][WINDOW], double *x) {
-  for (int i = 0; i < WINDOW; i++) x[i] = 1.0;
-  for (int p = 0; p < WINDOW; p++) {
-    if (!(a[p][p] > 0.0)) return false;
-    for (int i = p + 1; i < WINDOW; i++) {
-      double f = a[i][p] / a[p][p];
-      for (int j = p; j < WINDOW; j++) a[i][j] -= f * a[p][j];
-      x[i] -= f * x[p];
-    }
-  }
-  for (int i = WINDOW - 1; i >= 0; i--) {
-    for (int j = i + 1; j < WINDOW; j++) x[i] -= a[i][j] * x[j];
-    x[i] /= a[i][i];
-  }
-  return true;
-}
-
 /* The extrapolated limit into w->best; the latest period's end where that is no good. */
 static void extrapolate(const strut_period_map *map, window *w) {
-  int32_t length = map->model->length, nodes = 2 * map->model->node_count;
-  double a[WINDOW][WINDOW], c[WINDOW], sum = 0.0;
-  double in = map->model->size, speed = in * 6.28318530717958647692 / map->period;
-  for (int i = 0; i < WINDOW; i++)
-    for (int j = 0; j <= i; j++) {
-      double product = 0.0;
-      for (int32_t k = 0; k < nodes; k++)
-        product += w->d[i][k] * w->d[j][k] / (in * in) +
-                   w->d[i][length + k] * w->d[j][length + k] / (speed * speed);
-      a[i][j] = a[j][i] = product;
-    }
-  for (int i = 0; i < WINDOW; i++) a[i][i] *= 1.0 + 1e-10;
-  size_t both = 2 * (size_t)length + 1;
+  double c[WINDOW];
+  size_t both = 2 * (size_t)map->model->length + 1;
   memcpy(w->best, w->y[WINDOW], both * sizeof(double));
-  if (!solve_ones(a, c)) return;
-  for (int i = 0; i < WINDOW; i++) sum += c[i];
-  if (!(fabs(sum) > 0.0)) return;
-  double most = 0.0;
-  for (int i = 0; i < WINDOW; i++) most = fmax(most, fabs(c[i] / sum));
-  if (!(most < 100.0)) return;
+  if (!strut_extrapolation_weights(map, w->d, WINDOW, c)) return;
   for (size_t k = 0; k < both; k++) {
     double x = w->y[WINDOW][k];
-    for (int i = 0; i < WINDOW; i++) x += c[i] / sum * (w->y[i + 1][k] - w->y[WINDOW][k]);
+    for (int i = 0; i < WINDOW; i++) x += c[i] * (w->y[i + 1][k] - w->y[WINDOW][k]);
     w->best[k] = x;
   }
 }
