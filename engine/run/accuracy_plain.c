@@ -61,11 +61,12 @@ static void tell(const strut_accuracy *a, const strut_experiment *e, const char 
     snprintf(how, sizeof how, "adaptive with a tolerance of %.1g", e->tolerance);
   else
     snprintf(how, sizeof how, "%s with a step of %.3g s", e->integrator, s->step);
-  snprintf(s->accuracy.why, sizeof s->accuracy.why,
-           kept ? "%s: %s differs by %.2g m/s"
-                : "%s is the finest tried; %s differs by %.2g m/s, so that the motion may be chaotic "
-                  "over this time",
-           how, other, difference);
+  snprintf(
+      s->accuracy.why, sizeof s->accuracy.why,
+      kept ? "%s: %s differs by %.2g m/s"
+           : "%s is the finest tried; %s differs by %.2g m/s, so that the motion may be chaotic "
+             "over this time",
+      how, other, difference);
 }
 
 /* What the runs have come to. */

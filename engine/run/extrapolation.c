@@ -36,8 +36,8 @@ bool strut_extrapolation_weights(const strut_period_map *map, double *const *d, 
     for (int32_t j = 0; j <= i; j++) {
       double product = 0.0;
       for (int32_t k = 0; k < nodes; k++)
-        product += d[i][k] * d[j][k] / (in * in) +
-                   d[i][length + k] * d[j][length + k] / (speed * speed);
+        product +=
+            d[i][k] * d[j][k] / (in * in) + d[i][length + k] * d[j][length + k] / (speed * speed);
       a[i][j] = a[j][i] = product;
     }
   for (int32_t i = 0; i < count; i++) a[i][i] *= 1.0 + 1e-10;

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Motions without an orbit to correct: irregular ones, and those that stick all the time. */
+#include <math.h>
+
+#include "engine/run/accuracy_way.h"
+
+/* Periods of each run in which an irregular motion's mean is looked for, and when that was too few. */
+static const double PERIODS = 300.0, MORE_PERIODS = 900.0;
+/* Two velocities that agree to this part of what is wanted. */
+static const double AGREE = 0.4;
+
+static strut_experiment with_half_the_step(const strut_way *w) {
+  strut_experiment half = w->a->cheap;
+  half.step *= 0.5;
+  return half;
+}
+
+/* The run `last` is the answer; `error` is what it may be off by [m/s]. */
+static void answer(strut_way *w, strut_way_end end, double error) {
+  strut_way_take_end(w);
+  w->orbit.velocity = w->last.velocity;
+  w->error = error;
+  w->found = end;
+}
+
+/*
+ * The mean over a run's window scatters more than that over all of its periods: by as much as there
+ * are fewer of them.
+ */
+static double scatter(const strut_way *w, double interval, double periods) {
+  const strut_experiment *e = &w->a->scene->experiment;
+  if (e->steady.wanted || !(e->measure_last < periods)) return interval;
+  return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
+}
+
+strut_status strut_way_irregular(strut_way *w, bool *periodic) {
+  strut_accuracy *a = w->a;
+  strut_status status = STRUT_OK;
+  *periodic = false;
+  w->found = STRUT_WAY_NONE;
+  for (double periods = PERIODS;; periods = MORE_PERIODS) {
+    strut_summary whole = {0};
+    status = strut_way_run(w, a->cheap, a->wanted, 5, periods, true, &whole);
+    double velocity = whole.velocity, interval = whole.steady.interval;
+    strut_motion kind = whole.steady.kind;
+    if (!status) strut_way_add(&w->run, &whole);
+    strut_summary_free(&whole);
+    *periodic = !status && kind == STRUT_MOTION_PERIODIC;
+    if (status || *periodic) return status;
+    strut_summary half = {0};
+    status = strut_way_run(w, with_half_the_step(w), a->wanted, 5, periods, true, &half);
+    if (status) {
+      strut_summary_free(&half);
+      return status;
+    }
+    bool both = kind == STRUT_MOTION_IRREGULAR && half.steady.kind == STRUT_MOTION_IRREGULAR;
+    strut_way_add(&w->last, &half);
+    double error = fabs(w->last.velocity - velocity) +
+                   scatter(w, fmax(interval, w->last.steady.interval), periods);
+    double enough = a->wanted * strut_way_size(a, w->last.velocity);
+    /* finer steps do not help here, and longer means are the user's to ask for */
+    if (both && (error <= 0.8 * enough || periods >= MORE_PERIODS)) {
+      answer(w, STRUT_WAY_IRREGULAR, error);
+      return STRUT_OK;
+    }
+    if (periods >= MORE_PERIODS) return STRUT_OK;
+  }
+}
+
+strut_status strut_way_stuck(strut_way *w) {
+  strut_accuracy *a = w->a;
+  strut_summary half = {0};
+  w->found = STRUT_WAY_NONE;
+  strut_status status = strut_way_run(w, with_half_the_step(w), fmin(0.001, 0.2 * a->wanted), 4,
+                                      fmax(20.0, strut_accuracy_periods(a)), false, &half);
+  if (status) {
+    strut_summary_free(&half);
+    return status;
+  }
+  bool periodic = half.steady.kind == STRUT_MOTION_PERIODIC;
+  strut_way_add(&w->last, &half);
+  double apart = fabs(w->last.velocity - w->run.velocity);
+  if (periodic && apart <= AGREE * a->wanted * strut_way_size(a, w->last.velocity))
+    answer(w, STRUT_WAY_STUCK, apart + w->last.steady.interval);
+  return STRUT_OK;
+}
