@@ -16,7 +16,7 @@ static const double SMALL = 0.15;
 enum { MOST_CORRECTIONS = 4 };
 /* Periods in which a motion should have become steady, and those in which a method that did not at
    first is given another chance, before it is taken to be irregular. */
-static const double FIRST = 150.0, CHANCE = 30.0;
+static const double FIRST = 150.0, CHANCE = 20.0;
 
 static strut_status allocate(strut_way *w, const strut_model *model) {
   size_t length = (size_t)model->length;

@@ -55,6 +55,8 @@ strut_status strut_watch_create(const strut_model *model, double period, double 
                      .period = period,
                      .tolerance = wanted->tolerance,
                      .floor = wanted->floor,
+                     .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance
+                                                                    : wanted->tolerance,
                      .successive = wanted->successive,
                      .stride = 1};
   w->not_before = (last_change(model->scene) - begin) / period;
@@ -278,7 +280,8 @@ static void judge_irregular(strut_watch *w) {
   if (quarter < 1 || seen < LEAST_IRREGULAR || (double)seen < 2.0 * w->not_before) return;
   double wide, narrow, trend, other;
   double mean = batch_mean(w, half, &wide, &trend), late = batch_mean(w, quarter, &narrow, &other);
-  double allowed = fmax(w->tolerance * fabs(mean), w->floor);
+  double times = w->mean_tolerance / w->tolerance;
+  double allowed = fmax(w->mean_tolerance * fabs(mean), w->floor * times);
   if (wide > allowed || narrow > 2.0 * allowed || trend > STUDENT_6) return;
   if (fabs(mean - late) > wide + narrow) return;
   int32_t last = w->marks - 1, back = BATCHES * quarter;

@@ -22,6 +22,7 @@ typedef struct strut_watch {
   const strut_model *model;
   double period;            /* [s] */
   double tolerance, floor;  /* [1], [m/s] */
+  double mean_tolerance;    /* of an irregular motion's mean [1] */
   int32_t successive;
   bool travels;             /* the travel along the ground is taken out */
   int64_t seen;             /* period ends so far, the start being the first */
