@@ -4,8 +4,8 @@
 
 #include "engine/run/accuracy_way.h"
 
-/* Periods of each run in which an irregular motion's mean is looked for. */
-static const double PERIODS = 272.0;
+/* Periods of each run in which an irregular motion's mean is looked for, and when those show no end. */
+static const double PERIODS = 136.0, MORE_PERIODS = 544.0;
 /*
  * The mean is taken if known to so many times what is wanted, and what it is known to is said: finer
  * steps do not help there, and to average over longer is for whoever needs it.
@@ -38,25 +38,32 @@ static double scatter(const strut_way *w, double interval, double periods) {
   return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
 }
 
+/* The cheap method by more periods; what came out is added to way->run. */
+static strut_status go_on(strut_way *w, double periods) {
+  strut_summary more = {0};
+  strut_status status = strut_way_run(w, w->a->cheap, w->a->wanted, 5, periods, true, &more);
+  if (!status) strut_way_add(&w->run, &more);
+  strut_summary_free(&more);
+  return status;
+}
+
 strut_status strut_way_irregular(strut_way *w, bool *periodic) {
   strut_accuracy *a = w->a;
-  strut_summary whole = {0}, half = {0};
+  strut_summary half = {0};
   w->found = STRUT_WAY_NONE;
   a->cheap.steady.mean_tolerance = MEAN * a->wanted;
-  strut_status status = strut_way_run(w, a->cheap, a->wanted, 5, PERIODS, true, &whole);
-  double velocity = whole.velocity, interval = whole.steady.interval;
-  strut_motion kind = whole.steady.kind;
-  if (!status) strut_way_add(&w->run, &whole);
-  *periodic = !status && kind == STRUT_MOTION_PERIODIC;
-  if (!status && kind == STRUT_MOTION_IRREGULAR)
-    status = strut_way_run(w, with_half_the_step(w), a->wanted, 5, PERIODS, true, &half);
+  strut_status status = go_on(w, PERIODS);
+  if (!status && w->run.steady.kind == STRUT_MOTION_TRANSIENT) status = go_on(w, MORE_PERIODS);
+  *periodic = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC;
+  if (status || w->run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
+  status = strut_way_run(w, with_half_the_step(w), a->wanted, 5, PERIODS, true, &half);
+  double interval = fmax(w->run.steady.interval, half.steady.interval);
   if (!status && half.steady.kind == STRUT_MOTION_IRREGULAR) {
     strut_way_add(&w->last, &half);
-    double scattered = scatter(w, fmax(interval, w->last.steady.interval), PERIODS);
-    answer(w, STRUT_WAY_IRREGULAR, fabs(w->last.velocity - velocity) + scattered);
+    double apart = fabs(w->last.velocity - w->run.velocity);
+    answer(w, STRUT_WAY_IRREGULAR, apart + scatter(w, interval, PERIODS));
   }
   a->spent += half.force_evaluations;
-  strut_summary_free(&whole);
   strut_summary_free(&half);
   return status;
 }

@@ -40,14 +40,14 @@ static strut_status run_cheap(strut_way *w, bool *steady) {
   strut_status status = strut_model_compile(a->scene, &model, a->error);
   if (!status) status = allocate(w, model);
   /* without ground transients may well be slow, with it motions may be irregular */
-  double second = status || model->contacts.count == 0 ? periods - first : FIRST;
+  bool may_be_slow = !status && model->contacts.count == 0;
   strut_model_free(model);
   if (status) return status;
   status = strut_way_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
-  if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && periods > first) {
+  if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow && periods > first) {
     strut_summary more = {0};
-    status = strut_way_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5,
-                           fmin(second, periods - first), true, &more);
+    status =
+        strut_way_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true, &more);
     if (!status) strut_way_add(&w->run, &more);
     strut_summary_free(&more);
   }
@@ -76,9 +76,18 @@ static strut_status make_maps(strut_way *w, int32_t repeats) {
   if (!status)
     status = strut_period_map_create(a->scene, &w->accurate, repeats, &w->fine, a->error);
   if (status) return status;
+  w->cheap.interrupt = w->fine.interrupt = a->options->interrupt;
   w->cheap.time = w->fine.time = w->end.time;
   take_end(w);
   return STRUT_OK;
+}
+
+/* Of work on the maps: what it returned, and whether it was interrupted. */
+static strut_status judge(const strut_way *w, strut_status status) {
+  if (status) return strut_fail(w->a->error, status, "out of memory");
+  if (!strut_period_map_interrupted(&w->cheap)) return STRUT_OK;
+  return strut_fail(w->a->error, STRUT_INTERRUPTED,
+                    "interrupted at t = %.9g s, while the orbit was corrected", w->cheap.time);
 }
 
 /*
@@ -91,7 +100,8 @@ static strut_status correct(strut_way *w, double enough, int least) {
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
     strut_status status = strut_orbit_correct(&w->cheap, &w->fine, w->base, w->travel,
                                               0.1 * enough * w->cheap.period, &w->orbit);
-    if (status) return strut_fail(w->a->error, status, "out of memory");
+    status = judge(w, status);
+    if (status) return status;
     if (!w->orbit.converged || w->orbit.defect > 0.7 * defect) return STRUT_OK;
     /* the first correction is taken to be right to a half, later ones by what they achieved */
     double better = k == 0 ? 0.5 : fmax(0.1, w->orbit.defect / defect);
@@ -192,7 +202,8 @@ static strut_status settle_cheap(strut_way *w, bool *steady) {
   double enough = 0.1 * a->wanted * strut_way_size(a, w->run.velocity) * w->cheap.period;
   strut_status status =
       strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel, &found);
-  if (status) return strut_fail(a->error, status, "out of memory");
+  status = judge(w, status);
+  if (status) return status;
   *steady = true;
   if (!found) {
     strut_summary more = {0};
@@ -232,27 +243,35 @@ static strut_status finish(strut_way *w) {
 }
 
 /*
- * Where the cheap method does not repeat itself the accurate one may: its steps meet no grid. If it
- * does not either, the motion may be irregular; if it is not, it is left to itself.
+ * The motion may be irregular; or it becomes periodic after all. Else the accurate method is left to
+ * go on.
+ */
+static strut_status find_without_orbit(strut_way *w) {
+  bool periodic = false;
+  strut_status status = strut_way_irregular(w, &periodic);
+  if (status || w->found) return status;
+  if (!periodic || !strut_accuracy_orbit_answers(w->a, &w->run.steady))
+    return run_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
+  status = make_maps(w, w->run.steady.repeats);
+  return status ? status : finish(w);
+}
+
+/*
+ * Where the cheap method nearly repeats itself, but not quite, the accurate one may: its steps meet no
+ * grid.
  */
 static strut_status find_without_cheap(strut_way *w) {
-  bool periodic = false;
-  w->error = HUGE_VAL;
   strut_status status = run_accurate(w, true, CHANCE);
-  if (status || w->found) return status;
-  status = strut_way_irregular(w, &periodic);
-  if (status || w->found) return status;
-  if (periodic && w->run.steady.repeats == 1) {
-    take_end(w);
-    return finish(w);
-  }
-  return run_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
+  return status || w->found ? status : find_without_orbit(w);
 }
 
 /* The orbit, as accurately as is wanted. */
 static strut_status find_orbit(strut_way *w, bool steady) {
   strut_status status = make_maps(w, steady ? w->run.steady.repeats : 1);
-  if (!status && steady) status = settle_cheap(w, &steady);
+  w->error = HUGE_VAL;
+  if (status) return status;
+  if (!steady) return find_without_orbit(w);
+  status = settle_cheap(w, &steady);
   if (status) return status;
   if (!steady && w->cheap.repeats > 1) {
     status = make_maps(w, 1);

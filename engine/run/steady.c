@@ -51,14 +51,14 @@ strut_status strut_watch_create(const strut_model *model, double period, double 
                                 strut_watch *w) {
   const strut_steady *wanted = &model->scene->experiment.steady;
   size_t both = 2 * (size_t)model->length;
-  *w = (strut_watch){.model = model,
-                     .period = period,
-                     .tolerance = wanted->tolerance,
-                     .floor = wanted->floor,
-                     .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance
-                                                                    : wanted->tolerance,
-                     .successive = wanted->successive,
-                     .stride = 1};
+  *w = (strut_watch){
+      .model = model,
+      .period = period,
+      .tolerance = wanted->tolerance,
+      .floor = wanted->floor,
+      .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance : wanted->tolerance,
+      .successive = wanted->successive,
+      .stride = 1};
   w->not_before = (last_change(model->scene) - begin) / period;
   if (w->successive < 2) w->successive = 2;
   if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
@@ -68,6 +68,7 @@ strut_status strut_watch_create(const strut_model *model, double period, double 
   bool ready = (w->middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
   for (int k = 0; k < STRUT_RING && ready; k++)
     ready = (w->state[k] = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  w->least_irregular = wanted->mean_tolerance > 0.0 ? LEAST_IRREGULAR / 2 : LEAST_IRREGULAR;
   w->result.kind = STRUT_MOTION_TRANSIENT;
   if (ready) return STRUT_OK;
   strut_watch_free(w);
@@ -171,8 +172,7 @@ static bool something_grows(const strut_watch *w, int64_t now, int32_t n) {
   for (int k = 0; k < GROWTH + 1; k++) along[k] = travel(w, at[k + 1], at[k]);
   for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
     double d[GROWTH + 1], v, least = HUGE_VAL, most = 0.0;
-    for (int k = 0; k < GROWTH + 1; k++)
-      d[k] = fabs(step_of(w, at[k], at[k + 1], along[k], i, &v));
+    for (int k = 0; k < GROWTH + 1; k++) d[k] = fabs(step_of(w, at[k], at[k + 1], along[k], i, &v));
     for (int k = 0; k < GROWTH; k++) {
       double factor = d[k + 1] > 0.0 ? d[k] / d[k + 1] : 0.0;
       least = fmin(least, factor), most = fmax(most, factor);
@@ -271,23 +271,38 @@ static double batch_mean(const strut_watch *w, int32_t each, double *interval, d
 }
 
 /*
+ * Do periods differ from their neighbours as much in the latest 8 batches of `each` stretches as in the
+ * 8 before: to a fiftieth, or as nearly as the batches' own scatter lets one say?
+ */
+static bool wanders_evenly(const strut_watch *w, int32_t each) {
+  double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
+  for (int i = 0; i < 2 * BATCHES; i++) {
+    int32_t to = w->marks - 1 - i * each;
+    double part = w->wandered[to] - w->wandered[to - each];
+    sum[i / BATCHES] += part, square[i / BATCHES] += part * part;
+  }
+  double scatter = 0.0;
+  for (int k = 0; k < 2; k++)
+    scatter += fmax(0.0, square[k] - sum[k] * sum[k] / BATCHES) * BATCHES / (BATCHES - 1);
+  double differ = fabs(sum[0] - sum[1]);
+  return sum[1] > 0.0 && (differ <= 0.02 * sum[1] || differ <= STUDENT_7 * sqrt(scatter));
+}
+
+/*
  * A motion that never agreed, but whose mean is known: over the last half and the last quarter of
  * the run alike, without trend, while periods differ from their neighbours as much as before.
  */
 static void judge_irregular(strut_watch *w) {
   int32_t stretches = w->marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
   int64_t seen = w->seen - 1;
-  if (quarter < 1 || seen < LEAST_IRREGULAR || (double)seen < 2.0 * w->not_before) return;
+  if (quarter < 1 || seen < w->least_irregular || (double)seen < 2.0 * w->not_before) return;
   double wide, narrow, trend, other;
   double mean = batch_mean(w, half, &wide, &trend), late = batch_mean(w, quarter, &narrow, &other);
   double times = w->mean_tolerance / w->tolerance;
   double allowed = fmax(w->mean_tolerance * fabs(mean), w->floor * times);
   if (wide > allowed || narrow > 2.0 * allowed || trend > STUDENT_6) return;
   if (fabs(mean - late) > wide + narrow) return;
-  int32_t last = w->marks - 1, back = BATCHES * quarter;
-  double now = w->wandered[last] - w->wandered[last - back];
-  double before = w->wandered[last - back] - w->wandered[last - 2 * back];
-  if (!(fabs(now - before) <= 0.02 * before) || !(before > 0.0)) return;
+  if (!wanders_evenly(w, quarter)) return;
   w->result.kind = STRUT_MOTION_IRREGULAR;
   w->result.interval = wide + fabs(mean - late);
   w->velocity = mean;

@@ -23,6 +23,7 @@ typedef struct strut_watch {
   double period;            /* [s] */
   double tolerance, floor;  /* [1], [m/s] */
   double mean_tolerance;    /* of an irregular motion's mean [1] */
+  int64_t least_irregular;  /* periods before a motion may be called so */
   int32_t successive;
   bool travels;             /* the travel along the ground is taken out */
   int64_t seen;             /* period ends so far, the start being the first */

@@ -174,7 +174,8 @@ typedef struct strut_steady {
   double tolerance; /* of the measured velocity, relative to it [1]; default 0.005 */
   double floor;     /* differences below this count as none [m/s]; 0: taken from the scene */
   int32_t successive; /* so many repetitions in a row must agree; default 5 */
-  double mean_tolerance; /* of an irregular motion's mean velocity [1]; 0: tolerance */
+  double mean_tolerance; /* of an irregular motion's mean velocity [1], where the run goes on from one
+                            that was long enough already; 0: tolerance */
   bool shooting;    /* finish the orbit by Newton's method, and give its Floquet multipliers */
 } strut_steady;
 
