@@ -85,3 +85,17 @@ strut_status strut_way_stuck(strut_way *w) {
     answer(w, STRUT_WAY_STUCK, apart + w->last.steady.interval);
   return STRUT_OK;
 }
+
+strut_status strut_way_disputed(strut_way *w) {
+  strut_summary half = {0};
+  double accurate = w->last.velocity;
+  strut_status status =
+      strut_way_run(w, with_half_the_step(w), w->a->wanted, 5, PERIODS, true, &half);
+  if (!status) {
+    strut_way_add(&w->last, &half);
+    double apart = fabs(accurate - w->run.velocity);
+    answer(w, STRUT_WAY_DISPUTED, apart + fabs(w->last.velocity - w->run.velocity));
+  }
+  strut_summary_free(&half);
+  return status;
+}

@@ -17,6 +17,8 @@ enum { MOST_CORRECTIONS = 4 };
 /* Periods in which a motion should have become steady, and those in which a method that did not at
    first is given another chance, before it is taken to be irregular. */
 static const double FIRST = 150.0, CHANCE = 20.0;
+/* Periods in which the accurate method should be steady from where corrections failed. */
+static const double TRIAL = 60.0;
 
 static strut_status allocate(strut_way *w, const strut_model *model) {
   size_t length = (size_t)model->length;
@@ -239,7 +241,9 @@ static strut_status finish(strut_way *w) {
     w->found = STRUT_WAY_CHEAP;
   else if (!last_word && part_of_wanted(w) <= 0.8)
     w->found = STRUT_WAY_CORRECTED;
-  return w->found ? status : run_accurate(w, true, all);
+  if (w->found) return STRUT_OK;
+  status = run_accurate(w, true, fmin(all, TRIAL));
+  return status || w->found ? status : strut_way_disputed(w);
 }
 
 /*

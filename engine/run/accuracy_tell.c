@@ -31,6 +31,12 @@ static void say_why(const strut_way *w, strut_accuracy_summary *told) {
                "%.3g s and %.3g s, differ by %.2g m/s with what they scatter",
                step, 0.5 * step, w->error);
       return;
+    case STRUT_WAY_DISPUTED:
+      snprintf(told->why, size,
+               "verlet-events with a step of %.3g s finds a periodic motion, adaptive (tolerance "
+               "%.1g) none: their means and that with half the step differ by %.2g m/s",
+               step, tolerance, w->error);
+      return;
     default:
       snprintf(
           told->why, size,
@@ -47,7 +53,7 @@ static double expect(const strut_way *w, const strut_summary *orbit) {
   double size = strut_way_size(w->a, w->orbit.velocity);
   double apart = fabs(orbit->velocity - w->orbit.velocity);
   double method = w->accurate.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 * size;
-  if (w->found == STRUT_WAY_IRREGULAR) return w->error;
+  if (w->found >= STRUT_WAY_IRREGULAR) return w->error;
   double error = fmax(w->error, apart) + method;
   return w->found == STRUT_WAY_CHEAP ? error + fabs(w->orbit.velocity - w->run.velocity) : error;
 }

@@ -23,7 +23,8 @@ typedef enum strut_way_end {
   STRUT_WAY_CORRECTED, /* its orbit, corrected */
   STRUT_WAY_ACCURATE,  /* the accurate method ran until it was steady itself */
   STRUT_WAY_STUCK,     /* the cheap method with half the step, which the whole one confirms */
-  STRUT_WAY_IRREGULAR  /* a mean over many periods, by two steps */
+  STRUT_WAY_IRREGULAR, /* a mean over many periods, by two steps */
+  STRUT_WAY_DISPUTED   /* periodic by the cheap method, not by the accurate one: means over many */
 } strut_way_end;
 
 typedef struct strut_way {
@@ -68,6 +69,11 @@ strut_status strut_way_irregular(strut_way *way, bool *periodic);
  * be, not of an orbit. By the cheap method with half the step from the scene's start, where that agrees.
  */
 strut_status strut_way_stuck(strut_way *way);
+/**
+ * Where the accurate method, which way->last is of, found no end to what the cheap one calls periodic:
+ * by the cheap one with half the step. Their differences are the error.
+ */
+strut_status strut_way_disputed(strut_way *way);
 /** accuracy_tell.c. Puts together what the parts found and cost. orbit: a run of the motion found. */
 void strut_way_tell(strut_way *way, const strut_summary *orbit);
 
