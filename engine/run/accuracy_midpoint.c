@@ -137,7 +137,7 @@ static strut_status run_finer(halving *h, bool *kept) {
   strut_summary_free(&h->before);
   h->before = h->now;
   h->now = (strut_summary){0};
-  h->e.output_every = h->e.step;
+  h->e.output_every = h->e.step, h->e.output_last = 0.0; /* all of them are looked at */
   strut_status status = strut_accuracy_run(a, &h->e, &quiet, &h->now);
   a->spent += h->now.force_evaluations;
   h->earlier = h->moved;
@@ -181,6 +181,7 @@ static strut_status answer(halving *h) {
     return STRUT_OK;
   }
   h->e.output_every = a->scene->experiment.output_every;
+  h->e.output_last = a->scene->experiment.output_last;
   return strut_accuracy_run(a, &h->e, a->options, a->summary);
 }
 

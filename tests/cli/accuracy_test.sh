@@ -80,6 +80,7 @@ initial:
     n2: [1.4244794072675955, 0.6735004513954602]
 solver: {step: 0.1 ms}
 run: {duration: 0.9258812002378766, measure: {node: n2}}
+output: {last: 1 ms}
 END
 expect 0 run "$work/kicked.yaml" --accuracy 0.5% --json
 cp "$work/out" "$work/json"
