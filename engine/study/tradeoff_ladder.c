@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64 };
+enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64, LOOKED_AT = 5 };
 static const double SHORT = 0.05; /* a run that is repeated for its CPU time [s] */
 static const double BELOW = 0.95, IN_DECADE = 5;
 /* Steps that nothing limits begin at so many times the explicit limit, or the base's step. */
@@ -168,10 +168,47 @@ static study_ladder *add_ladder(study *s, study_ladders *all, int fidelity, stud
   return l;
 }
 
+/* Whether two ways to refine differ at one of the first points: not everywhere is there a touchdown. */
+static strut_status differ(const study *s, int fidelity, study_setting a, study_setting b,
+                           bool *different) {
+  study_outcome one = {0}, other = {0};
+  strut_status status = STRUT_OK;
+  *different = false;
+  for (size_t p = 0; p < s->result->point_count && p < LOOKED_AT && !*different && !status; p++) {
+    status = strut_study_run(s, p, fidelity, a, s->scratch, &one);
+    if (!status) status = strut_study_run(s, p, fidelity, b, s->scratch, &other);
+    bool both = one.status == STRUT_OK && other.status == STRUT_OK;
+    *different = !status && (one.status != other.status ||
+                             (both && one.evaluations != other.evaluations));
+  }
+  return status;
+}
+
+/* Further ladders of a method with events, `first` being that without refinement. */
+static strut_status add_refined(study *s, study_ladders *all, int fidelity, study_setting first,
+                                bool limited) {
+  static const double ways[] = {(double)NAN, 0, 8};
+  study_setting setting[3];
+  strut_status status = STRUT_OK;
+  for (int i = 0; i < 3; i++) {
+    setting[i] = first;
+    setting[i].step *= 0.8;
+    setting[i].refine = ways[i];
+  }
+  for (int i = 1; i < 3 && !status; i++) {
+    bool new = true;
+    for (int k = 0; k < i && new && !status; k++)
+      status = differ(s, fidelity, setting[k], setting[i], &new);
+    first.refine = ways[i];
+    if (!status && new && !add_ladder(s, all, fidelity, first, limited)) break;
+  }
+  return status;
+}
+
 /* Ladders of one method: one for each way to refine that makes a difference in this scene. */
 strut_status strut_study_add_method(study *s, study_ladders *all, int fidelity,
                                const strut_integrator *method) {
-  study_outcome outcome, refined;
+  study_outcome outcome;
   study_setting first = {method, s->base.step, (double)NAN, 1};
   bool adaptive = strut_study_adaptive(method);
   if (adaptive) first.step = fmax(10 * first.step, s->limit), first.tolerance = 1e-2;
@@ -183,23 +220,9 @@ strut_status strut_study_add_method(study *s, study_ladders *all, int fidelity,
     double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
     first.step = fmin(most, strut_study_longest(s->scenes[0]));
   }
-  study_setting below = first;
-  below.step *= 0.8;
-  status = strut_study_probe(s, fidelity, below, &outcome);
-  static const double ways[] = {0, 8};
-  int64_t known[2] = {outcome.evaluations, outcome.evaluations};
   first.refine = (double)NAN;
   if (!add_ladder(s, all, fidelity, first, limited)) return status;
-  for (int i = 0; i < 2 && status == STRUT_OK && method->events && !adaptive; i++) {
-    below.refine = ways[i];
-    status = strut_study_probe(s, fidelity, below, &refined);
-    bool same = refined.evaluations == known[0] || refined.evaluations == known[1];
-    if (status != STRUT_OK || same || refined.status != outcome.status) continue;
-    known[1] = refined.evaluations;
-    first.refine = ways[i];
-    if (!add_ladder(s, all, fidelity, first, limited)) break;
-  }
-  return status;
+  return method->events && !adaptive ? add_refined(s, all, fidelity, first, limited) : status;
 }
 
 /* Whether a setting has been run: few steps in a period leave few choices. */

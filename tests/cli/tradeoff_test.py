@@ -288,6 +288,14 @@ for file, wanted, *words in (
     if names != wanted:
         fail(f"{file}: other models are {names}, not {wanted}")
 
+# ---- At the first of these points nothing touches down; refined steps make a difference at others.
+found = read("models/crawler/crawler.yaml", "--vary", "frequency=9.8..15", "--vary",
+             "friction=0.05..0.5", "--vary", "start=I,II", "--points", "3", "--seed", "1", "--periods", "3",
+             "--steps", "1", "--own-model", "--budget", "1 s", "--methods", "verlet-events")
+groups = {row["group"] for row in found["settings"]}
+if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in groups:
+    fail(f"no refined steps over several points: {groups}")
+
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (
         (("--measure", "speed"), "--measure expects velocity, position or energy"),
