@@ -32,15 +32,22 @@ static bool holds_texts(const source *s, size_t i) {
   return s->runs && i >= axes ? i == axes : s->plan->columns[i].word;
 }
 
+/* What tells rows apart: numbers that runs recorded do not. */
+static bool tells_apart(const source *s, size_t i) {
+  return !s->runs || i <= s->plan->axis_columns;
+}
+
 /* May the figure name this column? NULL is none. */
 static strut_status check_column(const source *s, const strut_study_figure *figure,
                                  const char *name, bool number, strut_error *error) {
   const char *other = NULL;
   for (size_t i = 0; name && (other = column_name(s, i)); i++) {
     if (strcmp(other, name) != 0) continue;
-    if (!number || !holds_texts(s, i)) return STRUT_OK;
+    if (number ? !holds_texts(s, i) : tells_apart(s, i)) return STRUT_OK;
     return strut_fail(error, STRUT_BAD_SCENE,
-                      "figure '%.60s' of the study: column '%.60s' holds texts, not numbers",
+                      number ? "figure '%.60s' of the study: column '%.60s' holds texts, not numbers"
+                             : "figure '%.60s' of the study: '%.60s' is recorded; expected an axis, "
+                               "or 'node'",
                       figure->name, name);
   }
   if (!name) return STRUT_OK;

@@ -135,6 +135,8 @@ for figure, wanted in (
         ("{kind: motion, x: time, y: dz}", "the motion has no column 'dz'; did you mean 'dx'?"),
         ("{kind: motion, x: time, y: node}", "column 'node' holds texts, not numbers"),
         ("{kind: motion, x: time, y: velocity}", "the motion has no column 'velocity'"),
+        ("{kind: motion, x: time, y: x, series: elapsed}", "'elapsed' is recorded; expected an axis"),
+        ("{kind: motion, x: time, y: x, only: x=1}", "'x' is recorded; expected an axis, or 'node'"),
         ("{kind: motion, x: time}", "figure 'bad' lacks 'y'"),
         ("{kind: map, x: mass, y: velocity}", "map 'bad' lacks 'color'"),
         ("{kind: snapshots, times: 3 s}", "expected a list of times such as"),

@@ -16,6 +16,7 @@ static strut_scene scene;
 static strut_model *model;
 static strut_summary summary;
 static strut_trajectory taken;
+static const strut_trajectory *beside; /* another motion, dashed over it */
 
 static int set_up(void **unused) {
   (void)unused;
@@ -46,14 +47,17 @@ static int tear_down(void **unused) {
 }
 
 static strut_status draw(strut_run_view view, const strut_trajectory *frames, strut_error *error) {
-  const strut_run_figure figure = {.view = view, .width = 250, .scale = {3, 2}};
+  const strut_run_figure figure = {.view = view, .width = 250, .scale = {3, 2},
+                                   .other = beside, .other_name = "another"};
   *error = (strut_error){0};
   return strut_run_figure_draw(scratch_path("a.svg"), &figure, model, frames, &summary, error);
 }
 
-/* Every so many-th allocation fails: nothing but the message, and no file, is left. */
+/* Every so many-th allocation fails: nothing but the message, and no file, is left; nor is a picture
+   made that lacks something. */
 static void test_no_memory(void **unused) {
   (void)unused;
+  beside = &taken;
   for (int view = STRUT_RUN_OVERVIEW; view <= STRUT_RUN_CURVES; view++) {
     strut_status status = STRUT_NO_MEMORY;
     strut_error error;
@@ -67,8 +71,17 @@ static void test_no_memory(void **unused) {
       assert_true(n < 100000);
     }
     assert_int_equal(scratch_count(scratch_path("")), 1);
+    size_t length, full_length;
+    char *picture = scratch_read(scratch_path("a.svg"), &length);
+    assert_int_equal(draw((strut_run_view)view, &taken, &error), STRUT_OK);
+    char *full = scratch_read(scratch_path("a.svg"), &full_length);
+    assert_int_equal(length, full_length);
+    assert_memory_equal(picture, full, length);
+    free(picture);
+    free(full);
     assert_int_equal(remove(scratch_path("a.svg")), 0);
   }
+  beside = NULL;
 }
 
 static void test_nothing_to_draw(void **unused) {

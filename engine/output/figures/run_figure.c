@@ -61,7 +61,8 @@ static bool is_shape(const strut_run_scene *run, size_t frame) {
   const double *q = strut_run_positions(run, frame);
   for (size_t i = 0; i < 2 * run->motion->node_count; i++)
     if (!isfinite(q[i])) return false;
-  if (!run->summary || run->summary->status != STRUT_DIVERGED) return true;
+  bool burst = run->summary && run->summary->status == STRUT_DIVERGED;
+  if (!burst && run->motion->status != STRUT_DIVERGED) return true;
   strut_bounds b = strut_bounds_none();
   strut_bounds_add(&b, run->model, q);
   return strut_run_extent(&b) <= BURST * run->model->size;

@@ -79,8 +79,8 @@ bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
 /** Its members in a frame, dashed. */
 void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
                           const strut_window *window, size_t frame);
-/** Its way through (count) positions [m], dashed. */
-void strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
+/** Its way through (count) positions [m], dashed; false: memory is out. */
+bool strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
                               const strut_window *window, const double (*way)[2], size_t count);
 /** Appends ", black dashes: NAME" to a text where there is another motion. */
 void strut_run_tell_other(const strut_run_scene *run, char *text, size_t size);

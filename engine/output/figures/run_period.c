@@ -94,17 +94,19 @@ static void add_other(const ways *w, ways *o, size_t nodes) {
         o->way[i * o->count + f][d] += w->rest[2 * i + (size_t)d] - o->rest[2 * i + (size_t)d];
 }
 
-static void draw_other(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
+/* False: memory is out. */
+static bool draw_other(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
                        const strut_window *window) {
   strut_run_scene other;
   ways o;
-  if (strut_run_find_other(run, &other) && find_ways(&other, &o)) {
-    add_other(w, &o, run->motion->node_count);
-    for (size_t i = 0; i < run->motion->node_count; i++)
-      strut_run_draw_other_way(&other, canvas, window,
-                               (const double(*)[2])(o.way + i * o.count), o.count);
-  }
+  if (!strut_run_find_other(run, &other)) return true;
+  bool fine = find_ways(&other, &o);
+  if (fine) add_other(w, &o, run->motion->node_count);
+  for (size_t i = 0; i < run->motion->node_count && fine; i++)
+    fine = strut_run_draw_other_way(&other, canvas, window,
+                                    (const double(*)[2])(o.way + i * o.count), o.count);
   strut_arena_free(&other.arena);
+  return fine;
 }
 
 double strut_run_period_height(strut_run_scene *run) {
@@ -176,7 +178,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   for (size_t i = 0; i < run->motion->node_count; i++)
     strut_run_draw_way(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
                        1.5);
-  draw_other(run, canvas, &w, &window);
+  if (!draw_other(run, canvas, &w, &window)) return STRUT_NO_MEMORY;
   strut_run_draw_names(run, canvas, &window, w.shape);
   window.box.y = page - STRUT_RUN_EDGE - box.height; /* at the foot, where no structure is */
   strut_draw_yardstick(canvas, &window);
