@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Draws the pictures of README.md into DIRECTORY: the crawler after 1,100 periods, the
-# paper's figure 8 from the table that docs/figure-8.sh made, and the page of a run.
+# Draws pictures of README.md into DIRECTORY: the crawler after 1,100 periods and the page of a run.
+# The paper's figure 8 is drawn by docs/paper.sh.
 #
 #   sh docs/pictures.sh build/release/strut docs
 set -eu
@@ -16,11 +16,7 @@ sed 's/^initial: .*/initial: {configuration: start, settle: true}/' \
   "$here/../models/crawler/crawler.yaml" >"$work/settled.yaml"
 grep -q '^initial: {configuration: start, settle: true}' "$work/settled.yaml"
 "$strut" run "$work/settled.yaml" --quiet --plot "$work/crawler.svg"
-"$strut" plot "$here/figure-8.csv" --x frequency --y velocity --by start --panels friction \
-  --band outcome=III --plot "$work/figure-8.svg"
-for picture in crawler figure-8; do
-  awk -f "$here/smaller.awk" "$work/$picture.svg" >"$output/$picture.svg"
-done
+awk -f "$here/smaller.awk" "$work/crawler.svg" >"$output/crawler.svg"
 # The page as a browser shows it; without Chromium the old picture stays.
 if command -v chromium >/dev/null; then
   "$strut" run "$work/settled.yaml" --quiet -o "$work/run"
