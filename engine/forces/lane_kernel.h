@@ -15,6 +15,7 @@
 
 #include "engine/base/trig.h"
 #include "engine/forces/lane_tables.h"
+#include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
 
 #ifndef STRUT_LANE_WIDTH
@@ -176,33 +177,19 @@ STRUT_LANE_INLINE void lane_loads(strut_lane_tables *t, int p, const double *res
 
 /* Members */
 
-/* Powers of a place within groups of STRUT_LANES members. */
-typedef struct lane_powers {
-  lane_real drive, moved, lost;
-} lane_powers;
+STRUT_DEFINE_MEMBER_LAW(STRUT_LANE_INLINE, lane_real, lane_mask, lane)
 
-/* See members_tension. */
-STRUT_LANE_INLINE lane_real lane_tension(const strut_lane_tables *t, size_t j, int p,
-                                         unsigned terms, bool ledger, lane_real length,
-                                         lane_real rate, lane_powers *powers) {
-  bool driven = terms & STRUT_TERM_DRIVE;
-  lane_real stretch = length - lane_row(t->rest, j, p), zero = {0};
-  lane_real elastic = lane_row(t->stiffness, j, p) * stretch, tension = elastic;
-  lane_real own_rate = driven ? rate - lane_row(t->rest_rate, j, p) : rate;
-  if (terms & STRUT_TERM_DAMPING) tension = elastic + lane_row(t->damping, j, p) * own_rate;
-  if (terms & STRUT_TERM_SLACK) {
-    lane_mask taut = stretch > lane_row(t->taut_stretch, j, p);
-    lane_mask pulling = taut & (tension > lane_row(t->taut_tension, j, p));
-    tension = lane_choose(pulling, tension, zero);
-    if (ledger) elastic = lane_choose(taut, elastic, zero);
-  }
-  if (ledger && driven) {
-    lane_real power = -tension * lane_row(t->rest_rate, j, p);
-    powers->drive += power;
-    powers->moved += lane_magnitude(power);
-  }
-  if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += (tension - elastic) * own_rate;
-  return tension;
+/* What the law asks of member j; `rate`: of its length [m/s]. */
+STRUT_LANE_INLINE lane_values lane_values_of(const strut_lane_tables *t, size_t j, int p,
+                                             lane_real length, lane_real rate) {
+  return (lane_values){.length = length,
+                       .rate = rate,
+                       .rest = lane_row(t->rest, j, p),
+                       .rest_rate = lane_row(t->rest_rate, j, p),
+                       .stiffness = lane_row(t->stiffness, j, p),
+                       .damping = lane_row(t->damping, j, p),
+                       .taut_stretch = lane_row(t->taut_stretch, j, p),
+                       .taut_tension = lane_row(t->taut_tension, j, p)};
 }
 
 /* Vector from the first to the second node, length, and its inverse or 0. */
@@ -231,7 +218,8 @@ STRUT_LANE_INLINE void lane_pull(const strut_lane_tables *t, const strut_member_
               wy = lane_row(v, b + 1, p) - lane_row(v, a + 1, p);
     rate = (wx * d->x + wy * d->y) * d->inverse;
   }
-  lane_real tension = lane_tension(t, j, p, terms, ledger, d->length, rate, powers);
+  lane_values values = lane_values_of(t, j, p, d->length, rate);
+  lane_real tension = lane_tension(&values, terms, ledger, powers);
   lane_real density = tension * d->inverse, px = density * d->x, py = density * d->y;
   lane_put(force, a, p, lane_row(force, a, p) + px);
   lane_put(force, a + 1, p, lane_row(force, a + 1, p) + py);

@@ -11,13 +11,11 @@
 
 #include <math.h>
 
+#include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
 #include "engine/model/state.h"
 
-/* Powers of the members, lane by lane [W]. */
-typedef struct member_powers {
-  strut_lanes drive, moved, lost;
-} member_powers;
+STRUT_DEFINE_MEMBER_LAW(STRUT_INLINE, strut_lanes, strut_lane_mask, member)
 
 /* Vectors from the first to the second nodes of a group: their x and their y. */
 typedef struct member_vectors {
@@ -38,30 +36,18 @@ STRUT_INLINE strut_lanes members_root(strut_lanes x) {
   return (strut_lanes){sqrt(x[0]), sqrt(x[1]), sqrt(x[2]), sqrt(x[3])};
 }
 
-/* Tension of a group, cables never below 0; `rate`: of the lengths [m/s]. */
-STRUT_INLINE strut_lanes members_tension(const strut_member_table *t, const strut_state *state,
-                                         int32_t j, unsigned terms, bool ledger,
-                                         strut_lanes length, strut_lanes rate,
-                                         member_powers *powers) {
-  bool driven = terms & STRUT_TERM_DRIVE;
-  strut_lanes stretch = length - strut_lanes_load((driven ? state->rest : t->rest) + j);
-  strut_lanes elastic = strut_lanes_load(t->stiffness + j) * stretch, tension = elastic;
-  strut_lanes own_rate = driven ? rate - strut_lanes_load(state->rest_rate + j) : rate;
-  if (terms & STRUT_TERM_DAMPING)
-    tension = elastic + strut_lanes_load(t->damping + j) * own_rate;
-  if (terms & STRUT_TERM_SLACK) {
-    strut_lane_mask taut = stretch > strut_lanes_load(state->taut_stretch + j);
-    strut_lane_mask pulling = taut & (tension > strut_lanes_load(state->taut_tension + j));
-    tension = strut_lanes_choose(pulling, tension, (strut_lanes){0});
-    if (ledger) elastic = strut_lanes_choose(taut, elastic, (strut_lanes){0});
-  }
-  if (ledger && driven) {
-    strut_lanes power = -tension * strut_lanes_load(state->rest_rate + j);
-    powers->drive += power;
-    powers->moved += strut_lanes_magnitude(power);
-  }
-  if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += (tension - elastic) * own_rate;
-  return tension;
+/* What the law asks of the members from j on; `rate`: of the lengths [m/s]. */
+STRUT_INLINE member_values members_values(const strut_member_table *t, const strut_state *state,
+                                          int32_t j, bool driven, strut_lanes length,
+                                          strut_lanes rate) {
+  return (member_values){.length = length,
+                         .rate = rate,
+                         .rest = strut_lanes_load((driven ? state->rest : t->rest) + j),
+                         .rest_rate = strut_lanes_load(state->rest_rate + j),
+                         .stiffness = strut_lanes_load(t->stiffness + j),
+                         .damping = strut_lanes_load(t->damping + j),
+                         .taut_stretch = strut_lanes_load(state->taut_stretch + j),
+                         .taut_tension = strut_lanes_load(state->taut_tension + j)};
 }
 
 STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {
@@ -85,7 +71,8 @@ STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *
     member_vectors w = members_gather(v, from, to);
     rate = (w.x * d.x + w.y * d.y) * inverse; /* the products need not wait for the root */
   }
-  strut_lanes tension = members_tension(t, state, j, terms, ledger, length, rate, powers);
+  member_values m = members_values(t, state, j, terms & STRUT_TERM_DRIVE, length, rate);
+  strut_lanes tension = member_tension(&m, terms, ledger, powers);
   strut_lanes density = tension * inverse, px = density * d.x, py = density * d.y;
   strut_lanes even = __builtin_shufflevector(px, py, 0, 4, 2, 6);
   strut_lanes odd = __builtin_shufflevector(px, py, 1, 5, 3, 7);

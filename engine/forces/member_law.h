@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: the law of a member, equations (1), (2) and (6), once for all kernels.
+ *
+ * A kernel defines it for a vector type of its own: members_kernel.h for several members of one run,
+ * lane_kernel.h for one member of several runs. What no member of a block needs (dampers, slack, drive)
+ * is compiled out, and so are the values that only that asks for.
+ */
+#ifndef STRUT_ENGINE_FORCES_MEMBER_LAW_H
+#define STRUT_ENGINE_FORCES_MEMBER_LAW_H
+
+#include <stdbool.h>
+
+#include "engine/model/model.h"
+
+/**
+ * Defines PREFIX_values, what the law asks of members; PREFIX_powers, sums of what actuators and
+ * dampers do [W]; and PREFIX_tension, the members' tensions [N], cables never below 0.
+ */
+#define STRUT_DEFINE_MEMBER_LAW(inlined, number, mask, PREFIX)                                     \
+  typedef struct PREFIX##_values {                                                                 \
+    number length, rate; /* of the whole member [m], [m/s] */                                      \
+    number rest, rest_rate, stiffness, damping, taut_stretch, taut_tension;                        \
+  } PREFIX##_values;                                                                               \
+  typedef struct PREFIX##_powers {                                                                 \
+    number drive, moved, lost;                                                                     \
+  } PREFIX##_powers;                                                                               \
+                                                                                                   \
+  inlined number PREFIX##_tension(const PREFIX##_values *m, unsigned terms, bool ledger,           \
+                                  PREFIX##_powers *powers) {                                       \
+    bool driven = terms & STRUT_TERM_DRIVE;                                                        \
+    number stretch = m->length - m->rest;                                                          \
+    number elastic = m->stiffness * stretch, tension = elastic;                                    \
+    number own_rate = driven ? m->rate - m->rest_rate : m->rate;                                   \
+    if (terms & STRUT_TERM_DAMPING) tension = elastic + m->damping * own_rate;                     \
+    if (terms & STRUT_TERM_SLACK) {                                                                \
+      mask taut = stretch > m->taut_stretch;                                                       \
+      mask pulling = taut & (tension > m->taut_tension);                                           \
+      tension = (number)(pulling & (mask)tension);                                                 \
+      if (ledger) elastic = (number)(taut & (mask)elastic);                                        \
+    }                                                                                              \
+    if (ledger && driven) {                                                                        \
+      number power = -tension * m->rest_rate;                                                      \
+      powers->drive += power;                                                                      \
+      powers->moved += (number)((mask)power & 0x7fffffffffffffffLL);                               \
+    }                                                                                              \
+    if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += (tension - elastic) * own_rate;    \
+    return tension;                                                                                \
+  }
+
+#endif
