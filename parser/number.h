@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "engine/base/export.h"
+
 /** Longest literal that is read, in bytes. */
 enum { STRUT_NUMBER_MOST = 1000 };
 
@@ -17,6 +19,7 @@ size_t strut_number_scan(const char *text, size_t left);
  * The literal that fills text[0..length), times 10^decimal, rounded once: "96.51" with -3 has the
  * bits of 0.09651. False: not a literal, or neither zero nor representable.
  */
-bool strut_number_read_scaled(const char *text, size_t length, int decimal, double *value);
+STRUT_API bool strut_number_read_scaled(const char *text, size_t length, int decimal,
+                                        double *value);
 
 #endif
