@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Includes run down the floors only. First proves on made-up trees that it notices each kind of
-# breach, then looks at the repository.
+# Includes run down the floors only, and cloned functions have names of their own. First proves on
+# made-up trees that it notices each kind of breach, then looks at the repository.
 #
 #   sh tests/layers.sh [ROOT]
 set -eu
@@ -128,9 +128,21 @@ expect 1 engine/run/b.c '#include <yaml.h>'
 expect 1 engine/forces/b.c '#include <cholmod.h>'
 expect 1 engine/run/b.c '#include <hdf5.h>'
 
+# Functions with STRUT_CLONES that bear one name in two files, which clang does not link.
+twins() {
+  find "$1/engine" -name '*.c' -exec awk '
+    cloned && match($0, /[a-z0-9_]+\(/) { print substr($0, RSTART, RLENGTH - 1); cloned = 0 }
+    /^STRUT_CLONES/ { cloned = 1 }
+    /^STRUT_PLAIN_STEPS\(/ { sub(/.*\(/, ""); sub(/,.*/, ""); print $0 "_plain" }' {} + |
+    sort | uniq -d | sed 's/$/ is the name of two cloned functions/'
+}
+mkdir -p "$scratch/twins/engine"
+printf 'STRUT_CLONES\nstatic void same(int a) {\n' | tee "$scratch/twins/engine/a.c" >"$scratch/twins/engine/b.c"
+[ -n "$(twins "$scratch/twins")" ] || { echo "twins are not seen"; failures=$((failures + 1)); }
+
 root=${1:-$(dirname "$0")/..}
 root=$(cd "$root" && pwd)
-found=$(breaches "$root")
+found=$(breaches "$root"; twins "$root")
 if [ -n "$found" ]; then
   echo "$found"
   failures=$((failures + 1))

@@ -25,11 +25,11 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
   }
 }
 
-STRUT_PLAIN_STEPS(double, run_steps)
+STRUT_PLAIN_STEPS(euler, double, run_steps)
 
 static void euler_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                           int64_t count) {
-  advance_plain(model, state, workspace, dt, count);
+  euler_plain(model, state, workspace, dt, count);
 }
 
 const strut_integrator strut_integrator_euler = {

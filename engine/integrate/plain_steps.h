@@ -9,25 +9,29 @@
 #include "engine/forces/forces_kernel.h"
 
 /**
- * Defines advance_plain(model, state, work, dt, count), which runs
+ * Defines NAME_plain(model, state, work, dt, count), which runs
  * `steps(model, state, work, dt, count, ledger)`, an inlined function, as the state's ledger asks.
+ * NAME must be the method's own: cloned functions of equal names do not link with clang (hot.h).
  */
-#define STRUT_PLAIN_STEPS(work_type, steps)                                                        \
+#define STRUT_PLAIN_STEPS(name, work_type, steps)                                                  \
   STRUT_CLONES                                                                                     \
-  static void advance_with_ledger(const strut_model *model, strut_state *state, work_type *work,   \
-                                  double dt, int64_t count) {                                      \
+  static void name##_with_ledger(const strut_model *model, strut_state *state, work_type *work,    \
+                                 double dt, int64_t count) {                                       \
     steps(model, state, work, dt, count, true);                                                    \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
-  static void advance_without_ledger(const strut_model *model, strut_state *state,                 \
-                                     work_type *work, double dt, int64_t count) {                  \
+  static void name##_without_ledger(const strut_model *model, strut_state *state, work_type *work, \
+                                    double dt, int64_t count) {                                    \
     steps(model, state, work, dt, count, false);                                                   \
   }                                                                                                \
                                                                                                    \
-  static void advance_plain(const strut_model *model, strut_state *state, work_type *work,         \
-                            double dt, int64_t count) {                                            \
-    (state->ledger ? advance_with_ledger : advance_without_ledger)(model, state, work, dt, count); \
+  static void name##_plain(const strut_model *model, strut_state *state, work_type *work,          \
+                           double dt, int64_t count) {                                             \
+    if (state->ledger)                                                                             \
+      name##_with_ledger(model, state, work, dt, count);                                           \
+    else                                                                                           \
+      name##_without_ledger(model, state, work, dt, count);                                        \
   }
 
 #endif

@@ -77,10 +77,10 @@ STRUT_INLINE void run_elastic(const strut_model *model, strut_state *state, rk4_
   run_steps(model, state, w, dt, count, ledger, false);
 }
 
-STRUT_PLAIN_STEPS(rk4_workspace, run_elastic)
+STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)
 
 STRUT_CLONES
-static void advance_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
+static void rk4_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
                           int64_t count) {
   run_steps(model, state, w, dt, count, state->ledger, true);
 }
@@ -88,9 +88,9 @@ static void advance_rigid(const strut_model *model, strut_state *state, rk4_work
 static void rk4_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                         int64_t count) {
   if (state->rigid)
-    advance_rigid(model, state, workspace, dt, count);
+    rk4_rigid(model, state, workspace, dt, count);
   else
-    advance_plain(model, state, workspace, dt, count);
+    rk4_plain(model, state, workspace, dt, count);
 }
 
 /* Rigid bars keep the lengths they have here. */

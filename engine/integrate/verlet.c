@@ -55,13 +55,13 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
   }
 }
 
-STRUT_PLAIN_STEPS(verlet_workspace, run_steps)
+STRUT_PLAIN_STEPS(verlet, verlet_workspace, run_steps)
 
 static void verlet_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                            int64_t count) {
   verlet_workspace *w = workspace;
   if (!w->started) verlet_restart(model, state, workspace, dt);
-  advance_plain(model, state, w, dt, count);
+  verlet_plain(model, state, w, dt, count);
 }
 
 const strut_integrator strut_integrator_verlet = {
