@@ -6,11 +6,8 @@
 
 /* Periods of each run in which an irregular motion's mean is looked for, and when those show no end. */
 static const double PERIODS = 136.0, MORE_PERIODS = 544.0;
-/*
- * The mean is taken if known to so many times what is wanted, and what it is known to is said: finer
- * steps do not help there, and to average over longer is for whoever needs it.
- */
-static const double MEAN = 20.0;
+/* Of that with half the step, as many as the former's latter half has. */
+static const double HALF_PERIODS = 68.0;
 /* Two velocities that agree to this part of what is wanted. */
 static const double AGREE = 0.4;
 
@@ -50,22 +47,29 @@ static strut_status go_on(strut_way *w, double periods) {
 strut_status strut_way_irregular(strut_way *w, bool *periodic) {
   strut_accuracy *a = w->a;
   strut_summary half = {0};
+  strut_status status = STRUT_OK;
   w->found = STRUT_WAY_NONE;
-  a->cheap.steady.mean_tolerance = MEAN * a->wanted;
-  strut_status status = go_on(w, PERIODS);
+  if (w->run.steady.kind != STRUT_MOTION_IRREGULAR) status = go_on(w, PERIODS);
   if (!status && w->run.steady.kind == STRUT_MOTION_TRANSIENT) status = go_on(w, MORE_PERIODS);
   *periodic = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC;
   if (status || w->run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
-  status = strut_way_run(w, with_half_the_step(w), a->wanted, 5, PERIODS, true, &half);
-  double interval = fmax(w->run.steady.interval, half.steady.interval);
-  if (!status && half.steady.kind == STRUT_MOTION_IRREGULAR) {
+  status = strut_way_run(w, with_half_the_step(w), a->wanted, 5, HALF_PERIODS, true, &half);
+  if (!status) {
     strut_way_add(&w->last, &half);
     double apart = fabs(w->last.velocity - w->run.velocity);
-    answer(w, STRUT_WAY_IRREGULAR, apart + scatter(w, interval, PERIODS));
+    if (w->last.steady.kind == STRUT_MOTION_TRANSIENT)
+      w->last.steady.kind = STRUT_MOTION_IRREGULAR; /* too short a run to see that itself */
+    answer(w, STRUT_WAY_IRREGULAR, apart + scatter(w, w->run.steady.interval, HALF_PERIODS));
   }
-  a->spent += half.force_evaluations;
   strut_summary_free(&half);
   return status;
+}
+
+bool strut_way_is_stuck(const strut_way *w) {
+  const strut_contact_table *c = &w->cheap.model->contacts;
+  double band = 0.0;
+  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].stick_velocity);
+  return w->cheap.applied > 0 && w->cheap.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
 }
 
 strut_status strut_way_stuck(strut_way *w) {

@@ -16,9 +16,14 @@ static const double SMALL = 0.15;
 enum { MOST_CORRECTIONS = 4, MOST_CHECKS = 4 };
 /* Periods in which a motion should have become steady, and those in which a method that did not at
    first is given another chance, before it is taken to be irregular. */
-static const double FIRST = 150.0, CHANCE = 20.0;
+static const double FIRST = 150.0, CHANCE = 16.0;
+/*
+ * An irregular motion's mean is taken if known to so many times what is wanted, and what it is known to
+ * is said: finer steps do not help there, and to average over longer is for whoever needs it.
+ */
+static const double MEAN = 20.0;
 /* Periods in which the accurate method should be steady from where corrections failed. */
-static const double TRIAL = 60.0;
+static const double TRIAL = 40.0;
 
 static strut_status allocate(strut_way *w, const strut_model *model) {
   size_t length = (size_t)model->length;
@@ -113,14 +118,6 @@ static strut_status correct(strut_way *w, double enough, int least) {
     if ((k + 1 >= least || small) && w->error <= enough) return STRUT_OK;
   }
   return STRUT_OK;
-}
-
-/* No switch in some periods of a motion no faster than the stick band: all is stuck. */
-static bool is_stuck(const strut_way *w) {
-  const strut_contact_table *c = &w->cheap.model->contacts;
-  double band = 0.0;
-  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].stick_velocity);
-  return w->cheap.applied > 0 && w->cheap.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
 }
 
 /* The error of the orbit's velocity, in parts of what is wanted. */
@@ -295,7 +292,7 @@ static strut_status finish(strut_way *w) {
   double size = strut_way_size(a, w->run.velocity), all = fmax(20.0, strut_accuracy_periods(a));
   strut_status status = STRUT_OK;
   w->error = HUGE_VAL;
-  if (is_stuck(w)) {
+  if (strut_way_is_stuck(w)) {
     status = strut_way_stuck(w);
     return status || w->found ? status : run_accurate(w, false, all);
   }
@@ -370,8 +367,9 @@ static strut_status confirm(strut_way *w, strut_summary *orbit) {
   a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
   strut_summary_free(orbit);
   *orbit = (strut_summary){0};
-  status = run_accurate(w, true, fmax(20.0, strut_accuracy_periods(a)));
-  return status || !w->found ? status : run_orbit(w, orbit);
+  status = run_accurate(w, true, TRIAL);
+  if (!status && !w->found) status = strut_way_disputed(w);
+  return status ? status : run_orbit(w, orbit);
 }
 
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
@@ -383,6 +381,7 @@ strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   const strut_experiment given = a->cheap;
   a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
   a->cheap.refine_memory = 3.0;
+  a->cheap.steady.mean_tolerance = MEAN * a->wanted;
   strut_status status = run_cheap(&w, &steady);
   bool ran = !status && w.run.status == STRUT_OK;
   if (ran) status = find_orbit(&w, steady);

@@ -60,10 +60,12 @@ void strut_way_take_end(strut_way *way);
 
 /**
  * accuracy_irregular.c. The mean over many periods that do not repeat each other, by the cheap method
- * with its step and half of it. way->found tells whether there is one; *periodic, that the first of the
+ * with its step, whose run was found irregular or is gone on with, and half of it. way->found tells whether there is one; *periodic, that the first of the
  * runs became periodic after all, at way->end, and way->run is of it.
  */
 strut_status strut_way_irregular(strut_way *way, bool *periodic);
+/** No switch in the periods that the cheap map went through, of a motion within the stick band. */
+bool strut_way_is_stuck(const strut_way *way);
 /**
  * Stuck through all of the period: at which speed within the stick band is a matter of how it came to
  * be, not of an orbit. By the cheap method with half the step from the scene's start, where that agrees.
