@@ -13,7 +13,7 @@ static const double FINE = 0.0019;
 static const double LEAST = 20.0;
 /* A first correction is believed without a second one if it is this part of what is enough. */
 static const double SMALL = 0.15;
-enum { MOST_CORRECTIONS = 4, MOST_CHECKS = 4 };
+enum { MOST_CORRECTIONS = 4 };
 /* Periods in which a motion should have become steady, and those in which a method that did not at
    first is given another chance, before it is taken to be irregular. */
 static const double FIRST = 150.0, CHANCE = 16.0;
@@ -89,14 +89,6 @@ static strut_status make_maps(strut_way *w, int32_t repeats) {
   return STRUT_OK;
 }
 
-/* Of work on the maps: what it returned, and whether it was interrupted. */
-static strut_status judge(const strut_way *w, strut_status status) {
-  if (status) return strut_fail(w->a->error, status, "out of memory");
-  if (!strut_period_map_interrupted(&w->cheap)) return STRUT_OK;
-  return strut_fail(w->a->error, STRUT_INTERRUPTED,
-                    "interrupted at t = %.9g s, while the orbit was corrected", w->cheap.time);
-}
-
 /*
  * Corrects until the next correction is expected to be small enough: each defect should be much
  * smaller than the one before, and the velocity follows it in proportion.
@@ -107,7 +99,7 @@ static strut_status correct(strut_way *w, double enough, int least) {
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
     strut_status status = strut_orbit_correct(&w->cheap, &w->fine, w->base, w->travel,
                                               0.1 * enough * w->cheap.period, &w->orbit);
-    status = judge(w, status);
+    status = strut_way_judge(w, status);
     if (status) return status;
     if (!w->orbit.converged || w->orbit.defect > 0.7 * defect) return STRUT_OK;
     /* the first correction is taken to be right to a half, later ones by what they achieved */
@@ -120,118 +112,13 @@ static strut_status correct(strut_way *w, double enough, int least) {
   return STRUT_OK;
 }
 
-/* The error of the orbit's velocity, in parts of what is wanted. */
-static double part_of_wanted(const strut_way *w) {
-  double size = strut_way_size(w->a, w->orbit.velocity);
-  return w->error / (w->a->wanted * size);
-}
-
-/* The orbit becomes what runs go on from. */
-static void put_orbit(strut_way *w) {
-  size_t length = (size_t)w->cheap.model->length;
-  memcpy(w->end.q, w->orbit.y, length * sizeof(double));
-  memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
-  w->end.refined = w->orbit.y[2 * length];
-}
-
-/* The accurate method's run has the orbit. */
-static void take_last(strut_way *w) {
-  strut_way_take_end(w);
-  w->orbit.velocity = w->last.velocity;
-  w->error = w->last.steady.interval;
-  w->found = STRUT_WAY_ACCURATE;
-}
-
-/*
- * The accurate method itself by at most `periods` until it is steady: from the orbit found, of which
- * it then is independent, or, where that depends on how it came to be, from the scene's start. The
- * run's costs are added to those of the cheap one.
- */
-static strut_status run_accurate(strut_way *w, bool from_orbit, double periods) {
-  strut_accuracy *a = w->a;
-  strut_summary more = {0};
-  put_orbit(w);
-  /* where corrections fail the orbit is sensitive, and errors of a step matter more than usual */
-  if (!w->tightened && !(part_of_wanted(w) <= 0.8)) {
-    w->accurate.tolerance = fmax(1e-12, w->accurate.tolerance / 25.0);
-    w->tightened = true;
-  }
-  strut_status status =
-      strut_way_run(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4, periods, from_orbit, &more);
-  if (!status) strut_way_add(&w->last, &more);
-  strut_summary_free(&more);
-  if (!status && w->last.steady.kind == STRUT_MOTION_PERIODIC) take_last(w);
-  return status;
-}
-
-/*
- * A sensitive orbit once more, with a tenth of the tolerance: it stands if that agrees to half of what
- * is wanted; else the finer one has the word, and is asked the same.
- */
-static strut_status check_sensitive(strut_way *w) {
-  strut_accuracy *a = w->a;
-  for (int k = 0; k < MOST_CHECKS; k++) {
-    strut_summary finer = {0};
-    put_orbit(w);
-    w->accurate.tolerance = fmax(1e-12, 0.1 * w->accurate.tolerance);
-    strut_status status =
-        strut_way_run(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4, TRIAL, true, &finer);
-    bool periodic = !status && finer.steady.kind == STRUT_MOTION_PERIODIC;
-    double apart = periodic ? fabs(finer.velocity - w->orbit.velocity) : HUGE_VAL;
-    bool stands = apart <= 0.5 * a->wanted * strut_way_size(a, w->orbit.velocity);
-    if (stands || !periodic) {
-      a->spent += finer.force_evaluations;
-      w->error = fmax(w->error, stands ? apart : 0.0);
-      w->accurate.tolerance *= 10.0;
-    } else {
-      strut_way_add(&w->last, &finer);
-      take_last(w);
-      w->error = fmax(w->error, 0.5 * apart);
-    }
-    strut_summary_free(&finer);
-    if (status || stands || !periodic) return status;
-  }
-  return STRUT_OK;
-}
-
-/*
- * What a tenth of the tolerance would change, by one period of it and its effect on the orbit; and, where
- * that is not little, by running on with it.
- */
-static strut_status check_tolerance(strut_way *w) {
-  strut_accuracy *a = w->a;
-  size_t both = 2 * (size_t)w->cheap.model->length + 1;
-  strut_experiment finer = w->accurate;
-  strut_period_map map = {.model = NULL};
-  strut_orbit there = {.y = strut_arena_allocate(&w->arena, both, sizeof(double))};
-  if (!there.y) return strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
-  memcpy(there.y, w->orbit.y, both * sizeof(double));
-  finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
-  double size = strut_way_size(a, w->orbit.velocity), half = 0.5 * a->wanted * size;
-  const strut_way_cost before = {w->cheap.evaluations, w->cheap.events, w->cheap.applied};
-  strut_status status = strut_period_map_create(a->scene, &finer, w->cheap.repeats, &map, a->error);
-  if (status) return status;
-  map.interrupt = w->cheap.interrupt, map.time = w->cheap.time;
-  status = strut_orbit_correct(&w->cheap, &map, w->base, w->travel, 0.1 * half * w->cheap.period,
-                               &there);
-  a->spent += w->cheap.evaluations - before.evaluations + map.evaluations;
-  w->cheap.evaluations = before.evaluations;
-  w->cheap.events = before.events, w->cheap.applied = before.applied;
-  strut_period_map_free(&map);
-  status = judge(w, status);
-  double apart = there.converged ? fabs(there.velocity - w->orbit.velocity) : HUGE_VAL;
-  if (status || apart > half) return status ? status : check_sensitive(w);
-  w->error = fmax(w->error, apart);
-  return STRUT_OK;
-}
-
 /* The motion on the orbit, by the accurate method: for what is recorded and told of contacts. */
 static strut_status run_orbit(strut_way *w, strut_summary *summary) {
   strut_accuracy *a = w->a;
   strut_experiment e = w->accurate;
   double last = e.output_last;
   e.measure_last = 0.0;
-  put_orbit(w);
+  strut_way_put_orbit(w);
   e.steady.wanted = false;
   bool ran_on = w->found > STRUT_WAY_CORRECTED && w->last.steady.repeats > 0;
   e.periods = ran_on ? w->last.steady.repeats : w->cheap.repeats;
@@ -268,7 +155,7 @@ static strut_status settle_cheap(strut_way *w, bool *steady) {
   double enough = 0.1 * a->wanted * strut_way_size(a, w->run.velocity) * w->cheap.period;
   strut_status status =
       strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel, &found);
-  status = judge(w, status);
+  status = strut_way_judge(w, status);
   if (status) return status;
   *steady = true;
   if (!found) {
@@ -294,7 +181,7 @@ static strut_status finish(strut_way *w) {
   w->error = HUGE_VAL;
   if (strut_way_is_stuck(w)) {
     status = strut_way_stuck(w);
-    return status || w->found ? status : run_accurate(w, false, all);
+    return status || w->found ? status : strut_way_accurate(w, false, all);
   }
   bool last_word = a->wanted < FINE; /* the accurate method goes on itself: come near enough */
   double enough = (last_word ? 3.0 : 0.3) * a->wanted * size;
@@ -303,13 +190,13 @@ static strut_status finish(strut_way *w) {
   double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
   if (a->wanted >= COARSE && moved <= 0.8 * a->wanted * size)
     w->found = STRUT_WAY_CHEAP;
-  else if (!last_word && part_of_wanted(w) <= 0.8)
+  else if (!last_word && strut_way_part(w) <= 0.8)
     w->found = STRUT_WAY_CORRECTED;
   if (w->found) return STRUT_OK;
-  status = run_accurate(w, true, fmin(all, TRIAL));
+  status = strut_way_accurate(w, true, fmin(all, TRIAL));
   if (status) return status;
   if (!w->found) return strut_way_disputed(w);
-  return w->tightened ? check_sensitive(w) : check_tolerance(w);
+  return strut_way_check(w);
 }
 
 /*
@@ -321,7 +208,7 @@ static strut_status find_without_orbit(strut_way *w) {
   strut_status status = strut_way_irregular(w, &periodic);
   if (status || w->found) return status;
   if (!periodic || !strut_accuracy_orbit_answers(w->a, &w->run.steady))
-    return run_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
+    return strut_way_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
   status = make_maps(w, w->run.steady.repeats);
   return status ? status : finish(w);
 }
@@ -331,7 +218,7 @@ static strut_status find_without_orbit(strut_way *w) {
  * grid.
  */
 static strut_status find_without_cheap(strut_way *w) {
-  strut_status status = run_accurate(w, true, CHANCE);
+  strut_status status = strut_way_accurate(w, true, CHANCE);
   return status || w->found ? status : find_without_orbit(w);
 }
 
@@ -351,12 +238,24 @@ static strut_status find_orbit(strut_way *w, bool steady) {
   return steady ? finish(w) : find_without_cheap(w);
 }
 
+/*
+ * Does the run that the way ended with speak for the scene's window? It has to have become steady before
+ * that begins, counted from the scene's start.
+ */
+static bool answers(const strut_way *w) {
+  const strut_accuracy *a = w->a;
+  strut_steady_summary steady = w->last.steady;
+  if (a->scene->experiment.steady.wanted) return true;
+  double periods = (double)(w->run.steady.periods + steady.periods);
+  if (periods > 2.0 * strut_accuracy_periods(a)) return false;
+  steady.periods = 0;
+  return steady.kind != STRUT_MOTION_PERIODIC || strut_accuracy_orbit_answers(a, &steady);
+}
+
 /* The motion on the orbit found, which should go as fast as that was found to. */
 static strut_status confirm(strut_way *w, strut_summary *orbit) {
   strut_accuracy *a = w->a;
-  if (w->found > STRUT_WAY_CORRECTED && w->last.steady.kind == STRUT_MOTION_PERIODIC &&
-      !strut_accuracy_orbit_answers(a, &w->last.steady))
-    w->found = STRUT_WAY_NONE;
+  if (w->found > STRUT_WAY_CORRECTED && !answers(w)) w->found = STRUT_WAY_NONE;
   if (!w->found) return STRUT_OK;
   strut_status status = run_orbit(w, orbit);
   double away = fabs(orbit->velocity - w->orbit.velocity);
@@ -367,7 +266,7 @@ static strut_status confirm(strut_way *w, strut_summary *orbit) {
   a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
   strut_summary_free(orbit);
   *orbit = (strut_summary){0};
-  status = run_accurate(w, true, TRIAL);
+  status = strut_way_accurate(w, true, TRIAL);
   if (!status && !w->found) status = strut_way_disputed(w);
   return status ? status : run_orbit(w, orbit);
 }

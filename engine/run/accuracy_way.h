@@ -58,6 +58,21 @@ strut_status strut_way_run(strut_way *way, strut_experiment experiment, double t
 /** The end of the run so far becomes the orbit to go on from. */
 void strut_way_take_end(strut_way *way);
 
+/** Way->orbit becomes what runs go on from. */
+void strut_way_put_orbit(strut_way *way);
+/** Of work on the maps, which returned `status`: whether there was memory, and no interrupt. */
+strut_status strut_way_judge(const strut_way *way, strut_status status);
+
+/** accuracy_check.c. The error of the orbit's velocity, in parts of what is wanted. */
+double strut_way_part(const strut_way *way);
+/**
+ * The accurate method by at most `periods` until it is steady: from the orbit found, of which it then is
+ * independent, or, where that depends on how it came to be, from the scene's start. way->last is of it,
+ * and way->found tells whether it became periodic.
+ */
+strut_status strut_way_accurate(strut_way *way, bool from_orbit, double periods);
+/** Whether a smaller tolerance would change what strut_way_accurate found; takes it where it would. */
+strut_status strut_way_check(strut_way *way);
 /**
  * accuracy_irregular.c. The mean over many periods that do not repeat each other, by the cheap method
  * with its step, whose run was found irregular or is gone on with, and half of it. way->found tells whether there is one; *periodic, that the first of the

@@ -6,6 +6,8 @@
 
 /* After so many points in a row that are unlike the batch's, another batch is begun. */
 enum { MOST_UNLIKE = 4 };
+/* Steps below which setting up a batch costs more than its lanes save. */
+static const double FEWEST_STEPS = 200.0;
 
 typedef struct desk {
   const strut_sweep_worker *worker;
@@ -42,6 +44,7 @@ static bool suits_lanes(strut_sweep_job *job) {
   const strut_experiment *e = &job->scene.experiment;
   const strut_integrator *method = strut_integrator_find(e->integrator);
   if (e->accuracy > 0.0 || !method || !strut_batch_knows(method)) return false;
+  if (strut_scene_span(&job->scene).duration < FEWEST_STEPS * e->step) return false;
   return !strut_sweep_job_compile(job) && strut_batch_possible(job->model, method);
 }
 
