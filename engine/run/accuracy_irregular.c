@@ -94,7 +94,7 @@ strut_status strut_way_disputed(strut_way *w) {
   strut_summary half = {0};
   double accurate = w->last.velocity;
   strut_status status =
-      strut_way_run(w, with_half_the_step(w), w->a->wanted, 5, PERIODS, true, &half);
+      strut_way_run(w, with_half_the_step(w), w->a->wanted, 5, HALF_PERIODS, true, &half);
   if (!status) {
     strut_way_add(&w->last, &half);
     double apart = fabs(accurate - w->run.velocity);

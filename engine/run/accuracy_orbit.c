@@ -16,14 +16,15 @@ static const double SMALL = 0.15;
 enum { MOST_CORRECTIONS = 4 };
 /* Periods in which a motion should have become steady, and those in which a method that did not at
    first is given another chance, before it is taken to be irregular. */
-static const double FIRST = 150.0, CHANCE = 16.0;
+static const double FIRST = 150.0, CHANCE = 12.0;
 /*
  * An irregular motion's mean is taken if known to so many times what is wanted, and what it is known to
  * is said: finer steps do not help there, and to average over longer is for whoever needs it.
  */
 static const double MEAN = 20.0;
-/* Periods in which the accurate method should be steady from where corrections failed. */
-static const double TRIAL = 40.0;
+/* Periods in which the accurate method should be steady from where corrections failed, and where it is
+   to have the last word. */
+static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
 
 static strut_status allocate(strut_way *w, const strut_model *model) {
   size_t length = (size_t)model->length;
@@ -193,7 +194,7 @@ static strut_status finish(strut_way *w) {
   else if (!last_word && strut_way_part(w) <= 0.8)
     w->found = STRUT_WAY_CORRECTED;
   if (w->found) return STRUT_OK;
-  status = strut_way_accurate(w, true, fmin(all, TRIAL));
+  status = strut_way_accurate(w, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
   if (status) return status;
   if (!w->found) return strut_way_disputed(w);
   return strut_way_check(w);
@@ -266,7 +267,7 @@ static strut_status confirm(strut_way *w, strut_summary *orbit) {
   a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
   strut_summary_free(orbit);
   *orbit = (strut_summary){0};
-  status = strut_way_accurate(w, true, TRIAL);
+  status = strut_way_accurate(w, true, a->wanted < FINE ? LONG_TRIAL : TRIAL);
   if (!status && !w->found) status = strut_way_disputed(w);
   return status ? status : run_orbit(w, orbit);
 }
