@@ -288,8 +288,11 @@ strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
   const strut_experiment *e = &scene->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;
   if (purpose == STRUT_FOR_ANY) purpose = runs ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
+  bool told = purpose == STRUT_FOR_RUN_TOLD;
+  if (told) purpose = STRUT_FOR_RUN;
   size_t before = findings->count;
-  strut_checker checker = {.scene = scene, .purpose = purpose, .findings = findings};
+  strut_checker checker = {
+      .scene = scene, .purpose = purpose, .step_told = told, .findings = findings};
   checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);
   checker.wild = strut_allocate(scene->signal_count, sizeof *checker.wild);
   if (!checker.loose || !checker.wild) checker.out_of_memory = true;

@@ -273,7 +273,7 @@ static void check_step(strut_checker *checker, bool length_known) {
   if (!e->integrator || !*e->integrator)
     strut_find(checker, STRUT_ON_SOLVER, 0, "integrator", "the solver names no integrator");
   if (e->step == 0.0) {
-    if (checker->purpose == STRUT_FOR_RUN && !(e->accuracy > 0.0))
+    if (checker->purpose == STRUT_FOR_RUN && !checker->step_told && !(e->accuracy > 0.0))
       strut_find(checker, STRUT_ON_SOLVER, 0, "step",
                  "the solver has no step, expected a time such as '0.1 ms'");
     return;

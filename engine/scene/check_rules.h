@@ -11,6 +11,7 @@
 typedef struct strut_checker {
   const strut_scene *scene;
   strut_purpose purpose;
+  bool step_told; /* the scene need not have one */
   strut_findings *findings;
   bool out_of_memory;
   bool *loose; /* (member_count) true where a member's ends do not exist: other rules skip it */

@@ -52,8 +52,10 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
     strut_complain(&error);
     return status;
   }
-  status = read_source(arguments, &from,
-                       purpose == STRUT_OPEN_FOR_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY, scene);
+  bool told = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
+              strut_option_text(arguments, STRUT_OPTION_STEP);
+  strut_purpose run = told ? STRUT_FOR_RUN_TOLD : STRUT_FOR_RUN;
+  status = read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, scene);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
   status = strut_stand_resolve(scene, &error);

@@ -86,6 +86,13 @@ expect 0 run "$work/kicked.yaml" --accuracy 0.5% --json
 cp "$work/out" "$work/json"
 about "$(field .velocity)" 1.0417376 0.005
 [ "$(field '.accuracy.kept and .method != "midpoint"')" = true ] || fail "kicked: by midpoint"
+# Told on the command line, the model needs no step of its own.
+sed '/^solver:/d' "$work/kicked.yaml" >"$work/stepless.yaml"
+expect 2 run "$work/stepless.yaml"
+expect 0 run "$work/stepless.yaml" --accuracy 0.5% --json
+cp "$work/out" "$work/json"
+about "$(field .velocity)" 1.0417376 0.005
+expect 0 run "$work/stepless.yaml" --step "0.1 ms" --json
 # What has to repeat itself is run until it does, also where midpoint would be cheaper.
 cat >"$work/shaken.yaml" <<'END'
 strut: 1
