@@ -20,18 +20,13 @@ except ImportError:
     print("numpy is missing: nothing tested")
     sys.exit(77)
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.realpath(sys.argv[1])
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 models = os.path.realpath("models")
 work = tempfile.mkdtemp()
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def run(*words, code=0):
@@ -533,4 +528,4 @@ try:
         print(f"{test.__name__}: {time.time() - began:.1f} s")
 finally:
     shutil.rmtree(work)
-sys.exit(failures > 0)
+finish()

@@ -17,17 +17,12 @@ import tempfile
 import xml.etree.ElementTree as tree
 import zipfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.realpath(sys.argv[1])
 root = os.getcwd()
 work = tempfile.mkdtemp()
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def lines_of(program):
@@ -183,4 +178,4 @@ try:
             print(f"{name}: skipped, not installed")
 finally:
     shutil.rmtree(work)
-sys.exit(1 if failures else 0 if tested else 77)
+finish(tested)

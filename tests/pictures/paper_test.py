@@ -13,16 +13,12 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import fail, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 numbers = sys.argv[2:] or ["5", "6", "9", "11"]
 MOST_BYTES = 3e6
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def alike(column, one, other):
@@ -76,5 +72,4 @@ with tempfile.TemporaryDirectory() as now:
 if alike("velocity [m/s]", "0.0100", "0.0103") or alike("outcome", "I", "II") or \
         alike("x_n1 [m]", "0.01", "0.02"):
     fail("self-test: different tables pass")
-print(f"{failures} failures")
-sys.exit(failures > 0)
+finish()

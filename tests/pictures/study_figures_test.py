@@ -11,16 +11,11 @@ import tempfile
 
 from svg_paths import near, read
 
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
 FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.05, 0.05, 0.05)
-failures = 0
-
-
-def check(good, text):
-    global failures
-    if not good:
-        failures += 1
-        print("FAILED:", text)
 
 
 def write(name, text):
@@ -152,5 +147,4 @@ said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", 
 check("no run recorded any of it" in said, said)
 said = sweep(STUDY + "  bad: {kind: snapshots, difference: mass}\n", code=1)
 check("'difference' needs an axis of two values; 'mass' has 1" in said, said)
-print(f"{failures} failures")
-sys.exit(failures > 0)
+finish()
