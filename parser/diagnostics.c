@@ -30,31 +30,36 @@ static void tidy(char *message, int written) {
     if ((unsigned char)*c < 0x20 || *c == 0x7F) *c = ' ';
 }
 
-static bool make_room(strut_diagnostics *diagnostics) {
-  if (diagnostics->count < diagnostics->capacity) return true;
-  size_t capacity = diagnostics->capacity ? 2 * diagnostics->capacity : 16;
-  void *items = strut_reallocate(diagnostics->items, capacity, sizeof *diagnostics->items);
+static bool make_room(strut_diagnostic **list, size_t count, size_t *room) {
+  if (count < *room) return true;
+  size_t capacity = *room ? 2 * *room : 16;
+  void *items = strut_reallocate(*list, capacity, sizeof **list);
   if (!items) return false;
-  diagnostics->items = items;
-  diagnostics->capacity = capacity;
+  *list = items;
+  *room = capacity;
   return true;
 }
 
-void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format, ...) {
-  if (diagnostics->count >= STRUT_DIAGNOSTICS_MOST) {
-    diagnostics->unstored++;
-    return;
-  }
+/* The message in the arena, or NULL. */
+static const char *compose(strut_diagnostics *diagnostics, const char *format, va_list arguments) {
   char message[MESSAGE_MOST] = "";
-  va_list arguments;
-  va_start(arguments, format);
   strut_c_locale locale = strut_c_locale_enter();
   int written = vsnprintf(message, sizeof message, format, arguments);
   strut_c_locale_leave(locale);
-  va_end(arguments);
   tidy(message, written);
-  char *copy = strut_arena_text(&diagnostics->arena, message, strlen(message));
-  if (!copy || !make_room(diagnostics)) {
+  return strut_arena_text(&diagnostics->arena, message, strlen(message));
+}
+
+void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format, ...) {
+  if (strut_diagnostics_full(diagnostics)) {
+    diagnostics->unstored++;
+    return;
+  }
+  va_list arguments;
+  va_start(arguments, format);
+  const char *copy = compose(diagnostics, format, arguments);
+  va_end(arguments);
+  if (!copy || !make_room(&diagnostics->items, diagnostics->count, &diagnostics->capacity)) {
     diagnostics->unstored++;
     diagnostics->out_of_memory = true;
     return;
@@ -62,6 +67,18 @@ void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const cha
   uint32_t order = (uint32_t)diagnostics->count;
   diagnostics->items[diagnostics->count++] =
       (strut_diagnostic){.place = place, .order = order, .message = copy};
+}
+
+void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  const char *copy = compose(diagnostics, format, arguments);
+  va_end(arguments);
+  if (!copy ||
+      !make_room(&diagnostics->notes, diagnostics->note_count, &diagnostics->note_capacity))
+    return;
+  diagnostics->notes[diagnostics->note_count++] =
+      (strut_diagnostic){.place = place, .message = copy};
 }
 
 static int compare(const void *a, const void *b) {
@@ -72,14 +89,14 @@ static int compare(const void *a, const void *b) {
 }
 
 static void render_one(strut_text_builder *out, const strut_diagnostics *diagnostics,
-                       const strut_diagnostic *item, strut_cursor *cursor) {
+                       const char *kind, const strut_diagnostic *item, strut_cursor *cursor) {
   const char *file = diagnostics->file ? diagnostics->file : "<text>";
   if (item->place.line == 0) {
-    strut_text_append(out, "%s: error: %s\n", file, item->message);
+    strut_text_append(out, "%s: %s: %s\n", file, kind, item->message);
     return;
   }
-  strut_text_append(out, "%s:%u:%u: error: %s\n", file, item->place.line, item->place.column,
-                    item->message);
+  strut_text_append(out, "%s:%u:%u: %s: %s\n", file, item->place.line, item->place.column,
+                    kind, item->message);
   strut_cursor_to_line(cursor, item->place.line);
   if (cursor->line == item->place.line) strut_source_line_show(out, cursor, item->place);
 }
@@ -91,7 +108,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   if (diagnostics->count)
     qsort(diagnostics->items, diagnostics->count, sizeof *diagnostics->items, compare);
   size_t shown = diagnostics->count < most ? diagnostics->count : most;
-  for (size_t i = 0; i < shown; i++) render_one(&out, diagnostics, &diagnostics->items[i], &cursor);
+  for (size_t i = 0; i < shown; i++) render_one(&out, diagnostics, "error", &diagnostics->items[i], &cursor);
   size_t left = diagnostics->count - shown + diagnostics->unstored;
   if (left) strut_text_append(&out, "... and %zu more\n", left);
   const char *text =
@@ -101,8 +118,22 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   return text;
 }
 
+const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
+  strut_text_builder out = {0};
+  for (size_t i = 0; i < diagnostics->note_count; i++) {
+    strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+    render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
+  }
+  const char *text =
+      out.failed ? NULL
+                 : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
+  strut_release(out.text);
+  return text;
+}
+
 void strut_diagnostics_free(strut_diagnostics *diagnostics) {
   strut_release(diagnostics->items);
+  strut_release(diagnostics->notes);
   strut_arena_free(&diagnostics->arena);
   *diagnostics = (strut_diagnostics){0};
 }

@@ -24,7 +24,7 @@ typedef struct strut_diagnostic {
 } strut_diagnostic;
 
 /** Most messages that are stored; later ones are only counted. */
-enum { STRUT_DIAGNOSTICS_MOST = 10000 };
+enum { STRUT_DIAGNOSTICS_MOST = 1000 };
 
 /** The text under examination and what was found in it. Zero-initialise. */
 typedef struct strut_diagnostics {
@@ -33,10 +33,17 @@ typedef struct strut_diagnostics {
   size_t length;
   size_t count, capacity;
   strut_diagnostic *items;
+  size_t note_count, note_capacity;
+  strut_diagnostic *notes; /* what is no error; not among the items */
   size_t unstored;    /* messages beyond STRUT_DIAGNOSTICS_MOST, or lost because memory was out */
   bool out_of_memory; /* a message was lost */
   strut_arena arena;  /* owns the messages */
 } strut_diagnostics;
+
+/** True where a further message would only be counted: its text need not be made. */
+static inline bool strut_diagnostics_full(const strut_diagnostics *diagnostics) {
+  return diagnostics->count >= STRUT_DIAGNOSTICS_MOST;
+}
 
 /** Begins: remembers the file's name and its bytes (neither copied). */
 STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const char *file,
@@ -46,6 +53,11 @@ STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const ch
  */
 STRUT_API void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format,
                               ...) __attribute__((format(printf, 3, 4)));
+/** Adds a note, which is no error: nothing fails by it. Lost where memory is out. */
+STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/** All notes, in order, as strut_diagnostics_render shows messages. NULL: memory is out. */
+STRUT_API const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics);
 /**
  * All messages, sorted by place, as printed text (file:line:column: error: ..., the line, a caret);
  * the text belongs to the diagnostics' arena. At most `most` are shown, then "... and N more".

@@ -98,7 +98,7 @@ static strut_tree *new_node(reader *r, strut_tree_kind kind, strut_place place) 
   r->nodes++;
   r->spare_count--;
   strut_tree *node = r->spare++;
-  *node = (strut_tree){.kind = (uint8_t)kind, .place = place, .text = ""};
+  *node = (strut_tree){.kind = (uint32_t)kind & 3u, .place = place, .text = ""};
   return node;
 }
 

@@ -22,12 +22,12 @@ typedef enum strut_tree_kind { STRUT_TREE_SCALAR, STRUT_TREE_LIST, STRUT_TREE_MA
 /** Most bytes of a text. */
 #define STRUT_TEXT_MOST ((size_t)256 << 20)
 
-/** One value: 48 bytes. A map's children alternate key, value; keys are scalars. */
+/** One value: 40 bytes. A map's children alternate key, value; keys are scalars. */
 typedef struct strut_tree {
-  uint8_t kind;                    /* a strut_tree_kind */
-  bool quoted;                     /* scalar: written in quotes or as a block */
   strut_place place;               /* of its first character (an alias: of the alias), its length */
-  uint32_t count;                  /* list: items; map: pairs */
+  uint32_t count : 29;             /* list: items; map: pairs */
+  uint32_t kind : 2;               /* a strut_tree_kind */
+  bool quoted : 1;                 /* scalar: written in quotes or as a block */
   const char *text;                /* scalar: NUL-terminated, no NUL inside, "" for nothing */
   struct strut_tree *first, *next; /* first child; next sibling */
 } strut_tree;

@@ -65,8 +65,10 @@ static bool read_call(strut_expression_reader *r, const strut_function *function
     count++;
   } while (strut_expression_peek(r) == ',');
   if (!expect(r, ')', "an operator, ',' or ')'")) return false;
-  return strut_function_apply(function, arguments, count, q, &reason) ||
-         strut_expression_fail(r, begin, r->at, "%s", reason.text);
+  if (!strut_function_apply(function, arguments, count, q, &reason))
+    return strut_expression_fail(r, begin, r->at, "%s", reason.text);
+  strut_expression_emit(r, strut_function_operation(function), count, q);
+  return true;
 }
 
 static bool read_name(strut_expression_reader *r, size_t length, strut_quantity *q) {
@@ -80,20 +82,35 @@ static bool read_name(strut_expression_reader *r, size_t length, strut_quantity 
     return read_call(r, function, begin, q);
   }
   if (length == 2 && memcmp(name, "pi", 2) == 0) {
-    *q = (strut_quantity){PI, STRUT_DIM_NONE, true};
+    *q = (strut_quantity){.value = PI, .bare = true};
+    strut_expression_emit_number(r, q);
     return true;
   }
   int found = strut_expression_lookup(r, name, length, q);
   if (found < 0) {
     strut_expression_fail(r, begin, begin + length, "%s", "");
+    r->error->message[0] = '\0'; /* the lookup has reported it */
     return false;
   }
-  return found > 0 || strut_expression_unknown_name(r, begin, length);
+  if (found > 0) {
+    strut_expression_emit_number(r, q);
+    return true;
+  }
+  found = strut_expression_column_word(r, begin, length, q);
+  return found > 0 || (found == 0 && strut_expression_unknown_name(r, begin, length));
+}
+
+static bool read_literal(strut_expression_reader *r, strut_quantity *q) {
+  if (!strut_expression_literal(r, q)) return false;
+  strut_expression_emit_number(r, q);
+  return true;
 }
 
 static bool read_primary(strut_expression_reader *r, strut_quantity *q) {
   char c = strut_expression_peek(r);
-  if ((c >= '0' && c <= '9') || c == '.') return strut_expression_literal(r, q);
+  int column = strut_expression_column(r, q);
+  if (column) return column > 0;
+  if ((c >= '0' && c <= '9') || c == '.') return read_literal(r, q);
   if (c == '(') {
     r->at++;
     return read_sum(r, q) && expect(r, ')', "an operator or ')'");
@@ -106,9 +123,15 @@ static bool read_primary(strut_expression_reader *r, strut_quantity *q) {
 /* *q = *q OP b, where the operands stand in text[begin..at). */
 static bool operate(strut_expression_reader *r, size_t begin, char operation, strut_quantity *q,
                     strut_quantity b) {
+  static const char signs[] = "+-*/^";
+  static const strut_operation operations[] = {STRUT_OPERATION_ADD, STRUT_OPERATION_SUBTRACT,
+                                               STRUT_OPERATION_MULTIPLY, STRUT_OPERATION_DIVIDE,
+                                               STRUT_OPERATION_POWER};
   strut_reason reason;
-  return strut_quantity_operate(operation, q, b, &reason) ||
-         strut_expression_fail(r, begin, r->at, "%s", reason.text);
+  if (!strut_quantity_operate(operation, q, b, &reason))
+    return strut_expression_fail(r, begin, r->at, "%s", reason.text);
+  strut_expression_emit(r, operations[strchr(signs, operation) - signs], 2, q);
+  return true;
 }
 
 /* A power binds tighter than a sign before it, and groups to the right. */
@@ -135,7 +158,10 @@ static bool read_signed(strut_expression_reader *r, strut_quantity *q) {
   bool sign = c == '-' || c == '+', fine;
   if (sign) r->at++;
   fine = sign ? read_signed(r, q) : read_power(r, q);
-  if (fine && c == '-') q->value = -q->value;
+  if (fine && c == '-') {
+    q->value = -q->value;
+    strut_expression_emit(r, STRUT_OPERATION_NEGATE, 1, q);
+  }
   r->depth--;
   return fine;
 }
@@ -176,8 +202,13 @@ static bool read_sum(strut_expression_reader *r, strut_quantity *q) {
 
 bool strut_expression_evaluate(const char *text, const strut_scope *scope, strut_quantity *quantity,
                                strut_expression_error *error) {
-  strut_expression_reader r = {text, strlen(text), 0, 0, scope, error};
-  strut_quantity q;
+  return strut_expression_compile(text, scope, NULL, quantity, error);
+}
+
+bool strut_expression_compile(const char *text, const strut_scope *scope, strut_compiler *compiler,
+                              strut_quantity *quantity, strut_expression_error *error) {
+  strut_expression_reader r = {text, strlen(text), 0, 0, scope, error, compiler};
+  strut_quantity q = {0};
   if (r.length > LENGTH_MOST && strut_text_points(text, r.length) > LENGTH_MOST)
     return strut_expression_fail(&r, 0, r.length, "the expression is longer than %d characters",
                                  LENGTH_MOST);

@@ -13,6 +13,10 @@ enum { SHOWN_MOST = 40 };
 
 bool strut_expression_fail(strut_expression_reader *r, size_t begin, size_t end, const char *format,
                            ...) {
+  if (r->scope && r->scope->unread) {
+    *r->error = (strut_expression_error){.message = "?"};
+    return false;
+  }
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(r->error->message, sizeof r->error->message, format, arguments);
@@ -57,7 +61,8 @@ static bool fail_with_hint(strut_expression_reader *r, size_t begin, size_t leng
   snprintf(word, sizeof word, "%.*s", cut ? SHOWN_MOST : (int)length, r->text + begin);
   bool named = parameters && r->scope && r->scope->names;
   candidates all = {r->scope, named, functions, units, 0, 0};
-  const char *near = cut ? NULL : strut_did_you_mean(word, next_candidate, &all);
+  bool silent = cut || (r->scope && r->scope->no_hints);
+  const char *near = silent ? NULL : strut_did_you_mean(word, next_candidate, &all);
   return strut_expression_fail(r, begin, begin + length, "unknown %s '%s%s'%s%s%s", what, word,
                                cut ? "..." : "", near ? "; did you mean '" : "", near ? near : "",
                                near ? "'?" : "");

@@ -139,5 +139,6 @@ bool strut_expression_literal(strut_expression_reader *r, strut_quantity *quanti
     return strut_expression_fail(r, begin, r->at, "this number is beyond the range of numbers");
   quantity->dimension = product.dimension;
   quantity->bare = product.bare;
+  quantity->varies = false;
   return true;
 }

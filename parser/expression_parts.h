@@ -13,6 +13,7 @@ typedef struct strut_expression_reader {
   int depth;
   const strut_scope *scope;
   strut_expression_error *error;
+  strut_compiler *compiler; /* NULL: there are no columns */
 } strut_expression_reader;
 
 /** Fills the error for the stretch text[begin..end) and returns false. */
@@ -32,6 +33,19 @@ bool strut_expression_unknown_name(strut_expression_reader *reader, size_t begin
 bool strut_expression_unknown_function(strut_expression_reader *reader, size_t begin,
                                        size_t length);
 bool strut_expression_unexpected(strut_expression_reader *reader, const char *expected);
+
+/* expression_columns.c: columns, and the program that is made of them. Without a compiler the
+   functions that emit do nothing. */
+
+/** Reads a column where one stands here: 1; 0: none does; -1: it was refused. */
+int strut_expression_column(strut_expression_reader *reader, strut_quantity *quantity);
+/** The same for a word alone, text[begin..begin + length), that is no parameter. */
+int strut_expression_column_word(strut_expression_reader *reader, size_t begin, size_t length,
+                                 strut_quantity *quantity);
+void strut_expression_emit_number(strut_expression_reader *reader, const strut_quantity *number);
+/** What replaces `operands` numbers by one. Their result, if it does not vary, is the number itself. */
+void strut_expression_emit(strut_expression_reader *reader, strut_operation operation,
+                           size_t operands, const strut_quantity *result);
 
 /** A literal with the unit behind it. */
 bool strut_expression_literal(strut_expression_reader *reader, strut_quantity *quantity);

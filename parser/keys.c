@@ -25,7 +25,7 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSI
                             STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,
                             STRUT_KEY_EQUILIBRIA_SUPPORTS,   STRUT_KEY_SOLVER_INTEGRATOR,
                             STRUT_KEY_RUN_DURATION,          STRUT_KEY_MEASURE_LAST,
-                            STRUT_KEY_STEADY_TOLERANCE,
+                            STRUT_KEY_QUANTITY_OF,           STRUT_KEY_STEADY_TOLERANCE,
                             STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_STUDY_VERSION,
                             STRUT_KEY_RANGE_FROM,            STRUT_KEY_VARIANT_SOLVER,
                             STRUT_KEY_CHECK_HALF_STEP,       STRUT_KEY_FIGURE_KIND,
@@ -34,7 +34,7 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSI
 static const char *const room_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
-    "initial", "settle", "equilibria", "solver",    "run",      "measure", "steady", "output",
+    "initial", "settle", "equilibria", "solver",    "run",      "measure", "quantity", "steady", "output",
     "study",   "range",  "variant",    "check",      "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
@@ -162,6 +162,8 @@ static const char *expected_shape(strut_key_type type) {
       return "true, or a mapping such as {limit: 100 s}";
     case STRUT_TYPE_STEADY:
       return "true, or a mapping such as {tolerance: 0.5 %}";
+    case STRUT_TYPE_EXPRESSION:
+      return "an expression such as com.vy, n1.y - n2.y or m1.force";
     case STRUT_TYPE_AXES:
       return "a list of axes such as [{friction: [0.1, 0.2]}]";
     case STRUT_TYPE_TIMES:
@@ -193,6 +195,10 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       break;
     case STRUT_TYPE_WORDS:
       snprintf(buffer, size, "a list of %s", strut_words_text(k->words, text, sizeof text));
+      break;
+    case STRUT_TYPE_KEEP:
+      snprintf(buffer, size, "a list of %s, and of measured quantities",
+               strut_words_text(k->words, text, sizeof text));
       break;
     case STRUT_TYPE_FIXED:
       snprintf(buffer, size, "%s, or a list of x and y",

@@ -35,6 +35,7 @@ typedef enum strut_room {
   STRUT_ROOM_SOLVER,
   STRUT_ROOM_RUN,
   STRUT_ROOM_MEASURE,
+  STRUT_ROOM_QUANTITY,
   STRUT_ROOM_STEADY,
   STRUT_ROOM_OUTPUT,
   STRUT_ROOM_STUDY,
@@ -63,6 +64,8 @@ typedef enum strut_key_type {
   STRUT_TYPE_TABLE,         /* a list of [t, value] */
   STRUT_TYPE_SETTLE,        /* true, false or the keys of settle */
   STRUT_TYPE_STEADY,        /* true, false or the keys of steady */
+  STRUT_TYPE_EXPRESSION,    /* an expression of columns of the motion */
+  STRUT_TYPE_KEEP,          /* a list of the key's words and of quantities */
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the room that has the key's name */

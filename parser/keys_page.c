@@ -41,6 +41,7 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
     [STRUT_ROOM_SOLVER] = "`solver: {...}`.",
     [STRUT_ROOM_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
     [STRUT_ROOM_MEASURE] = "`run: {measure: {...}}`.",
+    [STRUT_ROOM_QUANTITY] = "`run: {measure: {quantities: {NAME: {...}}}}`.",
     [STRUT_ROOM_STEADY] = "`run: {measure: {steady: {...}}}`.",
     [STRUT_ROOM_OUTPUT] = "`output: {...}`.",
     [STRUT_ROOM_STUDY] =
@@ -88,6 +89,8 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
       [STRUT_TYPE_SIGNALS] = "list of signals",
       [STRUT_TYPE_TABLE] = "list of `[t, value]`",
+      [STRUT_TYPE_EXPRESSION] = "expression of columns",
+      [STRUT_TYPE_KEEP] = "list of quantities, or of ",
       [STRUT_TYPE_AXES] = "list of axes",
       [STRUT_TYPE_TIMES] = "list of times [s]",
       [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",

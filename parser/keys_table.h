@@ -106,6 +106,9 @@
   X(SETTLE, SPEED, "speed", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "1e-8", "", "At rest when every node is slower than this") \
   X(SETTLE, ACCELERATION, "acceleration", NUMBER, ACCELERATION, ABOVE_ZERO, false, 0, "1e-8", "", "and accelerates less than this.") \
   X(SETTLE, LIMIT, "limit", NUMBER, TIME, ABOVE_ZERO, false, 0, "100", "", "Give up after so much simulated time.") \
+  X(SETTLE, EVALUATIONS, "evaluations", NUMBER, NONE, ABOVE_ZERO, false, 0, "4e7", "", "Give up after so many evaluations of the forces.") \
+  X(SETTLE, STEP, "step", NUMBER, TIME, NOT_NEGATIVE, false, 0, "`solver.step`", "", "Step of the Runge-Kutta method that settles, whatever the run's method. `0`, no step in the file, or one above the stability limit: half that limit.") \
+  X(SETTLE, PERTURB, "perturb", WORD, NONE, ANY, false, 0, "no", "no|yes", "Leave an equilibrium that is unstable: a small push along its most unstable direction, then settle again, until it is stable.") \
   X(SETTLE, FRICTION, "friction", WORD, NONE, ANY, false, 0, "none", "none|kept", "Without friction, as in the paper; `kept` lets it hold, as a body on a slope needs.") \
   X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, false, 0, "every pair that can carry", "", "Contact nodes to hold in turn: of each list the first is pinned, the others roll on the ground.") \
   X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, NOT_NEGATIVE, false, 0, "until little can be missing", "", "Random starts for each list of supports.") \
@@ -116,6 +119,7 @@
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, false, 0, "from the scene", "", "Of methods with events: so many times shorter steps after a touchdown; 1 for none.") \
   X(SOLVER, REFINE_TIME, "refine_time", NUMBER, TIME, ABOVE_ZERO, false, 0, "from the scene", "", "For so long.") \
   X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, false, 0, "", "", "Wanted of the measured quantity, relative, such as 1 %: method and step are chosen by it.") \
+  X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, false, 0, "20", "", "Work that `accuracy` may take, in fine runs by a fixed step; where it does not do, the answer says so.") \
   X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, false, 3, "", "", "Length of the run.") \
   X(RUN, PERIODS, "periods", NUMBER, NONE, ABOVE_ZERO, false, 3, "", "", "Length of the run in periods; needs `of`.") \
   X(RUN, OF, "of", NAME, NONE, ANY, false, 0, "", "", "The actuator, load or signal whose periods count.") \
@@ -123,6 +127,10 @@
   X(MEASURE, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "the whole run", "", "The window: the last so many periods if the run is in periods, else the last so much time.") \
   X(MEASURE, NODE, "node", NAME, NONE, ANY, false, 0, "the centre of mass", "", "Whose velocity.") \
   X(MEASURE, STEADY, "steady", STEADY, NONE, ANY, false, 0, "false", "", "Stop when the motion repeats itself, in a run by periods, which then are the most it takes: `true`, or a mapping.") \
+  X(MEASURE, QUANTITIES, "quantities", THINGS, NONE, ANY, false, 0, "", "an expression, whose mean is meant, or the keys of a [quantity](#quantity)", "What else to measure over the window.") \
+  X(QUANTITY, OF, "of", EXPRESSION, NONE, ANY, true, 0, "", "", "What is measured: columns of the motion and arithmetic of them, as [the language](language.md#measured-quantities) lists them.") \
+  X(QUANTITY, TAKE, "take", WORD, NONE, ANY, false, 0, "mean", "mean|min|max|range|rms|final|change|rate", "What the window makes of it: its `mean` over the time, `min`, `max`, `range` (max - min), `rms`, its `final` value at the window's end, its `change` over the window, or the `rate` of that, change / time.") \
+  X(QUANTITY, ACCURACY, "accuracy", NUMBER, CONTEXT, ABOVE_ZERO, false, 0, "that of the solver", "", "Wanted of it: relative if without a unit, such as 1 %, else in its own unit, such as 0.1 mm.") \
   X(STEADY, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, false, 0, "0.5 %", "", "Of the velocity, relative to it.") \
   X(STEADY, FLOOR, "floor", NUMBER, VELOCITY, ABOVE_ZERO, false, 0, "from the scene", "", "Differences of the velocity below this count as none.") \
   X(STEADY, SUCCESSIVE, "successive", NUMBER, NONE, ABOVE_ZERO, false, 0, "5", "", "So many repetitions in a row must agree.") \
@@ -142,7 +150,7 @@
   X(STUDY, RUN, "run", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
   X(STUDY, INITIAL, "initial", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
   X(STUDY, OUTPUT, "output", MAP, NONE, ANY, false, 0, "", "", "Keys that replace those of the model.") \
-  X(STUDY, KEEP, "keep", WORDS, NONE, ANY, false, 0, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome]", "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome", "What of each run stands in the table: velocity [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of a run that stops when steady; `distance` travelled in a drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses`, `residual` of the balance; `contacts` (duty and height of each), `positions` (of each node at the end), `outcome` (the nearest configuration); and the rest of the summary.") \
+  X(STUDY, KEEP, "keep", KEEP, NONE, ANY, false, 0, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome, quantities]", "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome|quantities|accuracy_kept", "What of each run stands in the table: velocity [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of a run that stops when steady; `distance` travelled in a drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses`, `residual` of the balance; `contacts` (duty and height of each), `positions` (of each node at the end), `accuracy_kept` (1 where the accuracy wanted was kept, else 0), `outcome` (the nearest configuration); `quantities` (all that the model's `measure` names), or the names of some of them; and the rest of the summary.") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, false, 0, "no", "no|yes", "Write each run into a folder of its own, `runs/POINT`, as `strut run -o` does.") \
   X(STUDY, CHECK, "check", MAP, NONE, ANY, false, 0, "", "", "Run each point again, more exactly, and mark those that end elsewhere.") \
   X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, false, 0, "", "the keys of a [figure](#figure)", "Drawings of the table, or of what runs recorded: NAME.svg each.") \

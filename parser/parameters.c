@@ -65,7 +65,8 @@ static bool evaluate(strut_reader *reader, strut_parameter_state *p, strut_quant
 /* The value that is given from outside. */
 static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
   if (p->set->known) {
-    p->quantity = (strut_quantity){p->set->value, p->set->dimension, p->set->bare};
+    p->quantity = (strut_quantity){
+        .value = p->set->value, .dimension = p->set->dimension, .bare = p->set->bare};
     return true;
   }
   strut_expression_error error = {0};
@@ -78,6 +79,29 @@ static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
   return fine;
 }
 
+/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" where it is none. */
+static const char *unit_of(const char *text) {
+  const char *rest = text + strspn(text, "+-.0123456789eE");
+  if (rest == text) return "";
+  rest += strspn(rest, " ");
+  bool letters = (*rest >= 'a' && *rest <= 'z') || (*rest >= 'A' && *rest <= 'Z');
+  return letters && !strpbrk(rest, "+-() ,#") ? rest : "";
+}
+
+/* A plain number is in SI units, whatever the file has it in: worth a word where that may be missed. */
+static void note_scale(strut_reader *reader, const strut_parameter_state *p,
+                       const strut_quantity *declared) {
+  double times = fabs(p->quantity.value / declared->value);
+  const char *unit = unit_of(p->value->text), *given = p->set->text;
+  if (p->set->place.line || !(times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9))) return;
+  if (declared->value == 0.0 || p->quantity.value == 0.0) return;
+  strut_note(reader->diagnostics, p->value->place,
+             "--set %s=%s is taken as %s in SI units, %.6g times the %s here, since a plain number "
+             "is in SI units; write --set %s=\"%s %s\" if that is meant",
+             p->name, strut_shown(reader, given), given, times, p->value->text, p->name,
+             strut_shown(reader, given), *unit ? unit : "UNIT");
+}
+
 /* Does what is given fit what the file declares? A bare value takes the declared dimension. */
 static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_quantity *declared) {
   char expected[200], found[80], message[320];
@@ -85,6 +109,7 @@ static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_qu
   if (p->quantity.bare) {
     p->quantity.bare = false;
     p->quantity.dimension = declared->dimension;
+    note_scale(reader, p, declared);
   }
   if (strut_dimension_equal(p->quantity.dimension, declared->dimension)) return true;
   snprintf(message, sizeof message, "expected %s, found %s",
@@ -141,7 +166,8 @@ static int look_up(void *context, const char *name, size_t length, strut_quantit
 }
 
 strut_scope strut_parameter_scope(strut_reader *reader) {
-  return (strut_scope){look_up, strut_parameter_name, reader};
+  return (strut_scope){look_up, strut_parameter_name, reader, !strut_hints_left(reader),
+                       strut_diagnostics_full(reader->diagnostics)};
 }
 
 /* An identifier that is not taken: it must be able to stand in an expression. */
@@ -210,6 +236,7 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
 
 void strut_keep_parameters(strut_reader *reader) {
   strut_scene *scene = reader->scene;
+  if (reader->failed) return; /* nobody will see the scene */
   scene->parameters =
       strut_take(reader, &scene->arena, reader->parameter_count, sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {

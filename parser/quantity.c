@@ -25,30 +25,31 @@ struct strut_function {
   size_t least, most; /* arguments */
   double (*one)(double);
   double (*two)(double, double);
+  strut_operation operation;
 };
 
 static double lesser(double a, double b) { return b < a ? b : a; }
 static double greater(double a, double b) { return b > a ? b : a; }
 
 static const strut_function functions[] = {
-    {"sin", OF_ANGLE, 1, 1, sin, NULL},
-    {"cos", OF_ANGLE, 1, 1, cos, NULL},
-    {"tan", OF_ANGLE, 1, 1, tan, NULL},
-    {"asin", TO_ANGLE, 1, 1, asin, NULL},
-    {"acos", TO_ANGLE, 1, 1, acos, NULL},
-    {"atan", TO_ANGLE, 1, 1, atan, NULL},
-    {"atan2", LIKE_TO_ANGLE, 2, 2, NULL, atan2},
-    {"sqrt", OF_ROOT, 1, 1, sqrt, NULL},
-    {"exp", OF_NUMBER, 1, 1, exp, NULL},
-    {"log", OF_NUMBER, 1, 1, log, NULL},
-    {"log10", OF_NUMBER, 1, 1, log10, NULL},
-    {"abs", OF_ANY, 1, 1, fabs, NULL},
-    {"min", OF_LIKE, 2, STRUT_ARGUMENT_MOST, NULL, lesser},
-    {"max", OF_LIKE, 2, STRUT_ARGUMENT_MOST, NULL, greater},
-    {"floor", OF_NUMBER, 1, 1, floor, NULL},
-    {"ceil", OF_NUMBER, 1, 1, ceil, NULL},
-    {"round", OF_NUMBER, 1, 1, round, NULL},
-    {"hypot", OF_LIKE, 2, 2, NULL, hypot},
+    {"sin", OF_ANGLE, 1, 1, sin, NULL, STRUT_OPERATION_SIN},
+    {"cos", OF_ANGLE, 1, 1, cos, NULL, STRUT_OPERATION_COS},
+    {"tan", OF_ANGLE, 1, 1, tan, NULL, STRUT_OPERATION_TAN},
+    {"asin", TO_ANGLE, 1, 1, asin, NULL, STRUT_OPERATION_ASIN},
+    {"acos", TO_ANGLE, 1, 1, acos, NULL, STRUT_OPERATION_ACOS},
+    {"atan", TO_ANGLE, 1, 1, atan, NULL, STRUT_OPERATION_ATAN},
+    {"atan2", LIKE_TO_ANGLE, 2, 2, NULL, atan2, STRUT_OPERATION_ATAN2},
+    {"sqrt", OF_ROOT, 1, 1, sqrt, NULL, STRUT_OPERATION_SQRT},
+    {"exp", OF_NUMBER, 1, 1, exp, NULL, STRUT_OPERATION_EXP},
+    {"log", OF_NUMBER, 1, 1, log, NULL, STRUT_OPERATION_LOG},
+    {"log10", OF_NUMBER, 1, 1, log10, NULL, STRUT_OPERATION_LOG10},
+    {"abs", OF_ANY, 1, 1, fabs, NULL, STRUT_OPERATION_ABS},
+    {"min", OF_LIKE, 2, STRUT_ARGUMENT_MOST, NULL, lesser, STRUT_OPERATION_MIN},
+    {"max", OF_LIKE, 2, STRUT_ARGUMENT_MOST, NULL, greater, STRUT_OPERATION_MAX},
+    {"floor", OF_NUMBER, 1, 1, floor, NULL, STRUT_OPERATION_FLOOR},
+    {"ceil", OF_NUMBER, 1, 1, ceil, NULL, STRUT_OPERATION_CEIL},
+    {"round", OF_NUMBER, 1, 1, round, NULL, STRUT_OPERATION_ROUND},
+    {"hypot", OF_LIKE, 2, 2, NULL, hypot, STRUT_OPERATION_HYPOT},
 };
 enum { FUNCTION_COUNT = sizeof functions / sizeof functions[0] };
 
@@ -97,7 +98,11 @@ static bool raise(strut_quantity *a, strut_quantity b, strut_reason *reason) {
   if (!dimensionless(b))
     return refuse(reason, "the exponent is %s, expected a number without unit",
                   strut_dimension_name(b.dimension, name, sizeof name));
-  if (!a->bare) a->dimension = combine(STRUT_DIM_NONE, a->dimension, (float)b.value);
+  if (b.varies && !dimensionless(*a))
+    return refuse(reason, "the exponent varies in time, so %s cannot be raised to it",
+                  strut_dimension_name(a->dimension, name, sizeof name));
+  if (!a->bare && !b.varies)
+    a->dimension = combine(STRUT_DIM_NONE, a->dimension, (float)b.value);
   if (!in_range(a->dimension)) return refuse(reason, "the power of a unit is too high");
   a->bare = a->bare && b.bare;
   a->value = pow(a->value, b.value);
@@ -106,6 +111,7 @@ static bool raise(strut_quantity *a, strut_quantity b, strut_reason *reason) {
 
 bool strut_quantity_operate(char operation, strut_quantity *a, strut_quantity b,
                             strut_reason *reason) {
+  bool varies = a->varies || b.varies;
   switch (operation) {
     case '+':
     case '-':
@@ -123,6 +129,8 @@ bool strut_quantity_operate(char operation, strut_quantity *a, strut_quantity b,
     default:
       if (!raise(a, b, reason)) return false;
   }
+  a->varies = varies;
+  if (varies) a->value = 1; /* not known */
   if (isnan(a->value)) return refuse(reason, "the result of '%c' is not a real number", operation);
   if (isinf(a->value)) return refuse(reason, "the result of '%c' is not finite", operation);
   return true;
@@ -136,6 +144,8 @@ const strut_function *strut_function_find(const char *name, size_t length) {
 }
 
 const char *strut_function_name(size_t i) { return i < FUNCTION_COUNT ? functions[i].name : NULL; }
+
+strut_operation strut_function_operation(const strut_function *f) { return f->operation; }
 
 static bool check_argument(const strut_function *f, strut_quantity argument, strut_reason *reason) {
   bool angle = strut_dimension_equal(argument.dimension, STRUT_DIM_ANGLE);
@@ -164,10 +174,12 @@ bool strut_function_apply(const strut_function *f, const strut_quantity *argumen
   char what[32];
   snprintf(what, sizeof what, "'%s'", f->name);
   if (!check_argument(f, q, reason)) return false;
+  bool varies = q.varies;
   if (f->one) q.value = f->one(q.value);
   for (size_t i = 1; i < count; i++) {
     if (!agree(&q, arguments[i], what, reason)) return false;
     q.value = f->two(q.value, arguments[i].value);
+    varies = varies || arguments[i].varies;
   }
   if (f->kind == OF_ROOT) q.dimension = combine(STRUT_DIM_NONE, q.dimension, 0.5f);
   if (f->kind == OF_ANGLE) {
@@ -178,6 +190,8 @@ bool strut_function_apply(const strut_function *f, const strut_quantity *argumen
     q.dimension = STRUT_DIM_ANGLE;
     q.bare = false;
   }
+  q.varies = varies;
+  if (varies) q.value = 1; /* not known */
   if (isnan(q.value)) return refuse(reason, "the result of '%s' is not a real number", f->name);
   if (isinf(q.value)) return refuse(reason, "the result of '%s' is not finite", f->name);
   *result = q;

@@ -150,12 +150,13 @@ void strut_read_configurations(strut_reader *reader) {
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     strut_configuration *configuration = &scene->configurations[scene->configuration_count];
     configuration->name = strut_keep_text(reader, key->text);
-    configuration->position =
-        strut_take(reader, &scene->arena, scene->node_count, sizeof *configuration->position);
+    if (!configuration->position)
+      configuration->position =
+          strut_take(reader, &scene->arena, scene->node_count, sizeof *configuration->position);
     if (!configuration->position) return;
     for (size_t i = 0; i < scene->node_count; i++)
       memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
-    size_t index = scene->configuration_count++;
+    size_t index = strut_next_thing(reader, &scene->configuration_count);
     strut_add_name(reader, &reader->configuration_names, key->text, index);
     bool fine = read_configuration(reader, key, configuration);
     reader->configuration_source[index] = (strut_source){key, key->next, !fine};
@@ -186,7 +187,9 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   p->used = true;
   const char *text = p->set ? p->set->text : p->value->text;
   int32_t index = strut_name_map_find(&reader->configuration_names, text);
-  strut_place place = !p->set ? p->value->place : p->set->place.line ? p->set->place : p->key->place;
+  strut_place place = !p->set              ? p->value->place
+                      : p->set->place.line ? p->set->place
+                                           : p->key->place;
   if (index < 0)
     strut_say(reader, place, "unknown configuration '%s' in parameter '%s'%s",
               strut_shown(reader, text), p->name,

@@ -32,7 +32,7 @@ static void read_actuators(strut_reader *reader) {
       strut_take(reader, &reader->scratch, map->count, sizeof *reader->actuator_source);
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = scene->actuator_count++;
+    size_t i = strut_next_thing(reader, &scene->actuator_count);
     scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
@@ -75,7 +75,7 @@ static void read_loads(strut_reader *reader) {
       strut_take(reader, &reader->scratch, map->count, sizeof *reader->load_source);
   if (!scene->loads || !reader->load_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = scene->load_count++;
+    size_t i = strut_next_thing(reader, &scene->load_count);
     scene->loads[i] =
         (strut_load){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
     strut_add_name(reader, &reader->load_names, scene->loads[i].name, i);

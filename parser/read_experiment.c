@@ -36,6 +36,9 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
   settle->acceleration =
       strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
   settle->limit = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_LIMIT, settle->limit);
+  settle->evaluations = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_EVALUATIONS, 0.0);
+  const strut_slot *perturb = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_PERTURB);
+  settle->perturb = perturb->state == STRUT_GIVEN && perturb->word == 1;
   const strut_slot *friction = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_FRICTION);
   settle->friction = friction->state == STRUT_GIVEN && friction->word == 1;
 }
@@ -233,9 +236,23 @@ static void read_run(strut_reader *reader) {
       e->measure_node = strut_read_reference(
           reader, node->value, "node", (strut_owner){"the measurement", NULL}, "node",
           &reader->node_names, strut_node_name, reader->scene->node_count);
+    strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
   }
   if (reader->measure.broken) reader->run.broken = true;
   if (reader->run.broken) e->duration = e->periods = 0.0;
+}
+
+/*
+ * Settling keeps the file's step, whatever step, method or accuracy the run is given later: it then
+ * ends in the same bits. Below zero: by the stability limit.
+ */
+static void choose_settling_step(strut_reader *reader) {
+  strut_settle *settle = &reader->scene->settle;
+  if (!settle->wanted) return;
+  const strut_slot *step = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_STEP);
+  double given = reader->scene->experiment.step;
+  if (step->state == STRUT_GIVEN) given = step->number[0];
+  settle->step = given > 0.0 ? given : -1.0;
 }
 
 static void read_integrator(strut_reader *reader) {
@@ -257,8 +274,10 @@ void strut_read_experiment(strut_reader *reader) {
     e->refine = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE, 0.0);
     e->refine_time = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE_TIME, 0.0);
     e->accuracy = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_ACCURACY, 0.0);
+    e->budget = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_BUDGET, e->budget);
     read_integrator(reader);
   }
+  choose_settling_step(reader);
   if (!strut_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
                      &reader->output))
     return;

@@ -43,8 +43,9 @@ static const char *name_of_rooms(const void *context, size_t i) {
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_room *rooms,
                       size_t count, strut_owner owner) {
   rooms_context context = {rooms, count};
-  const char *near =
-      strlen(key->text) > 64 ? NULL : strut_did_you_mean(key->text, name_of_rooms, &context);
+  const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
+                         ? NULL
+                         : strut_did_you_mean(key->text, name_of_rooms, &context);
   strut_say(reader, key->place, "unknown key '%s' in %s%s%s%s", strut_shown(reader, key->text),
             strut_owner_text(reader, owner), near ? "; did you mean '" : "", near ? near : "",
             near ? "'?" : "");
@@ -129,6 +130,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
   bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
   switch (type) {
     case STRUT_TYPE_WORDS:
+    case STRUT_TYPE_KEEP:
     case STRUT_TYPE_SIGNALS:
     case STRUT_TYPE_AXES:
     case STRUT_TYPE_TIMES:
@@ -152,6 +154,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_VERSION:
     case STRUT_TYPE_TEXT:
     case STRUT_TYPE_NAME:
+    case STRUT_TYPE_EXPRESSION:
       return scalar;
     default:
       return true; /* numbers and words say it themselves */

@@ -30,19 +30,18 @@ static void read_head(strut_reader *reader) {
     gravity->state = STRUT_BROKEN;
 }
 
+/* Stops behind the section in which the diagnostics became full. */
 static void read_sections(strut_reader *reader, const strut_setting *settings, size_t count) {
+  static void (*const sections[])(strut_reader *) = {
+      read_head,          strut_read_groups,  strut_read_nodes,     strut_read_members,
+      strut_read_signals, strut_read_drives,  strut_read_ground,    strut_read_configurations,
+      strut_read_search,  strut_read_initial, strut_read_experiment};
   strut_read_parameters(reader, settings, count);
-  read_head(reader);
-  strut_read_groups(reader);
-  strut_read_nodes(reader);
-  strut_read_members(reader);
-  strut_read_signals(reader);
-  strut_read_drives(reader);
-  strut_read_ground(reader);
-  strut_read_configurations(reader);
-  strut_read_search(reader);
-  strut_read_initial(reader);
-  strut_read_experiment(reader);
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+    if (strut_diagnostics_full(reader->diagnostics)) return;
+    sections[i](reader);
+  }
+  if (strut_diagnostics_full(reader->diagnostics)) return;
   strut_keep_signals(reader);
   strut_keep_parameters(reader);
   strut_report_unused_groups(reader);
@@ -92,10 +91,11 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
     reader->purpose = speaks_of_a_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
-  if (reader->out_of_memory) return;
+  if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;
   if (strut_scene_check(reader->scene, reader->purpose, &findings) == STRUT_NO_MEMORY)
     reader->out_of_memory = true;
   strut_place_findings(reader, &findings);
+  reader->diagnostics->unstored += findings.unstored;
   strut_findings_free(&findings);
 }
 

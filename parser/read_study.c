@@ -75,9 +75,79 @@ static void check_overrides(strut_study_reader *r, size_t overrides) {
   }
 }
 
+/* The quantities that the model of a variant measures, or NULL. */
+static const strut_tree *quantities_of(strut_scene_source *source) {
+  static const char *const path[] = {"run", "measure", "quantities"};
+  const strut_tree *tree = strut_scene_source_document(source)->root;
+  for (size_t i = 0; i < sizeof path / sizeof path[0] && tree; i++)
+    tree = tree->kind == STRUT_TREE_MAP ? strut_tree_find(tree, path[i], NULL) : NULL;
+  return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
+}
+
+/* What `keep` may name: the words of the table of keys, then the model's quantities. */
+typedef struct kept_names {
+  char word[32][24];
+  size_t word_count;
+  const strut_tree *quantities;
+} kept_names;
+
+static const char *kept_name(const void *context, size_t i) {
+  const kept_names *names = context;
+  if (i < names->word_count) return names->word[i];
+  i -= names->word_count;
+  const strut_tree *key = names->quantities ? names->quantities->first : NULL;
+  while (key && i-- > 0) key = key->next->next;
+  return key ? key->text : NULL;
+}
+
+static void refuse_kept(strut_study_reader *r, const strut_tree *item, const char *words,
+                        const strut_tree *quantities) {
+  char expected[500];
+  kept_names names = {.quantities = quantities};
+  while (names.word_count < 32 && strut_word_at(words, (int)names.word_count,
+                                                names.word[names.word_count], sizeof names.word[0]))
+    names.word_count++;
+  strut_words_text(words, expected, sizeof expected);
+  if (!strut_read_scalar(r->reader, item, "keep", study_owner, expected)) return;
+  size_t count = names.word_count + (quantities ? quantities->count : 0);
+  strut_say(r->reader, item->place,
+            "expected %s, or a quantity that the model measures, for 'keep' of the study, found "
+            "'%s'%s",
+            expected, strut_shown(r->reader, item->text),
+            strut_hint(r->reader, item->text, kept_name, &names, count));
+}
+
+static bool is_twice(const strut_tree *list, const strut_tree *item) {
+  for (const strut_tree *other = list->first; other != item; other = other->next)
+    if (other->kind == STRUT_TREE_SCALAR && strcmp(other->text, item->text) == 0) return true;
+  return false;
+}
+
+/* Words, and names of what the model measures. */
+static void read_keep(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  const char *words = strut_key_at(STRUT_KEY_STUDY_KEEP)->words;
+  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *quantities = r->file->source_count ? quantities_of(r->file->sources[0]) : NULL;
+  study->quantities =
+      strut_take(r->reader, &r->file->arena, slot->value->count + 1, sizeof *study->quantities);
+  if (!study->quantities) return;
+  for (const strut_tree *item = slot->value->first; item; item = item->next) {
+    bool scalar = item->kind == STRUT_TREE_SCALAR;
+    int word = scalar ? strut_word_find(words, item->text) : -1;
+    if (scalar && is_twice(slot->value, item))
+      strut_say(r->reader, item->place, "'%s' stands twice in 'keep' of the study", item->text);
+    else if (word >= 0)
+      study->keep |= 1u << word;
+    else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
+      study->quantities[study->quantity_count++] = item->text;
+    else
+      refuse_kept(r, item, words, quantities);
+  }
+}
+
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
-  const strut_slot *keep = strut_slot_of(top, STRUT_KEY_STUDY_KEEP);
   const strut_slot *files = strut_slot_of(top, STRUT_KEY_STUDY_TRAJECTORIES);
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   strut_fields fields;
@@ -85,7 +155,6 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
   const char *description = strut_study_text(r, top, STRUT_KEY_STUDY_DESCRIPTION);
   study->name = name ? name : "";
   study->description = description ? description : "";
-  if (keep->state == STRUT_GIVEN) study->keep = (unsigned)keep->word;
   study->trajectories = files->state == STRUT_GIVEN && files->word == 1;
   if (check->state == STRUT_GIVEN) {
     strut_read_fields(r->reader, STRUT_ROOM_CHECK, check->value, (strut_owner){"the check", NULL},
@@ -146,6 +215,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   strut_require(reader, &top, study_owner, strut_root_place(reader));
   read_rest(r, &top);
   status = strut_study_open_sources(r, &top, error);
+  read_keep(r, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
   if (status == STRUT_OK) read_points(r, &top, overrides, count);
   if (reader->out_of_memory) return STRUT_NO_MEMORY;
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;

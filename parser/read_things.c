@@ -54,7 +54,7 @@ void strut_read_nodes(strut_reader *reader) {
       strut_take(reader, &reader->scratch, map->count, sizeof *reader->node_source);
   if (!scene->nodes || !reader->node_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = scene->node_count++;
+    size_t i = strut_next_thing(reader, &scene->node_count);
     scene->nodes[i] = strut_node_default();
     scene->nodes[i].name = strut_keep_text(reader, key->text);
     strut_add_name(reader, &reader->node_names, scene->nodes[i].name, i);
@@ -121,7 +121,7 @@ void strut_read_members(strut_reader *reader) {
       strut_take(reader, &reader->scratch, map->count, sizeof *reader->member_source);
   if (!scene->members || !reader->member_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = scene->member_count++;
+    size_t i = strut_next_thing(reader, &scene->member_count);
     scene->members[i] = strut_member_default();
     scene->members[i].name = strut_keep_text(reader, key->text);
     strut_add_name(reader, &reader->member_names, scene->members[i].name, i);

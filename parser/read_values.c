@@ -8,13 +8,13 @@
 #include "parser/text.h"
 
 /* Longest text from the file in a message, and most names compared for suggestions. */
-enum { SHOWN = 60, MOST_SUGGESTIONS = 3000000, LONGEST_NAME = 64 };
+enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 64 };
 
 void strut_say(strut_reader *reader, strut_place place, const char *format, ...) {
-  char text[1200];
+  char text[1200] = "";
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
+  if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   reader->failed = true;
   strut_diagnose(reader->diagnostics, place, "%s", text);
@@ -27,10 +27,16 @@ void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t 
 }
 
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index) {
+  if (strut_diagnostics_full(reader->diagnostics)) return;
   if (strut_name_map_add(map, name, (int32_t)index) == -2) reader->out_of_memory = true;
 }
 
+size_t strut_next_thing(const strut_reader *reader, size_t *count) {
+  return strut_diagnostics_full(reader->diagnostics) ? *count : (*count)++;
+}
+
 const char *strut_keep_text(strut_reader *reader, const char *text) {
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
   char *copy = strut_arena_text(&reader->scene->arena, text, strlen(text));
   if (copy) return copy;
   reader->out_of_memory = true;
@@ -46,6 +52,7 @@ static const char *kept(strut_reader *reader, const char *text) {
 
 const char *strut_shown(strut_reader *reader, const char *text) {
   size_t length = strlen(text), end = length;
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
   if (length > SHOWN) {
     end = SHOWN;
     while (end && ((unsigned char)text[end] & 0xc0) == 0x80) end--;
@@ -58,14 +65,18 @@ const char *strut_shown(strut_reader *reader, const char *text) {
 }
 
 const char *strut_owner_text(strut_reader *reader, strut_owner owner) {
-  if (!owner.name) return owner.kind;
+  if (!owner.name || strut_diagnostics_full(reader->diagnostics)) return owner.kind;
   return kept(reader, strut_arena_format(&reader->scratch, "%s '%s'", owner.kind,
                                          strut_shown(reader, owner.name)));
 }
 
+bool strut_hints_left(const strut_reader *reader) {
+  return reader->suggestions < MOST_SUGGESTIONS && !strut_diagnostics_full(reader->diagnostics);
+}
+
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
                        const void *context, size_t count) {
-  if (strlen(word) > LONGEST_NAME || reader->suggestions + count > MOST_SUGGESTIONS) return "";
+  if (strlen(word) > LONGEST_NAME || !strut_hints_left(reader)) return "";
   reader->suggestions += count;
   const char *near = strut_did_you_mean(word, names, context);
   if (!near) return "";
@@ -80,6 +91,7 @@ strut_place strut_root_place(const strut_reader *reader) {
 const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
                          size_t first, size_t depth) {
   const char *text = "";
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
   for (size_t i = first; i < depth; i++) {
     bool shown = depth - first <= 8 || i - first < 4 || depth - i <= 3;
     if (shown)
@@ -100,6 +112,7 @@ bool strut_is_null(const strut_tree *value) {
 
 const char *strut_found(strut_reader *reader, const strut_tree *value) {
   strut_arena *arena = &reader->scratch;
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
   if (value->kind == STRUT_TREE_MAP) return "a mapping";
   if (value->kind == STRUT_TREE_LIST && !value->count) return "an empty list";
   if (value->kind == STRUT_TREE_LIST)
@@ -131,6 +144,11 @@ static strut_place place_within(const strut_tree *value, const strut_expression_
 
 bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
                          strut_owner owner, strut_quantity *quantity) {
+  return strut_read_program(reader, value, key, owner, NULL, quantity);
+}
+
+bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, strut_compiler *compiler, strut_quantity *quantity) {
   strut_expression_error error;
   error.message[0] = '\0';
   strut_scope scope = strut_parameter_scope(reader);
@@ -138,9 +156,10 @@ bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const ch
   const char *set_before = reader->asking_set;
   reader->asking = value;
   reader->asking_set = NULL;
-  bool fine = strut_expression_evaluate(value->text, &scope, quantity, &error);
+  bool fine = strut_expression_compile(value->text, &scope, compiler, quantity, &error);
   reader->asking = asked_before;
   reader->asking_set = set_before;
+  if (!fine && scope.names) reader->suggestions += reader->parameter_count;
   if (!fine && error.message[0])
     strut_say(reader, place_within(value, &error), "in '%s' of %s: %s", key,
               strut_owner_text(reader, owner), error.message);

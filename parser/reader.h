@@ -131,7 +131,10 @@ typedef struct strut_reader {
 
 /* read_values.c: messages and single values */
 
-/** Reports at a place. */
+/**
+ * Reports at a place. Once the diagnostics are full a message is only counted, and the functions below
+ * that make its parts return "".
+ */
 void strut_say(strut_reader *reader, strut_place place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /** "member 'm1'", for use within a message; lives in scratch. */
@@ -141,6 +144,8 @@ const char *strut_shown(strut_reader *reader, const char *text);
 /** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
                        const void *context, size_t count);
+/** True while suggestions may still be looked for: they are bounded for the file as a whole. */
+bool strut_hints_left(const strut_reader *reader);
 /** "a list", "a mapping", "nothing", "'text'": what a value is instead; lives in scratch. */
 const char *strut_found(strut_reader *reader, const strut_tree *value);
 /** The beginning of the file, for what is about all of it. */
@@ -156,6 +161,9 @@ bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char
 /** A number of any dimension. */
 bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
                          strut_owner owner, strut_quantity *quantity);
+/** The same of an expression of columns, whose program the compiler makes. */
+bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);
 /** A number of the given dimension in SI. */
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, strut_dimension dimension, strut_key_range range,
@@ -173,6 +181,12 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
 /** count * size zeroed bytes of an arena; remembers when memory is out. */
 void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t size);
+
+/**
+ * The index of the next thing of an array. Once the diagnostics are full, things are read for their
+ * errors only, all into the same place behind the last one that is kept, and without names.
+ */
+size_t strut_next_thing(const strut_reader *reader, size_t *count);
 
 /** A copy in the scene's own memory; "" where that is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
@@ -240,6 +254,8 @@ void strut_read_configurations(strut_reader *reader);
 void strut_read_search(strut_reader *reader);
 void strut_read_initial(strut_reader *reader);
 void strut_read_experiment(strut_reader *reader);
+/** `quantities` of the measurement: read_quantities.c. */
+void strut_read_quantities(strut_reader *reader, const strut_slot *slot);
 
 /**
  * A signal or the name of one. `expected`: what its values must measure, or NULL for anything.

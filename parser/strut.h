@@ -50,6 +50,7 @@ extern "C" {
 #include "engine/run/simulate.h"
 #include "engine/run/summary.h"
 #include "engine/scene/check.h"
+#include "engine/scene/quantity.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/signal.h"
 #include "engine/statics/equilibria/equilibria.h"

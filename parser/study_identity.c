@@ -63,6 +63,7 @@ char *strut_study_identity(const strut_study_file *file) {
   }
   for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
   put_number(&w, (double)study->keep);
+  for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
   put_number(&w, study->trajectories);
   put_number(&w, study->half_step);
   put_number(&w, study->check_accuracy);

@@ -167,6 +167,39 @@ const char *strut_dimension_name(strut_dimension dimension, char *buffer, size_t
   return buffer;
 }
 
+/* Appends " kg^2", or " * (1 kg)^0.5" for a power that units cannot have. */
+static size_t append_unit(char *buffer, size_t size, size_t used, const char *unit, float power) {
+  if (same(power, 0) || used >= size) return used;
+  bool whole = same(power, roundf(power)) && fabsf(power) <= 12;
+  if (whole) return append_power(buffer, size, used, unit, power);
+  int added = snprintf(buffer + used, size - used, " * (1 %s)^(%.7g)", unit, (double)power);
+  return added < 0 ? used : used + (size_t)added;
+}
+
+const char *strut_dimension_suffix(strut_dimension dimension, char *buffer, size_t size) {
+  const struct dimension_words *known = find_words(dimension);
+  if (!size) return buffer;
+  buffer[0] = '\0';
+  if (strut_dimension_equal(dimension, STRUT_DIM_NONE)) return buffer;
+  if (known) {
+    snprintf(buffer, size, "%s", known->unit);
+    return buffer;
+  }
+  const struct {
+    const char *unit;
+    float power;
+  } parts[] = {
+      {"kg", dimension.kg}, {"m", dimension.m}, {"s", dimension.s}, {"rad", dimension.angle}};
+  size_t used = 0; /* units first, so that they stand behind the number */
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+      bool whole = same(parts[i].power, roundf(parts[i].power)) && fabsf(parts[i].power) <= 12;
+      if (whole == (pass == 0))
+        used = append_unit(buffer, size, used, parts[i].unit, parts[i].power);
+    }
+  return buffer;
+}
+
 const char *strut_dimension_example(strut_dimension dimension) {
   const struct dimension_words *known = find_words(dimension);
   return known ? known->example : NULL;

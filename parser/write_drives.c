@@ -192,7 +192,7 @@ static void put_run(strut_writer *writer) {
     strut_put_key(writer, &first, "of");
     strut_put_name(writer, name ? name : signal_name(writer, e->period_signal));
   }
-  if (e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted) {
+  if (e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted || e->quantity_count) {
     strut_put_key(writer, &first, "measure");
     strut_put(writer, "{");
     strut_put_value(writer, &inner, "last", e->measure_last);
@@ -201,6 +201,7 @@ static void put_run(strut_writer *writer) {
       strut_put_key(writer, &inner, "node");
       strut_put_name(writer, scene->nodes[e->measure_node].name);
     }
+    strut_put_quantities(writer, &inner);
     strut_put(writer, "}");
   }
   strut_put(writer, "}\n");
@@ -219,6 +220,7 @@ void strut_put_experiment(strut_writer *writer) {
   strut_put_value(writer, &first, "refine", e->refine);
   strut_put_value(writer, &first, "refine_time", e->refine_time);
   strut_put_value(writer, &first, "accuracy", e->accuracy);
+  if (e->budget != STRUT_USUAL_BUDGET) strut_put_value(writer, &first, "budget", e->budget);
   strut_put(writer, "}\n");
   put_run(writer);
   strut_put(writer, "output: {");

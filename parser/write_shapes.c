@@ -112,6 +112,11 @@ static void put_settle(strut_writer *writer, const strut_settle *settle) {
   strut_put_value(writer, &first, "speed", settle->speed);
   strut_put_value(writer, &first, "acceleration", settle->acceleration);
   strut_put_value(writer, &first, "limit", settle->limit);
+  if (settle->evaluations > 0.0)
+    strut_put_value(writer, &first, "evaluations", settle->evaluations);
+  if (settle->step != 0.0 && settle->step != writer->scene->experiment.step)
+    strut_put_value(writer, &first, "step", fmax(0.0, settle->step));
+  if (settle->perturb) strut_put(writer, ", perturb: yes");
   if (settle->friction) strut_put(writer, ", friction: kept");
   strut_put(writer, "}\n");
 }

@@ -38,6 +38,8 @@ void strut_put_value(strut_writer *writer, bool *first, const char *key, double 
 /** write_drives.c: signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
+/** write_quantities.c: `quantities` of the measurement, where there are any. */
+void strut_put_quantities(strut_writer *writer, bool *first);
 /** write_shapes.c: configurations, the search for equilibria, the initial state. */
 void strut_put_shapes(strut_writer *writer);
 

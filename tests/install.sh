@@ -29,6 +29,36 @@ for package in $packages; do
 done
 [ -n "$missing" ] || exit 0
 echo "installing$missing"
+
+# Nothing that these packages bring shall run on this machine: no service of theirs is started now, nor
+# at the next boot (slurm-wlm, munge and sysstat would be). What ran or was enabled before stays so.
+# DESTDIR is another system's root, for the test of this script.
+root=${DESTDIR:-}
+policy=$root/usr/sbin/policy-rc.d
+enabled() { # every link by which something is started at boot
+  find "$root"/etc/systemd/system "$root"/etc/rc[2-5S].d -type l \
+    \( -path '*.wants/*' -o -path '*.requires/*' -o -path '*/rc?.d/S*' \) 2>/dev/null | sort
+}
+before=$(mktemp)
+enabled >"$before"
+made_policy=
+finish() {
+  [ -z "$made_policy" ] || $as_root rm -f "$policy"
+  enabled | comm -13 "$before" - | while read -r link; do
+    case $link in
+      */rc?.d/S*) $as_root mv "$link" "$(dirname "$link")/K01${link##*/S[0-9][0-9]}" ;; # off for good
+      *) $as_root rm -f "$link" ;;
+    esac
+  done
+  rm -f "$before"
+}
+trap finish EXIT
+trap 'exit 1' HUP INT TERM
+if [ ! -e "$policy" ]; then
+  made_policy=yes
+  printf '#!/bin/sh\nexit 101\n' | $as_root tee "$policy" >/dev/null # "do not start it"
+  $as_root chmod 755 "$policy"
+fi
 apt update
 # shellcheck disable=SC2086
 apt install -y --no-install-recommends $missing

@@ -42,7 +42,7 @@ static int grow(strut_name_map *map) {
 }
 
 int32_t strut_name_map_add(strut_name_map *map, const char *name, int32_t index) {
-  if (2 * (map->count + 1) > map->slots && !grow(map)) return -2;
+  if (5 * (map->count + 1) > 4 * map->slots && !grow(map)) return -2;
   uint32_t hash = hash_of(name);
   struct strut_name_slot *slot = slot_for(map, name, hash);
   if (slot->name) return slot->index;

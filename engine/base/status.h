@@ -20,6 +20,7 @@
   X(STRUT_STEP_TOO_LARGE, 3, "the step is above the stability limit")                             \
   X(STRUT_NOT_SETTLED, 3, "the structure did not come to rest")                                   \
   X(STRUT_SINGULAR, 3, "a matrix is singular")                                                    \
+  X(STRUT_WORK_LIMIT, 3, "the work allowed was used up")                                          \
   X(STRUT_FILE_TROUBLE, 4, "a file could not be read or written")                                 \
   X(STRUT_NO_MEMORY, 4, "out of memory")                                                          \
   X(STRUT_INTERRUPTED, 130, "interrupted")

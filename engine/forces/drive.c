@@ -12,7 +12,7 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
-    strut_signal_evaluate(signals, d->signal[i], t, &value, &rate);
+    strut_signal_evaluate(signals, d->signal[i], t + state->time_offset, &value, &rate);
     /* the first actuator of a member starts from its own rest length, further ones add */
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
@@ -24,7 +24,8 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
   const strut_load_table *loads = &model->loads;
   for (int32_t i = 0; i < loads->count; i++) {
     double factor, rate;
-    strut_signal_evaluate(model->scene->signals, loads->signal[i], t, &factor, &rate);
+    strut_signal_evaluate(model->scene->signals, loads->signal[i], t + state->time_offset, &factor,
+                          &rate);
     int32_t at = 2 * loads->node[i];
     double px = factor * loads->x[i], py = factor * loads->y[i];
     state->force[at] += px;
@@ -34,4 +35,14 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
     state->power[STRUT_POWER_LOAD] += power;
     state->power[STRUT_POWER_MOVED] += fabs(power);
   }
+}
+
+double strut_drive_next_break(const strut_model *model, double t) {
+  const strut_signal *signals = model->scene->signals;
+  double first = (double)INFINITY;
+  for (int32_t i = 0; i < model->drives.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
+  for (int32_t i = 0; i < model->loads.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
+  return first;
 }

@@ -17,6 +17,16 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
+void strut_forces_observe(const strut_model *model, strut_state *state, double t) {
+  int64_t evaluations = state->evaluations;
+  strut_forces_evaluate(model, state, t, state->q, state->v);
+  state->evaluations = evaluations; /* looking on is not part of the run's cost */
+  for (int32_t i = 0; i < model->contacts.count && state->held_normal; i++) {
+    state->normal[i] = state->held_normal[i];
+    state->friction[i] = state->held_friction[i];
+  }
+}
+
 void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,
                                const double *restrict q, const double *restrict v,
                                double *restrict a) {

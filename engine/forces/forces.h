@@ -22,6 +22,12 @@ STRUT_API void strut_forces_acceleration(const strut_model *model, strut_state *
 STRUT_API void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
                                      const double *restrict q, const double *restrict v);
 
+/**
+ * The forces at the state itself at time t [s], for recording and measuring: contact forces are those
+ * that a method with events holds, and the evaluation is not counted.
+ */
+STRUT_API void strut_forces_observe(const strut_model *model, strut_state *state, double t);
+
 /* Terms that change with time alone; those of members and ground are in *_kernel.h. */
 
 /** Driven rest lengths and their rates (6): state->rest, rest_rate. */
@@ -30,6 +36,15 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t);
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);
 
+/** The first time after t [s] at which a drive, a load or its rate jumps; INFINITY if none does. */
+double strut_drive_next_break(const strut_model *model, double t);
+
+/** One member at the state: length [m], its rate [m/s], force [N] (tension positive). */
+typedef struct strut_member_values {
+  double length, rate, force;
+} strut_member_values;
+strut_member_values strut_member_measure(const strut_model *model, const strut_state *state,
+                                         int32_t member);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

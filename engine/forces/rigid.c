@@ -285,6 +285,12 @@ bool strut_rigid_project(const strut_model *model, strut_state *state, double *q
   return true;
 }
 
+double strut_rigid_tension(const strut_rigid *rigid, int32_t member) {
+  for (int32_t r = 0; r < rigid->bars; r++)
+    if (rigid->member[r] == member) return rigid->tension[r];
+  return 0.0;
+}
+
 void strut_rigid_add_tensions(const strut_rigid *rigid, double *force) {
   for (int32_t r = 0; r < rigid->bars; r++) force[rigid->member[r]] += rigid->tension[r];
 }

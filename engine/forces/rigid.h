@@ -63,6 +63,8 @@ void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *a,
 bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *v);
 /** Adds the bars' tensions to `force`, (members). */
 void strut_rigid_add_tensions(const strut_rigid *rigid, double *force);
+/** That of one member [N]; 0 where it is no rigid bar. */
+double strut_rigid_tension(const strut_rigid *rigid, int32_t member);
 
 /* rigid_rows.c: the linear algebra. */
 

@@ -116,6 +116,58 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
   return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
 }
 
+/* Forces of stages, which are of lower order, may be off by this part without a word. */
+static const double STAGE_ERROR = 0.01;
+
+/*
+ * Does contact i, as a stage has it, contradict its mode by more than a stage's own error? Where the ends
+ * of the step do not, what began within it would have ended within it unseen.
+ */
+static bool contradicts_at_stage(const strut_model *model, const strut_located *l, int32_t i) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_touch *o = &l->next->touch[i];
+  double most = e->mu_static * o->normal, part = STAGE_ERROR;
+  if (!(o->normal > 0.0)) return false;
+  switch ((strut_contact_mode)l->mode[i]) {
+    case STRUT_MODE_STICK:
+      return fabs(o->friction) > most * (1.0 + part);
+    case STRUT_MODE_BAND:
+      return e->mu_static != e->mu_kinetic && fabs(o->applied) > most * (1.0 + part);
+    case STRUT_MODE_PUSH:
+      return fabs(o->applied) < most * (1.0 - part);
+    case STRUT_MODE_CREEP:
+      return l->side[i] * o->friction < -e->mu_kinetic * o->normal * (1.0 + part);
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_SLIDE:
+    case STRUT_MODE_SLIP: /* by earliest_dip */
+    case STRUT_MODE_YIELD:
+      break;
+  }
+  return false;
+}
+
+static bool any_contradicts_at_stage(const strut_model *model, const strut_located *l) {
+  for (int32_t k = 0; k < l->closed_count; k++)
+    if (contradicts_at_stage(model, l, l->closed[k])) return true;
+  return false;
+}
+
+/* Earliest point, within the step, where a cable that pulls at both ends is slack, or the other way; 0: none. */
+static double earliest_slack_dip(const strut_model *model, strut_state *state,
+                                 const strut_located *l, double h) {
+  double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
+  strut_event_measure(model, state, l, l->next);
+  for (int32_t k = 0; k < l->cable_count; k++) {
+    double side = l->pulling[k] ? 1.0 : -1.0;
+    double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
+    if (!(from > 0.0 && to > 0.0)) continue;
+    double at = dip(from, side * h * l->now->stretch_rate[k], to,
+                    side * h * l->next->stretch_rate[k], faint);
+    if (at > 0.0 && (first == 0.0 || at < first)) first = at;
+  }
+  return first;
+}
+
 /* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
 static double earliest_dip(const strut_model *model, const strut_located *l, double h) {
   const strut_contact_table *c = &model->contacts;
@@ -143,6 +195,9 @@ static double earliest_dip(const strut_model *model, const strut_located *l, dou
   return first;
 }
 
+/* Steps are not split for a stage's sake below this part of the longest. */
+static const double LEAST_SPLIT = 1e-4;
+
 /* The error that makes the next step end there. */
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
@@ -153,6 +208,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
   v[0] = l->now->v, a[0] = l->now->a;
   v[PAIR - 1] = l->next->v, a[PAIR - 1] = l->next->a;
   int32_t n = model->length;
+  double broken = 0.0; /* where a stage contradicts a contact's mode */
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
     l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
   for (int k = 1; k < PAIR; k++) {
@@ -160,13 +216,19 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
     stage_of(n, h, l->now, v, a, k, q);
     if (k == PAIR - 1) break;
     located_acceleration(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
+    if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
       l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
   }
   located_finish(model, state, l, t + h, l->next, ledger);
   l->error = error_of(model, l, h, v, a);
-  if (!(l->error <= 1.0) || model->contacts.count == 0) return;
-  double part = earliest_dip(model, l, h);
+  if (!(l->error <= 1.0)) return;
+  double part = model->contacts.count ? earliest_dip(model, l, h) : 0.0;
+  double slack = l->cable_count ? earliest_slack_dip(model, state, l, h) : 0.0;
+  if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
+  if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
+      strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)
+    part = broken;
   if (part > 0.0) l->error = error_to_reach(part);
 }
 

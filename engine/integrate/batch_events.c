@@ -49,7 +49,7 @@ bool strut_batch_events_create(strut_batch *b) {
 
 /* Can the lane go in step with others as its modes are now? */
 static bool can_join(const strut_located *l) {
-  return l->at_once == 0 && (!l->closed_count || l->apart);
+  return l->at_once == 0 && !(l->next_break < HUGE_VAL) && (!l->closed_count || l->apart);
 }
 
 static void join(strut_batch *b, int32_t lane) {

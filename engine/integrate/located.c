@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/energy.h"
 #include "engine/integrate/located_kernel.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
@@ -21,7 +22,9 @@ static bool make_end(const strut_model *model, strut_arena *arena, strut_step_en
   bool slack = model->plan & STRUT_TERM_SLACK;
   end->tension = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
   end->stretch = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
-  return end->q && end->v && end->a && end->structure && end->touch && end->tension && end->stretch;
+  end->stretch_rate = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  return end->q && end->v && end->a && end->structure && end->touch && end->tension &&
+         end->stretch && end->stretch_rate;
 }
 
 static bool make_arrays(const strut_model *model, strut_state *state, strut_located *l) {
@@ -82,6 +85,16 @@ void *strut_located_create(const strut_model *model, strut_state *state,
   return l;
 }
 
+/* Contact forces as they are now, for recording and measuring. */
+static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
+  double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    bool open = l->mode[i] == STRUT_MODE_OPEN;
+    normal[i] = open ? 0.0 : l->now->touch[i].normal;
+    friction[i] = open ? 0.0 : l->now->touch[i].friction;
+  }
+}
+
 void strut_located_restart(const strut_model *model, strut_state *state, void *workspace,
                            double dt) {
   strut_located *l = workspace;
@@ -89,12 +102,35 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
   memcpy(l->next->q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
   memcpy(l->next->v, state->v, (size_t)model->length * sizeof(double));
   l->h = 0.0;
+  l->longest = dt;
   l->fastest = 0.0;
   l->done = 0.0;
   l->at_once = l->switches = 0;
+  l->pushed = -1;
   l->tried = false;
+  l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  if (l->next_break < HUGE_VAL) t += located_moment(t, dt);
   strut_modes_start(model, state, l, t);
+  show_contacts(model, state, l);
   l->started = true;
+}
+
+/*
+ * Where a drive or load jumps the right-hand side does: modes and accelerations are made anew. What
+ * the jump of a rest length does to the elastic energy is work of the drive.
+ */
+static void pass_break(const strut_model *model, strut_state *state, strut_located *l, double dt) {
+  double t = (double)state->step * dt + l->done;
+  if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
+  double moment = located_moment(t, dt), before = 0.0;
+  if (state->ledger) before = strut_energy_stored(model, state, t - moment).elastic;
+  l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  if (state->ledger) {
+    double gained = strut_energy_stored(model, state, t + moment).elastic - before;
+    state->work[STRUT_POWER_DRIVE] += gained;
+    state->work[STRUT_POWER_MOVED] += fabs(gained);
+  }
+  strut_modes_after_jump(model, state, l, t + moment);
 }
 
 /* Where a value passes 0: between low and high, and the latest two points of the search. */
@@ -124,6 +160,16 @@ static bool stagnant(const search *s) {
   return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
 }
 
+/* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
+static const double BALANCED = 1e-5;
+
+/* Forces still balance at the edge of the band, where speeds are held apart from it by TIED: there is no root
+   here, though the value does not change. */
+static bool tied_at_edge(const strut_model *model, const strut_event *event, double value) {
+  return event->kind == STRUT_EVENT_LEAVE &&
+         value > 0.5 * TIED * located_edge(&model->contacts.entry[event->index]);
+}
+
 /*
  * Takes the step again up to the event. Returns the length taken; l->next is its end. Exact steppers
  * go on until the root is known to 1e-13 of the step, or to rounding.
@@ -150,8 +196,11 @@ static double retake(const strut_model *model, strut_state *state, strut_located
     double rate = 0.0;
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
-    if (s.value == 0.0 || (k > 0 && stagnant(&s))) break;
+    bool tied = tied_at_edge(model, event, s.value);
+    if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
+    if (tied && s.high - s.x <= BALANCED) break;
     double x = next_point(&s, rate);
+    if (tied) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
   }
@@ -221,12 +270,13 @@ static double step(const strut_model *model, strut_state *state, strut_located *
 }
 
 /*
- * Error control may take long within one step of the grid: when interrupted it goes back to the
- * begin of it. The last two stages hold that.
+ * Error control may take long within one step of the grid: when interrupted, or out of work allowed, it
+ * goes back to the start of it. The last two stages hold that.
  */
 static bool given_up(const strut_model *model, strut_state *state, strut_located *l) {
   double **kept = l->stage + l->stepper->stages - 2;
-  bool wanted = state->interrupt && *state->interrupt;
+  bool spent = state->most_evaluations > 0 && state->evaluations > state->most_evaluations;
+  bool wanted = spent || (state->interrupt && *state->interrupt);
   size_t bytes = (size_t)model->length * sizeof(double);
   if (l->done == 0.0) {
     memcpy(kept[0], state->q, bytes);
@@ -237,23 +287,15 @@ static bool given_up(const strut_model *model, strut_state *state, strut_located
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, l->work, sizeof l->work);
   }
-  if (wanted) state->trouble = STRUT_TROUBLE_INTERRUPT;
+  if (wanted) state->trouble = spent ? STRUT_TROUBLE_WORK : STRUT_TROUBLE_INTERRUPT;
   return wanted;
-}
-
-static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
-  double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
-  for (int32_t i = 0; i < model->contacts.count; i++) {
-    bool open = l->mode[i] == STRUT_MODE_OPEN;
-    normal[i] = open ? 0.0 : l->now->touch[i].normal;
-    friction[i] = open ? 0.0 : l->now->touch[i].friction;
-  }
 }
 
 void strut_located_step(const strut_model *model, strut_state *state, void *workspace, double dt) {
   strut_located *l = workspace;
   double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
-  located_go_on(state, l, step(model, state, l, t, h, dt), dt);
+  located_go_on(state, l, step(model, state, l, located_time(l, t, dt), h, dt), dt);
+  if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
 }
 
 void strut_located_advance(const strut_model *model, strut_state *state, void *workspace, double dt,

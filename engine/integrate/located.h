@@ -20,6 +20,9 @@ typedef enum strut_contact_mode {
   STRUT_MODE_STICK, /* Coulomb: u = 0, held by a multiplier within mu_0 N */
   STRUT_MODE_BAND,  /* Karnopp: |u| < delta, friction balances the other forces, up to mu N */
   STRUT_MODE_PUSH,  /* Karnopp with mu_0 > mu: |u| < delta, pushed towards s by more than mu_0 N */
+  STRUT_MODE_YIELD, /* Karnopp with mu_0 > mu: |u| < delta, at the threshold mu_0 N, where holding lets
+                       the other forces grow and pushing relieves them (Filippov's sliding mode):
+                       friction between both, continuous over a thin layer of F_res */
   STRUT_MODE_CREEP  /* Karnopp: u = s delta, held by a multiplier: inside the band inertia pushes
                        the node out, outside friction pushes it back (Filippov's sliding mode) */
 } strut_contact_mode;
@@ -45,7 +48,7 @@ typedef struct strut_touch {
 typedef struct strut_step_end {
   double *q, *v, *a;
   strut_touch *touch; /* (contacts) of those that are closed; of open ones the gap alone */
-  double *tension, *stretch; /* (cables) not clamped [N], [m] */
+  double *tension, *stretch, *stretch_rate; /* (cables) not clamped [N], [m], [m/s] */
   double power[STRUT_POWER_ROOM]; /* [W]; only with the ledger */
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
   double *structure, structure_power[STRUT_POWER_ROOM];
@@ -110,12 +113,17 @@ struct strut_located {
   double *scatter;          /* (length) scratch, zero between uses */
   double refine, refine_time, refine_memory; /* [1], [s], [1] */
   double *settling_time;    /* (contacts) relaxation time of a closed contact [s] */
+  double longest;           /* adaptive: the longest step, a step of the grid [s] */
   double tolerance, h, error, fastest; /* adaptive: relative, [s], [1], [m/s] */
   int passes;               /* sweeps over normal and tangent where they are coupled by M */
+  double next_break;        /* when a drive or load jumps next, with the state's time_offset
+                               [s]; INFINITY: never */
   bool fresh;               /* now.structure holds for now */
   bool started;
   double done;              /* of the grid step under way [s] */
   int at_once;              /* switches since the latest step */
+  int32_t pushed;           /* contact that passed its threshold last, or -1 */
+  double pushed_at;         /* when that was [s] */
   int switches;             /* since the latest grid point */
   bool tried;               /* next is the end of the step that is due */
 };
@@ -159,6 +167,7 @@ typedef enum strut_event_kind {
   STRUT_EVENT_CREEP_OUT,/* creep's multiplier reaches mu N: slip */
   STRUT_EVENT_CREEP_IN, /* it reaches the band's force: band */
   STRUT_EVENT_PUSH,     /* |F_res| passes mu_0 N inside the band, either way */
+  STRUT_EVENT_YIELDED,  /* F_res leaves the layer about mu_0 N */
   STRUT_EVENT_DAMPER,   /* the ground damper's sign changes */
   STRUT_EVENT_CABLE     /* a cable begins or ceases to pull */
 } strut_event_kind;
@@ -189,6 +198,9 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
                        strut_event event, double t);
 /** Modes from q and v alone. */
 void strut_modes_start(const strut_model *model, strut_state *state, strut_located *l, double t);
+/** After a drive has jumped: cables anew; contacts keep their modes, since nothing has moved. */
+void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_located *l,
+                            double t);
 /** After a step, what need not be located: opening. True if something changed. */
 bool strut_modes_after_step(const strut_model *model, strut_located *l);
 

@@ -52,6 +52,8 @@ double strut_event_value(const strut_model *model, const strut_located *l,
       double room = e->mu_static * o->normal - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
     }
+    case STRUT_EVENT_YIELDED:
+      return located_yield_room(e, o);
     case STRUT_EVENT_DAMPER:
       return l->damper[i] > 0 ? -o->into : o->into;
     default:
@@ -98,17 +100,27 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
   return x;
 }
 
+/*
+ * How far contact i is from leaving its band, where that is `room` by its speed. A band entered just now
+ * has its edge, but for rounding, where the step begins; so has one at whose edge the forces balance: it
+ * is left when they cease to, not before.
+ */
+static double room_to_leave(const strut_model *model, const strut_located *l, int32_t i,
+                            double room) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  if (!l->stepper->exact && e->mu_static == e->mu_kinetic) return room;
+  double faint = 1e-9 * located_edge(e), rate = 0.0;
+  double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
+  strut_event_rate(l, l->now, STRUT_EVENT_LEAVE, i, &rate);
+  return room < faint && rate > -balanced ? faint : room;
+}
+
 /* Where between now and next the event's value passes 0. */
 static double fraction_of(const strut_model *model, const strut_located *l, strut_event_kind kind,
                           int32_t i, double h) {
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
-  if (kind == STRUT_EVENT_LEAVE && l->stepper->exact) {
-    /* a band entered just now has its edge, but for rounding, where the step begins */
-    double faint = 1e-9 * located_edge(&model->contacts.entry[i]);
-    strut_event_rate(l, l->now, kind, i, &d0);
-    if (g0 < faint && d0 > 0.0) g0 = faint;
-  }
+  if (kind == STRUT_EVENT_LEAVE) g0 = room_to_leave(model, l, i, g0);
   if (!(g0 > 0.0)) return 0.0;
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
@@ -142,14 +154,23 @@ static void measure_cables(const strut_model *model, const strut_state *state,
     double inverse = length > 0.0 ? 1.0 / length : 0.0;
     double rate = ((vb[0] - va[0]) * dx + (vb[1] - va[1]) * dy) * inverse;
     end->stretch[k] = length - state->rest[j];
-    end->tension[k] =
-        t->stiffness[j] * end->stretch[k] + t->damping[j] * (rate - state->rest_rate[j]);
+    end->stretch_rate[k] = rate - state->rest_rate[j];
+    end->tension[k] = t->stiffness[j] * end->stretch[k] + t->damping[j] * end->stretch_rate[k];
   }
 }
 
 void strut_event_measure(const strut_model *model, const strut_state *state, const strut_located *l,
                          const strut_step_end *end) {
   if (l->cable_count) measure_cables(model, state, l, end);
+}
+
+/* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
+   opened may stand below 0 by rounding, on its way up. */
+static bool closes(const strut_contact_table *c, int32_t i, const strut_located *l) {
+  strut_touch to;
+  if (gap_of(c, i, l->now->q) > 0.0) return true;
+  located_place(c, i, l->next->q, l->next->v, &to);
+  return to.into < 0.0;
 }
 
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
@@ -164,11 +185,12 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
       if (!l->stepper->exact) continue;
-      if (o->gap > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, &first);
+      /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
+      if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, &first);
       if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
           c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
         keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (gap_of(c, i, l->next->q) < 0.0) {
+    } else if (gap_of(c, i, l->next->q) < 0.0 && closes(c, i, l)) {
       keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
     }
   }

@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_LOCATED_KERNEL_H
 #define STRUT_ENGINE_INTEGRATE_LOCATED_KERNEL_H
 
+#include <float.h>
 #include <math.h>
 
 #include "engine/forces/forces_kernel.h"
@@ -22,6 +23,19 @@ STRUT_INLINE double located_normal(const strut_contact_entry *e, int8_t damper, 
   return damped && acts ? normal - e->damping * into : normal;
 }
 
+/* Half the layer about the threshold mu_0 N in which a contact yields, relative. */
+static const double STRUT_YIELD_LAYER = 1e-3;
+
+/* Friction between holding and pushing, by how far the applied force is through the layer. */
+STRUT_INLINE double located_yield(const strut_contact_entry *e, double normal, double applied) {
+  double threshold = e->mu_static * normal, half = STRUT_YIELD_LAYER * threshold;
+  double size = applied < 0.0 ? -applied : applied;
+  double pushed = half > 0.0 ? 0.5 + 0.5 * (size - threshold) / half : 1.0;
+  pushed = pushed < 0.0 ? 0.0 : pushed > 1.0 ? 1.0 : pushed;
+  double friction = (1.0 - pushed) * size + pushed * e->mu_kinetic * normal;
+  return applied < 0.0 ? friction : -friction;
+}
+
 /* Friction by the mode; a multiplier, which comes later, is 0 here. */
 STRUT_INLINE double located_friction(const strut_contact_entry *e, uint8_t mode, int8_t side,
                                      double normal, double slip, double applied) {
@@ -36,6 +50,7 @@ STRUT_INLINE double located_friction(const strut_contact_entry *e, uint8_t mode,
       double most = e->mu_static * normal;
       return applied > most ? -most : applied < -most ? most : -applied;
     }
+    case STRUT_MODE_YIELD: return located_yield(e, normal, applied);
     default: return 0.0;
   }
 }
@@ -125,6 +140,9 @@ STRUT_INLINE void located_acceleration(const strut_model *model, strut_state *st
   located_close(model, state, l, q, v, a, end, ledger);
 }
 
+/* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
+static const double TIED = 1e-8;
+
 /*
  * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
  * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
@@ -134,11 +152,11 @@ STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_loca
     int32_t i = l->closed[k];
     const strut_contact_entry *e = &model->contacts.entry[i];
     strut_touch *o = &l->next->touch[i];
-    double faint = 1e-10 * o->normal, edge = e->stick_velocity;
+    double faint = TIED * o->normal, edge = e->stick_velocity;
     if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
       o->friction = -o->applied + l->side[i] * faint; /* creep ends */
-    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= 1e-10 * edge)
-      o->slip = o->slip < 0.0 ? -edge : edge;
+    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge)
+      o->slip = (o->slip < 0.0 ? -edge : edge) * (1.0 - TIED); /* in it, not leaving */
   }
 }
 
@@ -164,6 +182,12 @@ STRUT_INLINE double located_band_force(const strut_contact_entry *e, const strut
   return -e->mu_kinetic * o->normal * strut_sign(o->applied);
 }
 
+/* How far the applied force is from either end of where a contact goes on yielding [N]. */
+STRUT_INLINE double located_yield_room(const strut_contact_entry *e, const strut_touch *o) {
+  double threshold = e->mu_static * o->normal;
+  return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
+}
+
 /* What a closed contact's state at the end of a step contradicts of its mode. */
 STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e, const strut_touch *o,
                                       uint8_t mode, double s) {
@@ -171,8 +195,8 @@ STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e
     case STRUT_MODE_SLIP:
       return s * o->slip < located_edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
-      return fabs(o->friction) > e->mu_static * o->normal && o->gap < 0.0 ? STRUT_EVENT_RELEASE
-                                                                          : STRUT_EVENT_NONE;
+      /* also where the gap is open by then: what holds a node lets go before that */
+      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_RELEASE : STRUT_EVENT_NONE;
     case STRUT_MODE_CREEP:
       if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
       return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
@@ -183,6 +207,9 @@ STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e
       return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
+    case STRUT_MODE_YIELD:
+      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVE;
+      return located_yield_room(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
     default:
       return STRUT_EVENT_NONE;
   }
@@ -206,6 +233,18 @@ STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, s
                       strut_lanes_load(state->work + p) + strut_lanes_load(l->gained + p));
 }
 
+/* A drive's jump this close to a point of the grid, in grid steps, is there. */
+static const double STRUT_AT_BREAK = 1e-9;
+
+/*
+ * Signals are evaluated a moment before the time: a step that ends where a drive jumps so sees the
+ * value from before the jump, and the one that begins there that from after it.
+ */
+STRUT_INLINE double located_moment(double t, double dt) {
+  double least = 4.0 * DBL_EPSILON * t, part = 1e-12 * dt;
+  return least > part ? least : part;
+}
+
 /* Size of the next step within what is left to the grid point. */
 STRUT_INLINE double located_step_size(const strut_state *state, const strut_located *l, double dt) {
   double rest = dt - l->done, h = rest;
@@ -215,7 +254,16 @@ STRUT_INLINE double located_step_size(const strut_state *state, const strut_loca
   } else if (l->refine > 1.0 && (double)state->step * dt + l->done < state->refined_until) {
     h = dt / l->refine;
   }
+  if (l->next_break < HUGE_VAL) {
+    double left = l->next_break - ((double)state->step * dt + l->done + state->time_offset);
+    if (left < h) h = left;
+  }
   return h > rest * (1.0 - 1e-9) ? rest : h;
+}
+
+/* The time at which a step from t is evaluated; see located_moment. */
+STRUT_INLINE double located_time(const strut_located *l, double t, double dt) {
+  return l->next_break < HUGE_VAL ? t - located_moment(t, dt) : t;
 }
 
 /* After a step of `gone`: on to the next grid point when this one is reached. */

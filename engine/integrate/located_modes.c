@@ -64,7 +64,8 @@ static void close_contact(const strut_model *model, strut_located *l, int32_t i)
       e->law == STRUT_FRICTION_SMOOTH) {
     l->mode[i] = STRUT_MODE_SLIDE;
   } else if (e->law == STRUT_FRICTION_KARNOPP) {
-    l->mode[i] = fabs(o.slip) < e->stick_velocity ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
+    bool inside = fabs(o.slip) < e->stick_velocity * (1.0 + TIED); /* or at its edge, by rounding */
+    l->mode[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
   } else if (fabs(o.slip) > TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) {
     l->mode[i] = STRUT_MODE_SLIP;
   } else {
@@ -104,6 +105,25 @@ static void derive_consistently(const strut_model *model, strut_state *state, st
   }
 }
 
+/* Which cables pull, as positions, velocities and drives are. */
+static void start_cables(const strut_model *model, strut_state *state, strut_located *l, double t) {
+  bool changed = false;
+  for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
+  derive_consistently(model, state, l, t);
+  for (int32_t k = 0; k < l->cable_count; k++)
+    if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
+      cable_mode(state, l, k, false);
+      changed = true;
+    }
+  if (changed) derive_consistently(model, state, l, t);
+}
+
+void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_located *l,
+                            double t) {
+  l->fresh = false;
+  start_cables(model, state, l, t);
+}
+
 void strut_modes_start(const strut_model *model, strut_state *state, strut_located *l, double t) {
   l->fresh = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
@@ -112,15 +132,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_locat
     l->mode[i] = STRUT_MODE_OPEN;
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
   }
-  for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
-  derive_consistently(model, state, l, t);
-  bool changed = false;
-  for (int32_t k = 0; k < l->cable_count; k++)
-    if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
-      cable_mode(state, l, k, false);
-      changed = true;
-    }
-  if (changed) derive_consistently(model, state, l, t);
+  start_cables(model, state, l, t);
 }
 
 /*
@@ -188,9 +200,21 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
       l->mode[i] = STRUT_MODE_BAND;
       break;
     case STRUT_EVENT_PUSH:
-      l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+      /* back and forth without a step between: the threshold attracts from both sides */
+      if (l->pushed == i && l->pushed_at == t)
+        l->mode[i] = STRUT_MODE_YIELD;
+      else
+        l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+      l->pushed = i, l->pushed_at = t;
       l->side[i] = l->now->touch[i].applied < 0.0 ? -1 : 1;
       break;
+    case STRUT_EVENT_YIELDED: {
+      const strut_touch *o = &l->now->touch[i];
+      bool over = fabs(o->applied) > model->contacts.entry[i].mu_static * o->normal;
+      l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+      l->side[i] = o->applied < 0.0 ? -1 : 1;
+      break;
+    }
     case STRUT_EVENT_DAMPER:
       l->damper[i] = (int8_t)-l->damper[i];
       break;

@@ -109,6 +109,8 @@ STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut
                              double dt, int64_t end, bool ledger) {
   while (state->step < end) {
     double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+    if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) return;
+    t = located_time(l, t, dt);
     predict(model, l, h);
     if (crosses(&model->contacts, l, l->next->q)) return;
     take(model, state, l, t, h, ledger);

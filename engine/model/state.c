@@ -40,8 +40,10 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   state->step = 0;
   state->evaluations = state->events = 0;
   state->interrupt = NULL;
+  state->most_evaluations = 0;
   state->trouble = STRUT_TROUBLE_NONE;
   state->drive_time = (double)NAN;
+  state->time_offset = 0.0;
   state->refined_until = -HUGE_VAL;
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);

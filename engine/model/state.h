@@ -31,6 +31,7 @@ typedef enum strut_trouble {
   STRUT_TROUBLE_NEWTON, /* an implicit step has no solution nearby */
   STRUT_TROUBLE_RIGID,  /* rigid bars cannot keep their lengths */
   STRUT_TROUBLE_INTERRUPT, /* *interrupt was set */
+  STRUT_TROUBLE_WORK, /* most_evaluations were made */
   STRUT_TROUBLE_IMPLICIT /* an implicit step of the whole structure has no solution nearby */
 } strut_trouble;
 
@@ -46,6 +47,8 @@ typedef struct strut_state {
   int64_t events;                 /* switches located in time, since the reset */
   const volatile sig_atomic_t *interrupt; /* a method whose steps may take long gives up soon after
                                              it becomes non-zero; NULL after the reset */
+  int64_t most_evaluations;       /* of the forces: it gives up soon after so many too; 0: any
+                                     number, as after the reset */
   strut_trouble trouble;          /* why a method could not go on; it stays on the latest grid point */
   int32_t trouble_node;           /* where, with STRUT_TROUBLE_IMPLICIT */
 
@@ -55,6 +58,7 @@ typedef struct strut_state {
   double *taut_stretch, *taut_tension; /* (slots) a member acts where both are exceeded [m], [N]:
                         0 for cables, -INFINITY otherwise; methods with events freeze cables here */
   double drive_time; /* the time these two are for [s]; NAN before the first evaluation */
+  double time_offset; /* drives and loads stand where they do so much later than n * dt [s] */
 
   /* position, velocity and time dependent: strut_forces */
   double *force;     /* net force on each node [N] */

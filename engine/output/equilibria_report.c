@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/output/json.h"
 #include "engine/output/json_value.h"
 
 struct cJSON;
@@ -137,8 +138,15 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_integer(&json, json.root, "starts", all->starts);
   struct cJSON *missed = strut_json_object(&json, json.root, "missed");
   strut_json_number(&json, missed, "chance", all->missed);
+  strut_json_number(&json, missed, "chance_below", all->missed_below);
+  strut_json_integer(&json, missed, "unmet", all->unmet);
   strut_json_number(&json, missed, "bound", all->missed_one);
   strut_json_bool(&json, missed, "cut_short", all->cut_short);
+  strut_json_settle(&json, json.root, &all->settle);
+  if (all->settle.evaluations > 0)
+    strut_json_text(&json, json.root, "start", all->start >= 0 ? all->list[all->start].name : NULL);
+  if (all->start_trouble[0])
+    strut_json_text(&json, json.root, "start_trouble", all->start_trouble);
   strut_json_text(&json, json.root, "remark", all->remark[0] ? all->remark : NULL);
   struct cJSON *list = strut_json_array(&json, json.root, "equilibria");
   for (size_t i = 0; i < all->count; i++)

@@ -148,14 +148,30 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
   strut_buffer_add(&table, "%s%s%zu equilibria from %" PRId64 " starts, seed %" PRIu64 "\n",
                    scene->name, *scene->name ? ": " : "", all->count, all->starts, all->seed);
   if (all->count)
+    strut_buffer_add(
+        &table,
+        "  chance that one more start finds a new stable one: about %.2g, below %.2g; a "
+        "stable\n  one never met would have less than %.2g of the starts (95 %%)\n",
+        all->missed, all->missed_below, all->missed_one);
+  if (all->unmet)
     strut_buffer_add(&table,
-                     "  chance that one more start finds a new stable one: about %.2g; a stable one "
-                     "never met\n  would have less than %.2g of the starts (95 %%)\n",
-                     all->missed, all->missed_one);
+                     "  %" PRId64
+                     " stable %s met by no random start but found from others: small "
+                     "basins, of which\n  there may be more than starts can tell\n",
+                     all->unmet, all->unmet == 1 ? "one was" : "ones were");
   if (all->cut_short)
     strut_buffer_add(&table,
                      "  cut short: for its size it would take more starts and climbs; --starts N "
                      "asks for more\n");
+  if (all->settle.evaluations > 0)
+    strut_buffer_add(
+        &table, "  the start settles in %s\n",
+        all->start >= 0 ? all->list[all->start].name : "an equilibrium that is not listed here");
+  if (all->start_trouble[0])
+    strut_buffer_add(&table, "  the start does not settle: %s\n", all->start_trouble);
+  char warning[300];
+  if (strut_settle_warning(&all->settle, warning, sizeof warning))
+    strut_buffer_add(&table, "  %s\n", warning);
   if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
   add_list(&table, all, scene);
   add_saddles(&table, all, scene);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/output/ownership.h"
 
 enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
 
@@ -74,8 +75,15 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
     forget(file);
     return no_memory(error);
   }
+  strut_status status = STRUT_OK;
   int descriptor = -1, code = EISDIR;
-  if (!is_directory(file->path)) {
+  bool folder = is_directory(file->path);
+  if (!folder) status = strut_ownership_check_path(file->path, error);
+  if (status != STRUT_OK) {
+    forget(file);
+    return status;
+  }
+  if (!folder) {
     descriptor = create_beside(file->path, file->part, room);
     code = errno;
   }
@@ -88,7 +96,7 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
     }
   }
   if (file->stream) return STRUT_OK;
-  strut_status status = trouble(error, "write", file->path, code);
+  status = trouble(error, "write", file->path, code);
   forget(file);
   return status;
 }
@@ -135,11 +143,12 @@ strut_status strut_file_commit(strut_file *file, strut_error *error) {
   if (fclose(file->stream) != 0 && !code) code = errno;
   file->stream = NULL;
   bool renamed = false;
-  if (!code) {
+  strut_status status = code ? STRUT_OK : strut_ownership_claim_path(file->path, file->part, error);
+  if (!code && status == STRUT_OK) {
     renamed = rename(file->part, file->path) == 0;
     code = renamed ? synchronise_parent(file->path) : errno;
   }
-  strut_status status = STRUT_OK;
+  if (status != STRUT_OK) unlink(file->part);
   if (code) {
     unlink(renamed ? file->path : file->part);
     status = code == ENOMEM ? no_memory(error) : trouble(error, "write", file->path, code);

@@ -156,9 +156,14 @@ static bool create_all(hdf5 *self, const strut_record_layout *layout) {
   return written(self) && good;
 }
 
+static strut_status no_memory(strut_error *error) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+}
+
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   hdf5 *self = context;
   self->width = layout->width;
+  if (!strut_hdf5_has_memory()) return no_memory(error);
   strut_status status = strut_file_open(&self->file, self->directory, "trajectory.h5", error);
   if (status != STRUT_OK) return status;
   strut_hdf5_quiet quiet = strut_hdf5_hush();
@@ -174,6 +179,10 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
 /* Appends the rows gathered to the dataset. */
 static bool flush_series(series *s) {
   if (s->held == 0) return true;
+  if (!strut_hdf5_has_memory()) {
+    errno = ENOMEM;
+    return false;
+  }
   hsize_t start[STRUT_HDF5_RANK] = {s->shape[0]};
   hsize_t count[STRUT_HDF5_RANK] = {s->held, s->shape[1], s->shape[2]};
   s->shape[0] += s->held;
@@ -216,7 +225,10 @@ static strut_status complete(hdf5 *self, strut_status run_status, strut_error *e
   bool good = true;
   for (size_t i = 0; good && i < self->series_count; i++) good = flush_series(&self->series[i]);
   good = good && strut_hdf5_text(self->id, "status", strut_status_text(run_status));
-  good = close_file(self) && good;
+  int code = errno;
+  bool closed = close_file(self);
+  if (!good && !errno) errno = code; /* what failed first is the reason */
+  good = good && closed;
   return good ? strut_file_commit(&self->file, error) : strut_file_trouble(&self->file, error);
 }
 
@@ -249,12 +261,18 @@ strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
   return NULL;
 }
 
+void strut_hdf5_leave_at_exit(void) { H5dont_atexit(); }
+
 void strut_hdf5_free(strut_sink *sink) {
   if (!sink) return;
   hdf5 *self = sink->context;
-  strut_hdf5_quiet quiet = strut_hdf5_hush();
-  abandon(self);
-  strut_hdf5_unhush(quiet);
+  if (self->id > 0) { /* else the library may not even have begun, and need not */
+    strut_hdf5_quiet quiet = strut_hdf5_hush();
+    abandon(self);
+    strut_hdf5_unhush(quiet);
+  } else {
+    abandon(self);
+  }
   strut_release(self->directory);
   strut_release(self->scene_text);
   strut_release(self);

@@ -9,6 +9,11 @@
 
 /** A sink that writes directory/trajectory.h5; `scene_text` is kept in it as an attribute. */
 STRUT_API strut_sink *strut_hdf5_create(const char *directory, const char *scene_text);
+/**
+ * For a program that uses the HDF5 library through strut only: the library does not tidy up at exit,
+ * where it would crash after memory was out. All files are closed by then.
+ */
+STRUT_API void strut_hdf5_leave_at_exit(void);
 /** Frees the sink; abandons what was not ended. */
 STRUT_API void strut_hdf5_free(strut_sink *sink);
 

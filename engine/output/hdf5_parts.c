@@ -8,7 +8,7 @@
 
 #include "engine/base/memory.h"
 
-enum { DEFLATE_LEVEL = 4 };
+enum { DEFLATE_LEVEL = 4, RESERVE = 8 << 20 };
 
 strut_hdf5_quiet strut_hdf5_hush(void) {
   strut_hdf5_quiet quiet = {0};
@@ -17,19 +17,27 @@ strut_hdf5_quiet strut_hdf5_hush(void) {
   return quiet;
 }
 
+bool strut_hdf5_has_memory(void) {
+  void *block = strut_allocate(1, RESERVE);
+  strut_release(block);
+  return block != NULL;
+}
+
 void strut_hdf5_unhush(strut_hdf5_quiet quiet) {
   H5Eset_auto2(H5E_DEFAULT, quiet.function, quiet.data);
 }
 
-static hid_t text_type(size_t size) {
+/* A type of texts; negative where it could not be made. */
+static hid_t text_type(size_t size, H5T_cset_t characters) {
   hid_t type = H5Tcopy(H5T_C_S1);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  H5Tset_size(type, size);
-  return type;
+  if (type < 0 || (H5Tset_cset(type, characters) >= 0 && H5Tset_size(type, size) >= 0)) return type;
+  H5Tclose(type);
+  return -1;
 }
 
 static bool write_attribute(hid_t object, const char *name, hid_t file_type, hid_t memory_type,
                             hid_t space, const void *value) {
+  if (file_type < 0 || memory_type < 0 || space < 0) return false;
   hid_t attribute = H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT);
   bool good = attribute >= 0 && H5Awrite(attribute, memory_type, value) >= 0;
   if (attribute >= 0) H5Aclose(attribute);
@@ -44,7 +52,7 @@ static bool write_scalar(hid_t object, const char *name, hid_t type, const void 
 }
 
 bool strut_hdf5_text(hid_t object, const char *name, const char *text) {
-  hid_t type = text_type(H5T_VARIABLE);
+  hid_t type = text_type(H5T_VARIABLE, H5T_CSET_UTF8);
   bool good = write_scalar(object, name, type, &text);
   H5Tclose(type);
   return good;
@@ -52,8 +60,7 @@ bool strut_hdf5_text(hid_t object, const char *name, const char *text) {
 
 /* As the specification of scales wants it: of fixed length, with its NUL. */
 static bool write_fixed_text(hid_t object, const char *name, const char *text) {
-  hid_t type = H5Tcopy(H5T_C_S1);
-  H5Tset_size(type, strlen(text) + 1);
+  hid_t type = text_type(strlen(text) + 1, H5T_CSET_ASCII);
   bool good = write_scalar(object, name, type, text);
   H5Tclose(type);
   return good;
@@ -93,9 +100,9 @@ hid_t strut_hdf5_names(hid_t file, const char *name, const char *const *names, s
   }
   for (size_t i = 0; i < count; i++) memcpy(texts + i * longest, names[i], strlen(names[i]));
   hsize_t shape = count;
-  hid_t type = text_type(longest), space = H5Screate_simple(1, &shape, NULL);
-  H5Tset_strpad(type, H5T_STR_NULLPAD);
-  hid_t dataset = create_dataset(file, name, type, space, NULL, 1);
+  hid_t type = text_type(longest, H5T_CSET_UTF8), space = H5Screate_simple(1, &shape, NULL);
+  bool good = type >= 0 && space >= 0 && H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0;
+  hid_t dataset = good ? create_dataset(file, name, type, space, NULL, 1) : -1;
   if (dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) < 0) {
     H5Dclose(dataset);
     dataset = -1;
@@ -138,16 +145,16 @@ bool strut_hdf5_scale_end(const strut_hdf5_scale *scale) {
   if (scale->user_count == 0) return true;
   size_t whole = sizeof scale->users[0], second = sizeof(hobj_ref_t);
   hid_t memory = H5Tcreate(H5T_COMPOUND, whole), packed = H5Tcreate(H5T_COMPOUND, second + 4);
-  H5Tinsert(memory, "dataset", 0, H5T_STD_REF_OBJ);
-  H5Tinsert(memory, "dimension",
-            (size_t)((const char *)&scale->users[0].dimension - (const char *)&scale->users[0]),
-            H5T_NATIVE_INT);
-  H5Tinsert(packed, "dataset", 0, H5T_STD_REF_OBJ);
-  H5Tinsert(packed, "dimension", second, H5T_STD_I32LE);
+  size_t dimension =
+      (size_t)((const char *)&scale->users[0].dimension - (const char *)&scale->users[0]);
+  bool good = memory >= 0 && packed >= 0 && H5Tinsert(memory, "dataset", 0, H5T_STD_REF_OBJ) >= 0 &&
+              H5Tinsert(memory, "dimension", dimension, H5T_NATIVE_INT) >= 0 &&
+              H5Tinsert(packed, "dataset", 0, H5T_STD_REF_OBJ) >= 0 &&
+              H5Tinsert(packed, "dimension", second, H5T_STD_I32LE) >= 0;
   hsize_t count = (hsize_t)scale->user_count;
   hid_t space = H5Screate_simple(1, &count, NULL);
-  bool good =
-      write_attribute(scale->dataset, "REFERENCE_LIST", packed, memory, space, scale->users);
+  good = good &&
+         write_attribute(scale->dataset, "REFERENCE_LIST", packed, memory, space, scale->users);
   H5Sclose(space);
   H5Tclose(memory);
   H5Tclose(packed);

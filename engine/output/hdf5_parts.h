@@ -21,6 +21,11 @@ typedef struct strut_hdf5_quiet {
   void *data;
 } strut_hdf5_quiet;
 strut_hdf5_quiet strut_hdf5_hush(void);
+/**
+ * Whether there is as much memory as a few calls of the library take, chunks and filters included. It
+ * crashes where its own allocations fail, so that this is asked before.
+ */
+bool strut_hdf5_has_memory(void);
 void strut_hdf5_unhush(strut_hdf5_quiet quiet);
 
 /** An attribute that holds a UTF-8 text of any length. */

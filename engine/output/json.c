@@ -48,14 +48,41 @@ static void add_limit_fell(strut_json *json, cJSON *to, const strut_limit_fell *
   strut_json_integer(json, object, "steps", fell->steps);
 }
 
+static void add_warnings(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *warnings = strut_json_array(json, to, "warnings");
+  for (size_t i = 0; i < s->warning_count; i++) {
+    cJSON *warning = strut_json_object(json, warnings, NULL);
+    strut_json_text(json, warning, "code", s->warnings[i].code);
+    strut_json_text(json, warning, "text", s->warnings[i].text);
+  }
+}
+
+void strut_json_settle(strut_json *json, cJSON *to, const strut_settle_summary *how) {
+  char warning[300];
+  if (how->evaluations == 0) return;
+  cJSON *object = strut_json_object(json, to, "settle");
+  bool unstable = strut_settle_warning(how, warning, sizeof warning);
+  strut_json_number(json, object, "step", how->step);
+  strut_json_integer(json, object, "evaluations", how->evaluations);
+  strut_json_integer(json, object, "perturbations", how->perturbations);
+  strut_json_bool(json, object, "stable", !how->unstable);
+  strut_json_text(json, object, "node", how->node);
+  strut_json_number(json, object, "stiffness", unstable ? how->stiffness : (double)NAN);
+  strut_json_number(json, object, "growth_rate", unstable ? how->growth_rate : (double)NAN);
+  strut_json_text(json, object, "warning", unstable ? warning : NULL);
+}
+
 static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool with_wall_time) {
   strut_json_text(json, to, "status", strut_status_text(s->status));
   strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
+  add_warnings(json, to, s);
   strut_json_number(json, to, "velocity", s->velocity);
   strut_json_number(json, to, "velocity_spread", s->velocity_spread);
+  if (s->velocity_zero) strut_json_bool(json, to, "velocity_zero", true);
   strut_json_number(json, to, "window_start", s->window_start);
   strut_json_number(json, to, "duration", s->duration);
   strut_json_number(json, to, "settle_time", s->settle_time);
+  strut_json_settle(json, to, &s->settle);
   strut_json_integer(json, to, "steps", s->steps);
   strut_json_integer(json, to, "force_evaluations", s->force_evaluations);
   strut_json_integer(json, to, "events", s->events);
@@ -99,7 +126,27 @@ static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
-static void add_energy(strut_json *json, cJSON *to, const strut_energy *e) {
+/* Only what there is: a scene that measures nothing else has no such key. */
+static void add_measured(strut_json *json, cJSON *to, const strut_summary *s) {
+  if (!s->measured_count) return;
+  cJSON *measured = strut_json_object(json, to, "measured");
+  for (size_t i = 0; i < s->measured_count; i++) {
+    const strut_measured *m = &s->measured[i];
+    cJSON *quantity = strut_json_object(json, measured, m->name);
+    strut_json_number(json, quantity, "value", m->value);
+    strut_json_text(json, quantity, "unit", m->unit);
+    strut_json_number(json, quantity, "spread", m->spread);
+    strut_json_number(json, quantity, "scale", m->scale);
+    strut_json_bool(json, quantity, "zero", m->zero);
+    if (!isfinite(m->expected)) continue;
+    strut_json_number(json, quantity, "expected", m->expected);
+    strut_json_bool(json, quantity, "kept", m->kept);
+  }
+}
+
+static void add_energy(strut_json *json, cJSON *to, const strut_summary *s) {
+  static const char *const balances[] = {NULL, "closed", "open"};
+  const strut_energy *e = &s->energy;
   cJSON *energy = strut_json_object(json, to, "energy");
   strut_json_number(json, energy, "kinetic", e->kinetic);
   strut_json_number(json, energy, "elastic", e->elastic);
@@ -114,6 +161,7 @@ static void add_energy(strut_json *json, cJSON *to, const strut_energy *e) {
   strut_json_number(json, energy, "initial", e->initial);
   strut_json_number(json, energy, "residual", e->residual);
   strut_json_number(json, energy, "moved", e->moved);
+  strut_json_text(json, energy, "balance", balances[s->balance]);
 }
 
 char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
@@ -123,9 +171,10 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
   strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
   strut_json_integer(&json, json.root, "language", STRUT_LANGUAGE_VERSION);
   add_run(&json, json.root, summary, with_wall_time);
+  add_measured(&json, json.root, summary);
   add_parameters(&json, json.root, scene);
   add_nodes(&json, json.root, summary);
   add_contacts(&json, json.root, summary);
-  add_energy(&json, json.root, &summary->energy);
+  add_energy(&json, json.root, summary);
   return strut_json_end(&json);
 }

@@ -7,6 +7,7 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
+#include "engine/output/json.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
 
@@ -55,6 +56,7 @@ char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
   strut_json_text(&json, json.root, "method", modes->dense ? "dense" : "sparse");
   strut_json_number(&json, json.root, "condition", modes->condition);
   strut_json_bool(&json, json.root, "at_rest", modes->at_rest);
+  strut_json_settle(&json, json.root, &modes->settle);
   strut_json_text(&json, json.root, "damping",
                   modes->damped_exactly ? "quadratic eigenproblem" : "modal quotient");
   struct cJSON *list = strut_json_array(&json, json.root, "modes");
@@ -73,6 +75,9 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
   if (!modes->at_rest)
     strut_buffer_add(table,
                      "  this shape is no equilibrium: it will not stay to show these modes\n");
+  char warning[300];
+  if (strut_settle_warning(&modes->settle, warning, sizeof warning))
+    strut_buffer_add(table, "  %s\n", warning);
   if (!modes->damped_exactly)
     strut_buffer_add(table,
                      "  damping by the quotient of each mode, coupling between modes left out\n");

@@ -2,8 +2,10 @@
 #include "engine/output/quantity_text.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/base/c_locale.h"
 
@@ -41,5 +43,22 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
 strut_quantity strut_quantity_of(double value, int digits, const char *unit) {
   strut_quantity quantity;
   strut_quantity_text(value, digits, unit, quantity.text);
+  return quantity;
+}
+
+/* A prefix belongs to the unit's first word, whose power it would get. */
+static bool takes_prefix(const char *unit) {
+  size_t word = strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  return word > 0 && unit[word] != '^' && strncmp(unit, "kg", 2) != 0;
+}
+
+strut_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
+  if (!isfinite(value) || takes_prefix(unit)) return strut_quantity_of(value, digits, unit);
+  strut_quantity quantity;
+  bool none = strcmp(unit, "1") == 0;
+  strut_c_locale locale = strut_c_locale_enter();
+  snprintf(quantity.text, sizeof quantity.text, "%.*g%s%.40s", digits, value, none ? "" : " ",
+           none ? "" : unit);
+  strut_c_locale_leave(locale);
   return quantity;
 }

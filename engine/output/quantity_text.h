@@ -22,5 +22,7 @@ typedef struct strut_quantity {
   char text[STRUT_QUANTITY_TEXT];
 } strut_quantity;
 STRUT_API strut_quantity strut_quantity_of(double value, int digits, const char *unit);
+/** The same in any unit: those that take no prefix ("1", "m^2", "kg m/s") stand as they are. */
+STRUT_API strut_quantity strut_quantity_of_any(double value, int digits, const char *unit);
 
 #endif

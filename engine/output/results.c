@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/results.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -11,12 +10,11 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
+#include "engine/output/ownership.h"
 
-enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
-
-static const char *const run_names[] = {"summary.json", "scene.yaml",    "nodes.csv",
-                                        "members.csv",  "contacts.csv",  "energy.csv",
-                                        "trajectory.h5", NULL};
+static const char *const run_names[] = {
+    "summary.json", "scene.yaml", "nodes.csv",     "members.csv",
+    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
 
 const char *strut_results_name(int i) { return run_names[i]; }
 
@@ -26,45 +24,6 @@ static strut_status trouble(strut_error *error, const char *path, int code) {
     snprintf(reason, sizeof reason, "error %d", code);
   }
   return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", path, reason);
-}
-
-/* directory/name in a block of strut_allocate, or NULL. */
-static char *join(const char *directory, const char *name) {
-  size_t room = strlen(directory) + strlen(name) + 2;
-  char *path = strut_allocate(room, 1);
-  if (path) snprintf(path, room, "%s/%s", directory, name);
-  return path;
-}
-
-/* Renaming onto a directory would fail when all the work is done: say so before. */
-static strut_status check_names(const char *directory, const char *const *names,
-                                strut_error *error) {
-  strut_status status = STRUT_OK;
-  for (int i = 0; names[i] && status == STRUT_OK; i++) {
-    struct stat found;
-    char *path = join(directory, names[i]);
-    if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
-    if (lstat(path, &found) == 0 && S_ISDIR(found.st_mode)) status = trouble(error, path, EISDIR);
-    strut_release(path);
-  }
-  return status;
-}
-
-static strut_status make_stage(strut_results *results, strut_error *error) {
-  size_t room = strlen(results->directory) + NUMBER_ROOM;
-  results->stage = strut_allocate(room, 1);
-  if (!results->stage) {
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
-  }
-  for (int i = 0; i < MOST_NAMES; i++) {
-    snprintf(results->stage, room, "%s/.strut-%ld-%d", results->directory, (long)getpid(), i);
-    if (mkdir(results->stage, 0777) == 0) return STRUT_OK;
-    if (errno != EEXIST) break;
-  }
-  strut_status status = trouble(error, results->directory, errno);
-  strut_release(results->stage);
-  results->stage = NULL;
-  return status;
 }
 
 strut_status strut_results_begin(strut_results *results, const char *directory,
@@ -84,8 +43,9 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
   }
   memcpy(results->directory, directory, strlen(directory));
-  status = check_names(directory, names, error);
-  if (status == STRUT_OK) status = make_stage(results, error);
+  status = strut_ownership_check(directory, names, error);
+  if (status == STRUT_OK) status = strut_stage_create(&results->held, directory, error);
+  results->stage = results->held.path;
   if (status != STRUT_OK) strut_results_abandon(results);
   return status;
 }
@@ -117,8 +77,10 @@ static int move_all(const strut_results *results) {
 }
 
 strut_status strut_results_commit(strut_results *results, strut_error *error) {
-  int code = move_all(results);
-  strut_status status = STRUT_OK;
+  strut_status status = strut_ownership_check(results->directory, results->names, error);
+  if (status == STRUT_OK)
+    status = strut_ownership_claim(results->directory, results->stage, results->names, error);
+  int code = status == STRUT_OK ? move_all(results) : 0;
   if (code) status = trouble(error, results->directory, code);
   int descriptor = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0) {
@@ -132,23 +94,12 @@ strut_status strut_results_commit(strut_results *results, strut_error *error) {
   return status;
 }
 
-static void empty_directory(const char *path) {
-  DIR *directory = opendir(path);
-  if (!directory) return;
-  for (struct dirent *entry = readdir(directory); entry; entry = readdir(directory)) {
-    bool itself = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
-    if (!itself) unlinkat(dirfd(directory), entry->d_name, 0);
-  }
-  closedir(directory);
-}
-
 void strut_results_abandon(strut_results *results) {
-  if (results->stage) {
-    empty_directory(results->stage);
-    rmdir(results->stage);
+  strut_stage_remove(&results->held);
+  if (results->made && results->directory) {
+    strut_file_remove(results->directory, STRUT_OWNERSHIP_LIST);
+    rmdir(results->directory);
   }
-  if (results->made && results->directory) rmdir(results->directory);
   strut_release(results->directory);
-  strut_release(results->stage);
   *results = (strut_results){0};
 }

@@ -11,12 +11,14 @@
 #include <stdbool.h>
 
 #include "engine/base/status.h"
+#include "engine/output/stage.h"
 
 /** Results being gathered. Zero-initialise. */
 typedef struct strut_results {
-  char *directory; /* where they will be */
-  char *stage;     /* where they are written: give this one to the writers */
-  bool made;       /* the directory did not exist before */
+  char *directory;          /* where they will be */
+  const char *stage;        /* where they are written: give this one to the writers */
+  strut_stage held;         /* the same folder, as this process holds it */
+  bool made;                /* the directory did not exist before */
   const char *const *names; /* of all files that may be among them, NULL after the last */
 } strut_results;
 

@@ -52,6 +52,14 @@ static void add_status(rows *r) {
   add_row(r, "run", value);
 }
 
+static void add_warnings(rows *r) {
+  const cJSON *warnings = cJSON_GetObjectItemCaseSensitive(r->from, "warnings"), *warning;
+  cJSON_ArrayForEach(warning, warnings) {
+    const char *said = text(warning, "text");
+    if (said) add_row(r, "warning", said);
+  }
+}
+
 static void add_velocity(rows *r, const strut_scene *scene) {
   int32_t node = scene->experiment.measure_node;
   char label[LABEL], value[VALUE];
@@ -63,6 +71,23 @@ static void add_velocity(rows *r, const strut_scene *scene) {
            isfinite(spread) ? ", spread " : "", isfinite(spread) ? in(spread, "m/s").text : "",
            isfinite(from) ? in(from, "s").text : "the start");
   add_row(r, label, value);
+}
+
+static void add_measured(rows *r) {
+  const cJSON *measured = cJSON_GetObjectItemCaseSensitive(r->from, "measured"), *item;
+  char value[VALUE];
+  cJSON_ArrayForEach(item, measured) {
+    const char *unit = text(item, "unit");
+    double number_of = number(item, "value"), spread = number(item, "spread");
+    if (!unit || !item->string || !isfinite(number_of)) continue;
+    snprintf(value, sizeof value, "%s%s%s%s", strut_quantity_of_any(number_of, DIGITS, unit).text,
+             isfinite(spread) ? ", spread " : "",
+             isfinite(spread) ? strut_quantity_of_any(spread, DIGITS, unit).text : "",
+             cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero"))
+                 ? ", zero but for rounding"
+                 : "");
+    add_row(r, item->string, value);
+  }
 }
 
 static void add_steps(rows *r) {
@@ -115,10 +140,12 @@ static void add_energy(rows *r) {
     if (isfinite(amount) && amount != 0) add_row(r, parts[i].label, in(amount, "J").text);
   }
   double residual = number(energy, "residual"), moved = number(energy, "moved");
+  const char *balance = text(energy, "balance");
+  bool open = balance && strcmp(balance, "open") == 0;
   if (!isfinite(residual)) return;
   if (moved > 0)
-    snprintf(value, sizeof value, "%s, %.1e of all that was exchanged", in(residual, "J").text,
-             fabs(residual) / moved);
+    snprintf(value, sizeof value, "%s, %.1e of the energy moved%s", in(residual, "J").text,
+             fabs(residual) / moved, open ? ": the balance does not close" : "");
   else
     snprintf(value, sizeof value, "%s", in(residual, "J").text);
   add_row(r, "missing in the energy balance", value);
@@ -133,7 +160,9 @@ void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
   r.from = root;
   if (cJSON_IsObject(root)) {
     add_status(&r);
+    add_warnings(&r);
     add_velocity(&r, scene);
+    add_measured(&r);
     add_steps(&r);
     add_contacts(&r);
     add_energy(&r);

@@ -51,10 +51,14 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
     strut_buffer_add(table, "  orbit       not shot: %s\n", m->reason);
   }
   if (!(a->wanted > 0.0)) return;
-  strut_buffer_add(table, "  accuracy    %.2g %% %s, %.3g %% expected; checked with %" PRId64
-                          " forces more\n              %s\n",
-                   100.0 * a->wanted, a->kept ? "kept" : "NOT kept", 100.0 * a->expected,
-                   a->check_evaluations, a->why);
+  char expected[40] = "the velocity is zero by symmetry";
+  if (!s->velocity_zero || s->measured_count)
+    snprintf(expected, sizeof expected, isnan(a->expected) ? "error not known" : "%.3g %% expected",
+             100.0 * a->expected);
+  strut_buffer_add(
+      table,
+      "  accuracy    %.2g %% %s, %s; checked with %" PRId64 " forces more\n              %s\n",
+      100.0 * a->wanted, a->kept ? "kept" : "NOT kept", expected, a->check_evaluations, a->why);
 }
 
 static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
@@ -65,12 +69,19 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   if (isfinite(s->velocity_spread)) {
     strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
   }
-  strut_buffer_add(table, ", from %s on\n", in(s->window_start, "s").text);
+  strut_buffer_add(table, ", from %s on%s\n", in(s->window_start, "s").text,
+                   s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
+                       ? ", zero but for rounding"
+                       : "");
   strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
                    s->steps);
   if (s->settle_time > 0.0) {
     strut_buffer_add(table, ", after %s of settling", in(s->settle_time, "s").text);
   }
+  if (s->settle.unstable)
+    strut_buffer_add(
+        table, "\n  start       settled on an UNSTABLE equilibrium; node %s would leave it first",
+        s->settle.node);
   strut_buffer_add(table, "\n  step        %s, stable up to %s\n", in(s->step, "s").text,
                    in(s->step_limit, "s").text);
   if (s->limit_fell.limit > 0.0)
@@ -84,6 +95,29 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   if (s->events > 0) strut_buffer_add(table, ", %" PRId64 " events located", s->events);
   strut_buffer_add(table, "\n");
   add_claims(table, s);
+}
+
+/* Why a quantity of a run that came to its end has no value. */
+static const char *missing(const strut_summary *s) {
+  return s->status == STRUT_OK ? "no finite number" : "the window was not reached";
+}
+
+static void add_measured(strut_buffer *table, const strut_summary *s) {
+  if (s->measured_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "measured", "value", "spread");
+  for (size_t i = 0; i < s->measured_count; i++) {
+    const strut_measured *m = &s->measured[i];
+    strut_buffer_add(table, "  %-16s %14s", m->name,
+                     strut_quantity_of_any(m->value, DIGITS, m->unit).text);
+    if (isfinite(m->spread))
+      strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
+    if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s));
+    if (m->zero) strut_buffer_add(table, "  zero but for rounding");
+    if (isfinite(m->expected))
+      strut_buffer_add(table, "  %s within %s", m->kept ? "known" : "NOT known as wanted, but",
+                       strut_quantity_of_any(m->expected, 2, m->unit).text);
+    strut_buffer_add(table, "\n");
+  }
 }
 
 static void add_more(strut_buffer *table, size_t count) {
@@ -115,6 +149,17 @@ static void add_contacts(strut_buffer *table, const strut_summary *s) {
   add_more(table, s->contact_count);
 }
 
+static void add_balance(strut_buffer *table, const strut_summary *s) {
+  const strut_energy *e = &s->energy;
+  if (s->balance == STRUT_BALANCE_NOT_KEPT || !(e->moved > 0.0)) return;
+  if (s->balance == STRUT_BALANCE_OPEN)
+    strut_buffer_add(table, "  %-16s %14s   NOT closed: %.2g %% of the energy moved\n", "balance",
+                     "", 100.0 * fabs(e->residual) / e->moved);
+  else
+    strut_buffer_add(table, "  %-16s %14s   within 1 %% of the energy moved\n", "balance",
+                     "closed");
+}
+
 static void add_energy(strut_buffer *table, const strut_energy *e) {
   const struct {
     const char *name;
@@ -143,9 +188,11 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   strut_buffer table = {0};
   strut_c_locale locale = strut_c_locale_enter();
   add_head(&table, summary, scene);
+  add_measured(&table, summary);
   add_positions(&table, summary);
   add_contacts(&table, summary);
   add_energy(&table, &summary->energy);
+  add_balance(&table, summary);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }

@@ -125,9 +125,8 @@ static strut_status read_channel(reader *r, int i) {
 /* How many frames there will be, and their times. */
 static strut_status read_time(reader *r, size_t room) {
   hsize_t shape[STRUT_HDF5_RANK] = {0};
-  hid_t dataset = H5Lexists(r->file, "time", H5P_DEFAULT) > 0
-                      ? H5Dopen2(r->file, "time", H5P_DEFAULT)
-                      : -1;
+  hid_t dataset =
+      H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
   if (dataset < 0 || !shape_of(dataset, 1, shape)) {
     if (dataset >= 0) H5Dclose(dataset);
     return trouble(r, "no trajectory of strut");
@@ -143,8 +142,8 @@ static strut_status read_time(reader *r, size_t room) {
   t->frames = (t->recorded + t->every - 1) / t->every;
   t->frames += t->recorded > 0 && (t->recorded - 1) % t->every != 0;
   t->time = strut_allocate(t->frames, sizeof *t->time);
-  bool good = t->time &&
-              (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
+  bool good =
+      t->time && (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
   H5Dclose(dataset);
   return good ? STRUT_OK : t->time ? trouble(r, "it is damaged") : no_memory(r);
 }
@@ -190,7 +189,9 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
   snprintf(path, length, "%s/trajectory.h5", directory);
   reader r = {.path = path, .scene = scene, .t = trajectory, .error = error};
   strut_status status = STRUT_OK;
-  if (access(path, R_OK) != 0) {
+  if (!strut_hdf5_has_memory()) {
+    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory reading '%s'", path);
+  } else if (access(path, R_OK) != 0) {
     char reason[128];
     if (strerror_r(errno, reason, sizeof reason) != 0) snprintf(reason, sizeof reason, "no access");
     status = trouble(&r, reason);

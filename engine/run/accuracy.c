@@ -5,20 +5,41 @@
 #include <string.h>
 
 #include "engine/integrate/step_limit.h"
+#include "engine/run/settle.h"
 
 /* Part of the largest stable step that the cheapest method takes, and least steps in a period. */
 static const double OF_LIMIT = 0.82, LEAST_STEPS = 100.0;
 /* Velocities below this part of size over time are not measured relative to themselves. */
 static const double STANDING = 1e-3;
 
-strut_status strut_accuracy_run(const strut_accuracy *a, const strut_experiment *experiment,
+/*
+ * A fine plain run has four steps where the cheapest method has one, of a method that evaluates the forces four
+ * times a step. So many of them, and so many evaluations at least, may be used up.
+ */
+static const double FINE_STEPS = 4.0, FINE_EVALUATIONS = 4.0;
+/* Evaluations times nodes and members, less than which is no matter [1]. */
+static const double LITTLE_WORK = 4e7;
+
+void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name) {
+  if (a->options->phase) a->options->phase(a->options->progress_context, name);
+}
+
+int64_t strut_accuracy_left(const strut_accuracy *a) {
+  return a->allowed > a->used ? a->allowed - a->used : 1;
+}
+
+strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *experiment,
                                 const strut_run_options *options, strut_summary *summary) {
   strut_scene scene = *a->scene;
   strut_model *model = NULL;
   scene.experiment = *experiment;
   scene.experiment.accuracy = 0.0;
   strut_status status = strut_model_compile(&scene, &model, a->error);
-  if (!status) status = strut_simulate(model, options, summary, a->error);
+  strut_run_options bounded = *options;
+  bounded.chosen = true;
+  bounded.most_evaluations = strut_accuracy_left(a);
+  if (!status) status = strut_simulate(model, &bounded, summary, a->error);
+  a->used += summary->force_evaluations;
   strut_model_free(model);
   return status;
 }
@@ -53,6 +74,11 @@ static strut_status choose_cheap(strut_accuracy *a) {
     status = strut_step_limit_for(model, strut_integrator_find(e->integrator), &limit, a->error);
     e->step = fmin(OF_LIMIT * limit, unit / LEAST_STEPS);
     e->refine = e->refine_time = 0.0;
+    double fine = FINE_EVALUATIONS * FINE_STEPS * span.duration / e->step;
+    double little = e->budget / STRUT_USUAL_BUDGET * LITTLE_WORK;
+    little /= (double)(a->scene->node_count + a->scene->member_count);
+    a->budget = (int64_t)fmin(fmax(e->budget * fine, little), 1e18);
+    a->allowed = a->budget;
     a->scale = STANDING * model->size / unit;
   }
   strut_model_free(model);
@@ -76,20 +102,30 @@ bool strut_accuracy_orbit_answers(const strut_accuracy *a, const strut_steady_su
 strut_status strut_simulate_accurately(const strut_scene *scene, const strut_run_options *options,
                                        strut_summary *summary, strut_error *error) {
   strut_error own = {0};
+  strut_scene settled; /* once for all runs: they start from the same bits */
+  strut_settle_summary how;
+  strut_arena arena = {0};
+  double settle_time;
   *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
-  strut_accuracy a = {.scene = scene,
+  strut_accuracy a = {.scene = &settled,
                       .options = options,
                       .wanted = scene->experiment.accuracy,
                       .summary = summary,
                       .error = error ? error : &own};
   bool done = false;
   double begin = strut_run_clock();
-  strut_status status = choose_cheap(&a);
-  if (!status) status = strut_accuracy_by_midpoint(&a, &done);
-  if (!status && !done && scene->experiment.periods > 0.0 && !a.halving)
+  strut_status status =
+      strut_settle_scene(scene, options->interrupt, &arena, &settled, &settle_time, &how, a.error);
+  if (!status) status = choose_cheap(&a);
+  bool velocity = scene->experiment.quantity_count == 0; /* which alone these two watch */
+  if (!status && velocity) status = strut_accuracy_by_midpoint(&a, &done);
+  if (!status && !done && velocity && scene->experiment.periods > 0.0 && !a.halving)
     status = strut_accuracy_by_orbit(&a, &done);
   if (!status && !done) status = strut_accuracy_by_repetition(&a);
   summary->wall_time = strut_run_clock() - begin;
   summary->status = status;
+  summary->settle_time = settle_time, summary->settle = how;
+  strut_summary_warn_of_start(summary);
+  strut_arena_free(&arena);
   return status;
 }

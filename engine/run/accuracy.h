@@ -33,12 +33,20 @@ typedef struct strut_accuracy {
   double wanted, scale;   /* [1], [m/s] */
   bool halving;           /* the scene has one method only: compare it with itself */
   int64_t spent;          /* evaluations of the forces that the answer does not rest on */
+  int64_t budget;         /* evaluations that the whole may take */
+  int64_t used, allowed;  /* made so far, and how many may be made until the present way gives up */
   strut_summary *summary;
   strut_error *error;
 } strut_accuracy;
 
-/** The run of a scene with another experiment. */
-strut_status strut_accuracy_run(const strut_accuracy *a, const strut_experiment *experiment,
+/** The shortest time in which a signal does something of its own [s]; HUGE_VAL: none. */
+double strut_accuracy_signal_time(const strut_scene *scene);
+/** Tells whoever shows progress that another part of the work begins. */
+void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name);
+/** Evaluations that the next run may take, at least 1. */
+int64_t strut_accuracy_left(const strut_accuracy *a);
+/** The run of a scene with another experiment; STRUT_WORK_LIMIT where it takes more than are left. */
+strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *experiment,
                                 const strut_run_options *options, strut_summary *summary);
 /**
  * Drive periods in which the motion must have become steady: all where the run ends when it is. Else

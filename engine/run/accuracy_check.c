@@ -9,8 +9,12 @@
 static const double TRIAL = 40.0;
 enum { MOST_CHECKS = 4 };
 
-strut_status strut_way_judge(const strut_way *w, strut_status status) {
+strut_status strut_way_judge(strut_way *w, strut_status status) {
   if (status) return strut_fail(w->a->error, status, "out of memory");
+  strut_way_count(w);
+  if (strut_period_map_spent(&w->cheap) || strut_period_map_spent(&w->fine))
+    return strut_fail(w->a->error, STRUT_WORK_LIMIT,
+                      "the work allowed was used up while the orbit was corrected");
   if (!strut_period_map_interrupted(&w->cheap)) return STRUT_OK;
   return strut_fail(w->a->error, STRUT_INTERRUPTED,
                     "interrupted at t = %.9g s, while the orbit was corrected", w->cheap.time);
@@ -39,6 +43,7 @@ static void take_last(strut_way *w) {
 strut_status strut_way_accurate(strut_way *w, bool from_orbit, double periods) {
   strut_accuracy *a = w->a;
   strut_summary more = {0};
+  strut_accuracy_begin_phase(a, "until steady by adaptive");
   strut_way_put_orbit(w);
   /* where corrections fail the orbit is sensitive, and errors of a step matter more than usual */
   if (!w->tightened && !(strut_way_part(w) <= 0.8)) {
@@ -101,9 +106,11 @@ static strut_status check_tolerance(strut_way *w) {
   strut_status status = strut_period_map_create(a->scene, &finer, w->cheap.repeats, &map, a->error);
   if (status) return status;
   map.interrupt = w->cheap.interrupt, map.time = w->cheap.time;
+  map.most_evaluations = strut_accuracy_left(a);
   status = strut_orbit_correct(&w->cheap, &map, w->base, w->travel, 0.1 * half * w->cheap.period,
                                &there);
   a->spent += w->cheap.evaluations - before.evaluations + map.evaluations;
+  a->used += w->cheap.evaluations - before.evaluations + map.evaluations;
   w->cheap.evaluations = before.evaluations;
   w->cheap.events = before.events, w->cheap.applied = before.applied;
   strut_period_map_free(&map);

@@ -82,8 +82,7 @@ static bool jumps(const strut_scene *scene) {
   return any;
 }
 
-/* The shortest time in which a signal does something of its own [s]; HUGE_VAL: none. */
-static double signal_time(const strut_scene *scene) {
+double strut_accuracy_signal_time(const strut_scene *scene) {
   double shortest = HUGE_VAL;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
@@ -101,7 +100,7 @@ static double signal_time(const strut_scene *scene) {
 static double first_step(const strut_scene *scene, double cheap_step) {
   strut_span span = strut_scene_span(scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = IN_SIGNAL * unit / signal_time(scene);
+  double signals = IN_SIGNAL * unit / strut_accuracy_signal_time(scene);
   double least = fmax(span.period > 0.0 ? IN_PERIOD : IN_RUN, ceil(signals));
   if (!(unit / least > cheap_step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
@@ -213,6 +212,7 @@ static strut_status halve_until_kept(halving *h, bool *done) {
                                     : span.duration;
   double explicit_evaluations = mostly / h->a->cheap.step;
   double next = PER_STEP * span.duration / h->e.step, time = dearer(h->watch.model);
+  strut_accuracy_begin_phase(h->a, "midpoint with ever smaller steps");
   for (; !status && !*done && time * next < explicit_evaluations; h->e.step *= 0.5) {
     status = run_finer(h, done);
     next = 2.0 * (double)h->now.force_evaluations;

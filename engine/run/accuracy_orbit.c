@@ -9,10 +9,15 @@
 static const double COARSE = 0.0099;
 /* Below this one the accurate method has the last word. */
 static const double FINE = 0.0019;
-/* Periods without which runs are repeated rather than an orbit looked for. */
-static const double LEAST = 20.0;
+/* Periods in which the motion must become steady, for the search of an orbit to be worth it: of a run that ends
+   when it is, and of one whose window is asked for, which repeated runs answer more surely. */
+static const double LEAST = 20.0, LEAST_OF_RUN = 60.0;
 /* A first correction is believed without a second one if it is this part of what is enough. */
 static const double SMALL = 0.15;
+/* Of the work allowed, what may be spent before runs are repeated instead. */
+static const double PART_OF_BUDGET = 0.6;
+/* Work that the whole run by the cheap method may take, over that done so far. */
+static const double WHOLE_RUN = 2.0;
 enum { MOST_CORRECTIONS = 4 };
 /* Periods in which a motion should have become steady, and those in which a method that did not at
    first is given another chance, before it is taken to be irregular. */
@@ -51,6 +56,7 @@ static strut_status run_cheap(strut_way *w, bool *steady) {
   bool may_be_slow = !status && model->contacts.count == 0;
   strut_model_free(model);
   if (status) return status;
+  strut_accuracy_begin_phase(a, "waiting for steady motion");
   status = strut_way_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
   if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow && periods > first) {
     strut_summary more = {0};
@@ -74,6 +80,8 @@ static void take_end(strut_way *w) {
 static strut_status make_maps(strut_way *w, int32_t repeats) {
   strut_accuracy *a = w->a;
   a->spent += w->cheap.evaluations + w->fine.evaluations;
+  strut_way_count(w);
+  w->counted = 0;
   strut_period_map_free(&w->cheap);
   strut_period_map_free(&w->fine);
   w->accurate = a->cheap;
@@ -85,6 +93,7 @@ static strut_status make_maps(strut_way *w, int32_t repeats) {
     status = strut_period_map_create(a->scene, &w->accurate, repeats, &w->fine, a->error);
   if (status) return status;
   w->cheap.interrupt = w->fine.interrupt = a->options->interrupt;
+  w->cheap.most_evaluations = w->fine.most_evaluations = strut_accuracy_left(a);
   w->cheap.time = w->fine.time = w->end.time;
   take_end(w);
   return STRUT_OK;
@@ -126,6 +135,7 @@ static strut_status run_orbit(strut_way *w, strut_summary *summary) {
   if (a->options->sink_count && last > e.periods) e.periods = last;
   e.output_last = 0.0;
   strut_run_options options = *a->options;
+  strut_accuracy_begin_phase(a, "running the orbit");
   options.from = &w->end;
   options.progress = NULL;
   return strut_accuracy_run(a, &e, &options, summary);
@@ -184,6 +194,7 @@ static strut_status finish(strut_way *w) {
     status = strut_way_stuck(w);
     return status || w->found ? status : strut_way_accurate(w, false, all);
   }
+  strut_accuracy_begin_phase(a, "correcting the orbit");
   bool last_word = a->wanted < FINE; /* the accurate method goes on itself: come near enough */
   double enough = (last_word ? 3.0 : 0.3) * a->wanted * size;
   status = correct(w, enough, a->wanted >= COARSE || last_word ? 1 : 2);
@@ -253,12 +264,43 @@ static bool answers(const strut_way *w) {
   return steady.kind != STRUT_MOTION_PERIODIC || strut_accuracy_orbit_answers(a, &steady);
 }
 
+/*
+ * Orbits need not be isolated: a structure that creeps within its stick bands may drift along a family of
+ * them, more slowly than the watch for steady motion sees. Where the whole run costs the cheap method not
+ * much more than what has been done, it is made, and must be as fast in its window as on the orbit.
+ */
+static strut_status check_window(strut_way *w) {
+  strut_accuracy *a = w->a;
+  bool of_orbit = w->found >= STRUT_WAY_CHEAP && w->found <= STRUT_WAY_STUCK;
+  double periods = a->scene->experiment.periods, before = (double)w->run.steady.periods;
+  double work = (double)w->run.force_evaluations / fmax(1.0, before) * periods;
+  if (!of_orbit || a->scene->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
+    return STRUT_OK;
+  strut_experiment whole = a->cheap;
+  strut_summary run = {0};
+  strut_run_options options = {.without_ledger = true,
+                               .interrupt = a->options->interrupt,
+                               .progress = a->options->progress,
+                               .progress_context = a->options->progress_context,
+                               .from = a->options->from};
+  whole.step = w->cheap.dt;
+  strut_accuracy_begin_phase(a, "the whole run by the cheapest method");
+  strut_status status = strut_accuracy_run(a, &whole, &options, &run);
+  a->spent += run.force_evaluations;
+  double away = fabs(run.velocity - w->run.velocity);
+  if (!status && !(away <= 0.3 * a->wanted * strut_way_size(a, run.velocity)))
+    w->found = STRUT_WAY_NONE;
+  strut_summary_free(&run);
+  return status;
+}
+
 /* The motion on the orbit found, which should go as fast as that was found to. */
 static strut_status confirm(strut_way *w, strut_summary *orbit) {
   strut_accuracy *a = w->a;
   if (w->found > STRUT_WAY_CORRECTED && !answers(w)) w->found = STRUT_WAY_NONE;
-  if (!w->found) return STRUT_OK;
-  strut_status status = run_orbit(w, orbit);
+  strut_status status = check_window(w);
+  if (status || !w->found) return status;
+  status = run_orbit(w, orbit);
   double away = fabs(orbit->velocity - w->orbit.velocity);
   if (status || w->found > STRUT_WAY_CORRECTED ||
       away <= 0.6 * a->wanted * strut_way_size(a, w->run.velocity))
@@ -275,10 +317,12 @@ static strut_status confirm(strut_way *w, strut_summary *orbit) {
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   strut_way w = {.a = a};
   *done = false;
-  if (strut_accuracy_periods(a) < LEAST) return STRUT_OK;
+  bool steady_wanted = a->scene->experiment.steady.wanted;
+  if (strut_accuracy_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
   bool steady = false;
   strut_summary orbit = {0};
   const strut_experiment given = a->cheap;
+  a->allowed = (int64_t)(PART_OF_BUDGET * (double)a->budget);
   a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
   a->cheap.refine_memory = 3.0;
   a->cheap.steady.mean_tolerance = MEAN * a->wanted;
@@ -292,6 +336,7 @@ strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   else
     give_up(&w, &orbit);
   a->cheap = given;
+  a->allowed = a->budget;
   release(&w);
-  return status == STRUT_DIVERGED ? STRUT_OK : status;
+  return status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT ? STRUT_OK : status;
 }

@@ -8,6 +8,12 @@ double strut_way_size(const strut_accuracy *a, double velocity) {
   return fmax(fabs(velocity), a->scale);
 }
 
+void strut_way_count(strut_way *w) {
+  int64_t made = w->cheap.evaluations + w->fine.evaluations;
+  w->a->used += made > w->counted ? made - w->counted : 0;
+  w->counted = made;
+}
+
 void strut_way_add(strut_summary *whole, strut_summary *part) {
   int64_t steps = whole->steps + part->steps, events = whole->events + part->events;
   int64_t evaluations = whole->force_evaluations + part->force_evaluations;

@@ -38,6 +38,7 @@ typedef struct strut_way {
   strut_orbit orbit;
   double error; /* of orbit.velocity, estimated [m/s] */
   strut_way_cost settled;
+  int64_t counted; /* evaluations of the present maps that a->used contains */
   strut_way_end found;
   bool tightened;     /* the accurate method's tolerance, for a sensitive orbit */
   strut_summary last; /* of the run with which the way ended, if there was one */
@@ -46,6 +47,8 @@ typedef struct strut_way {
 
 /** The velocity that errors are relative to [m/s]. */
 double strut_way_size(const strut_accuracy *a, double velocity);
+/** Adds what the maps have cost since the latest count to a->used. */
+void strut_way_count(strut_way *way);
 /** Adds what a further part of the run cost to the whole, and takes its results; empties `part`. */
 void strut_way_add(strut_summary *whole, strut_summary *part);
 /**
@@ -61,7 +64,7 @@ void strut_way_take_end(strut_way *way);
 /** Way->orbit becomes what runs go on from. */
 void strut_way_put_orbit(strut_way *way);
 /** Of work on the maps, which returned `status`: whether there was memory, and no interrupt. */
-strut_status strut_way_judge(const strut_way *way, strut_status status);
+strut_status strut_way_judge(strut_way *way, strut_status status);
 
 /** accuracy_check.c. The error of the orbit's velocity, in parts of what is wanted. */
 double strut_way_part(const strut_way *way);

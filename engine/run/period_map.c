@@ -15,12 +15,13 @@ strut_status strut_period_map_create(const strut_scene *scene, const strut_exper
   map->period = strut_scene_span(&map->scene).period;
   map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
   map->dt = map->period / (double)map->steps;
+  const strut_time_grid grid = {.step = map->dt, .last = -1};
   map->method = strut_integrator_find(experiment->integrator);
   strut_status status = strut_model_compile(&map->scene, &map->model, error);
   if (!status) status = strut_state_create(map->model, &map->state, error);
   if (!status) map->workspace = map->method->create(map->model, map->state);
   if (!status &&
-      (!map->workspace || strut_measure_create(map->model, map->dt, 0, 0, &map->measure)))
+      (!map->workspace || strut_measure_create(map->model, &grid, 0, 0, &map->measure)))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (status) {
     strut_period_map_free(map);
@@ -43,6 +44,16 @@ bool strut_period_map_interrupted(const strut_period_map *map) {
   return map->interrupt && *map->interrupt;
 }
 
+bool strut_period_map_spent(const strut_period_map *map) {
+  return map->most_evaluations > 0 && map->evaluations > map->most_evaluations;
+}
+
+/* Of the application under way. */
+static bool used_up(const strut_period_map *map) {
+  return map->most_evaluations > 0 &&
+         map->evaluations + map->state->evaluations > map->most_evaluations;
+}
+
 /* In stretches so long that looking around costs nothing, and so short that nobody waits. */
 static void advance(strut_period_map *map) {
   const strut_model *model = map->model;
@@ -50,7 +61,11 @@ static void advance(strut_period_map *map) {
   int64_t most = STRETCH / (model->members.count + model->node_count + 1) + 1;
   int64_t left = map->steps * map->repeats;
   state->interrupt = map->interrupt;
-  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map)) {
+  if (map->most_evaluations > 0)
+    state->most_evaluations = map->most_evaluations > map->evaluations
+                                  ? map->most_evaluations - map->evaluations
+                                  : 1;
+  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !used_up(map)) {
     int64_t count = left < most ? left : most;
     map->method->advance(model, state, map->workspace, map->dt, count);
     left -= count;
@@ -80,7 +95,8 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   double shift = map->travels ? mean_along(model, y) - before : 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     y[i] -= shift * model->contacts.tangent[i % 2];
-  return state->trouble || strut_period_map_interrupted(map) ? (double)NAN : to - from;
+  bool whole = !state->trouble && !strut_period_map_interrupted(map) && !strut_period_map_spent(map);
+  return whole ? to - from : (double)NAN;
 }
 
 double strut_period_map_size(const strut_period_map *map, const double *d) {

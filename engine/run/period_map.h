@@ -27,6 +27,7 @@ typedef struct strut_period_map {
   int32_t repeats;   /* drive periods of one application */
   bool travels;
   const volatile sig_atomic_t *interrupt; /* an application ends soon after it is set; may be NULL */
+  int64_t most_evaluations; /* and soon after so many, all applications together; 0: any number */
   int64_t evaluations, events, applied; /* so far; applied: drive periods */
 } strut_period_map;
 
@@ -43,6 +44,8 @@ void strut_period_map_subtract(const strut_period_map *map, const double *from, 
                                double *d);
 /** Was it told to stop? */
 bool strut_period_map_interrupted(const strut_period_map *map);
+/** Has it made all the evaluations it may? */
+bool strut_period_map_spent(const strut_period_map *map);
 /** Size of a difference: the largest of positions over the structure's size, and velocities over
     size times 2 pi f. */
 double strut_period_map_size(const strut_period_map *map, const double *d);

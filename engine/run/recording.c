@@ -111,11 +111,10 @@ static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_recording_create(const strut_model *model, double step, double begin,
-                                    strut_sink **sinks, size_t sink_count, strut_recording *r,
+strut_status strut_recording_create(const strut_model *model, const strut_time_grid *grid,
+                                    double begin, strut_sink **sinks, size_t sink_count, strut_recording *r,
                                     strut_error *error) {
-  *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .step = step,
-                         .last = -1};
+  *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .grid = *grid, .last = -1};
   if (!sink_count) return STRUT_OK;
   strut_span span = strut_scene_span(model->scene);
   r->start = begin + span.record_start;
@@ -126,7 +125,7 @@ strut_status strut_recording_create(const strut_model *model, double step, doubl
   r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
   r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
   bool ready = r->length && r->force && lay_out(model, wanted, r);
-  double expected = (span.duration - span.record_start) / fmax(span.record_every, step) + 1.0;
+  double expected = (span.duration - span.record_start) / fmax(span.record_every, grid->step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   char what[80];
   double bytes = sizeof(double) * (double)r->layout.width;
@@ -144,8 +143,12 @@ strut_status strut_recording_create(const strut_model *model, double step, doubl
 
 int64_t strut_recording_next_step(const strut_recording *r) {
   if (!r->sink_count) return INT64_MAX;
-  int64_t due = (int64_t)ceil((r->start + (double)r->sampled * r->every) / r->step - 1e-6);
+  int64_t due = (int64_t)ceil((r->start + (double)r->sampled * r->every) / r->grid.step - 1e-6);
   return due > r->last ? due : r->last + 1;
+}
+
+bool strut_recording_lacks(const strut_recording *r, int64_t n) {
+  return r->sink_count && r->last < n;
 }
 
 /* Values of one channel, (items, components) in the row's order. */
@@ -166,7 +169,7 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
       }
       break;
     case STRUT_CHANNEL_ENERGY: {
-      strut_stored stored = strut_energy_stored(model, state, (double)state->step * r->step);
+      strut_stored stored = strut_energy_stored(model, state, strut_time_grid_at(&r->grid, state->step));
       const double *w = state->work;
       double values[] = {stored.kinetic,           stored.elastic,
                          stored.gravity,           stored.contact,
@@ -208,17 +211,11 @@ static strut_status hand_over(strut_recording *r, strut_error *error) {
 
 strut_status strut_recording_sample(const strut_model *model, strut_state *state,
                                     strut_recording *r, strut_error *error) {
-  double t = (double)state->step * r->step;
+  double t = strut_time_grid_at(&r->grid, state->step);
   double *row = r->rows + r->row_count++ * r->layout.width;
-  int64_t evaluations = state->evaluations;
-  strut_forces_evaluate(model, state, t, state->q, state->v);
-  state->evaluations = evaluations; /* looking on is not part of the run's cost */
-  for (int32_t i = 0; i < model->contacts.count && state->held_normal; i++) {
-    state->normal[i] = state->held_normal[i];
-    state->friction[i] = state->held_friction[i];
-  }
+  strut_forces_observe(model, state, t);
   strut_members_measure(model, state, r->length, r->force);
-  row[0] = t;
+  row[0] = strut_time_grid_real(&r->grid, state->step);
   for (size_t k = 0; k < r->layout.channel_count; k++)
     fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);
   r->last = state->step;

@@ -7,6 +7,7 @@
 
 #include "engine/model/state.h"
 #include "engine/run/recorder.h"
+#include "engine/run/time_grid.h"
 
 enum { STRUT_CHANNELS = 6 };
 
@@ -27,19 +28,22 @@ typedef struct strut_recording {
   double *rows;              /* (capacity, width) waiting to be handed over */
   double *picked;            /* (capacity, width) those of one sink; NULL where all want all */
   size_t row_count, capacity;
-  double start, every, step; /* first sample, interval, dt [s] */
+  strut_time_grid grid;
+  double start, every;       /* first sample, interval [s] */
   int64_t sampled, last;     /* samples taken; the step of the latest, -1 before the first */
   double *length, *force;    /* (members) scratch */
   strut_arena arena;
 } strut_recording;
 
 /** Lays out the channels and begins every sink. Without sinks it costs nothing. begin: the time at
-    which the run begins [s]. */
-strut_status strut_recording_create(const strut_model *model, double step, double begin,
-                                    strut_sink **sinks, size_t sink_count,
+    which the run begins, less the grid's offset [s]. */
+strut_status strut_recording_create(const strut_model *model, const strut_time_grid *grid,
+                                    double begin, strut_sink **sinks, size_t sink_count,
                                     strut_recording *recording, strut_error *error);
 /** The number of the step at whose end the next sample is due; INT64_MAX without sinks. */
 int64_t strut_recording_next_step(const strut_recording *recording);
+/** Is there no sample of step n yet? Not without sinks. */
+bool strut_recording_lacks(const strut_recording *recording, int64_t n);
 /** Takes a sample of the state now; hands rows over when enough have gathered. */
 strut_status strut_recording_sample(const strut_model *model, strut_state *state,
                                     strut_recording *recording, strut_error *error);

@@ -26,14 +26,25 @@ static strut_status refuse_large_step(const strut_run *r, bool bound) {
 static strut_status fill_names(strut_run *r) {
   const strut_scene *scene = r->model->scene;
   strut_summary *s = r->summary;
+  const strut_experiment *e = &scene->experiment;
   size_t contacts = (size_t)r->model->contacts.count;
   s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
   s->contacts = strut_allocate(contacts, sizeof *s->contacts);
-  if (!s->node_names || !s->positions || !s->contacts)
+  if (e->quantity_count)
+    s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
+  if (!s->node_names || !s->positions || !s->contacts || (e->quantity_count && !s->measured))
     return strut_room_fail(r->model->scene, r->error);
   s->node_count = scene->node_count;
   s->contact_count = contacts;
+  s->measured_count = e->quantity_count;
+  for (size_t i = 0; i < s->measured_count; i++)
+    s->measured[i] = (strut_measured){.name = e->quantities[i].name,
+                                      .unit = e->quantities[i].unit,
+                                      .value = (double)NAN,
+                                      .spread = (double)NAN,
+                                      .scale = (double)NAN,
+                                      .expected = (double)NAN};
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
   for (size_t i = 0; i < contacts; i++)
     s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
@@ -53,6 +64,10 @@ static void choose_steps(strut_run *r, const strut_span *span) {
   r->summary->step = r->dt;
   r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
   r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
+  r->grid = (strut_time_grid){
+      .step = r->dt, .last = r->steps, .end = (double)r->first * r->dt + span->duration};
+  double offset = r->options->from ? r->options->from->time - (double)r->first * r->dt : 0.0;
+  if (!r->watching && fabs(offset) > 1e-6 * r->dt) r->grid.offset = offset;
 }
 
 /* Where the run begins: as the scene says, settled, or where another one ended. */
@@ -63,12 +78,13 @@ static strut_status place_state(strut_run *r) {
   if (from) {
     memcpy(r->state->q, from->q, bytes);
     memcpy(r->state->v, from->v, bytes);
-    r->state->refined_until = from->time + from->refined;
+    r->state->refined_until = from->time - r->grid.offset + from->refined;
     return STRUT_OK;
   }
   if (!r->model->scene->settle.wanted) return STRUT_OK;
-  return strut_settle_state(r->model, r->state, r->options->interrupt, &r->summary->settle_time,
-                            r->error);
+  memset(r->state->v, 0, bytes);
+  return strut_settle_experiment(r->model, r->limits, r->options->interrupt, r->state->q,
+                                 &r->summary->settle_time, &r->summary->settle, r->error);
 }
 
 strut_status strut_run_prepare(strut_run *r) {
@@ -98,19 +114,23 @@ strut_status strut_run_prepare(strut_run *r) {
     return status;
   r->workspace = r->method->create(r->model, r->state);
   double begin = (double)r->first * r->dt;
+  int64_t room = r->more_periods > STRUT_LONGEST_REPEAT ? r->more_periods : STRUT_LONGEST_REPEAT;
   if (!r->workspace ||
-      strut_measure_create(r->model, r->dt, begin, (size_t)r->more_periods + 1, &r->measure) ||
+      strut_measure_create(r->model, &r->grid, begin, (size_t)room + 1, &r->measure) ||
       (r->watching && strut_watch_create(r->model, span.period, begin, &r->watch)))
     return strut_room_fail(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
-  r->state->ledger = !r->options->without_ledger;
+  r->state->time_offset = r->grid.offset;
+  r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(scene);
   r->state->interrupt = r->options->interrupt;
+  r->state->most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard) ||
       !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
     return strut_room_fail(r->model->scene, r->error);
   strut_energy_mark(r->model, r->state);
   r->initial = strut_energy_stored(r->model, r->state, begin);
-  return strut_recording_create(r->model, r->dt, begin, r->options->sinks, r->options->sink_count,
+  strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
+  return strut_recording_create(r->model, &r->grid, begin, r->options->sinks, r->options->sink_count,
                                 &r->recording, r->error);
 }

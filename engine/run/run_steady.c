@@ -68,8 +68,11 @@ strut_status strut_run_watch(strut_run *r) {
   strut_status status = r->model->scene->experiment.steady.shooting ? shoot(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->watch.period;
-  r->steps = n + r->more_periods * r->period_steps;
-  strut_measure_window(r->model, r->state, now, period, (size_t)r->more_periods, &r->measure);
+  int64_t periods = r->more_periods, repeats = r->watch.result.repeats;
+  if (r->measure.quantities && periods < repeats) periods = repeats; /* over the whole orbit */
+  r->steps = n + periods * r->period_steps;
+  r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
+  strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
   if (r->model->scene->experiment.output_last > 0.0) r->recording.start = now;
   return STRUT_OK;
 }

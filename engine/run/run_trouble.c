@@ -29,12 +29,12 @@ strut_status strut_run_diverged(const strut_run *r, int32_t node) {
     return strut_fail(r->error, STRUT_DIVERGED,
                       "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                       "at the start: %.4g s, at t = %.9g s: %.4g s); %s",
-                      r->summary->node_names[node], (double)r->state->step * r->dt, r->dt, least,
+                      r->summary->node_names[node], strut_run_time(r), r->dt, least,
                       seen, limit, remedy);
   return strut_fail(r->error, STRUT_DIVERGED,
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
-                    r->summary->node_names[node], (double)r->state->step * r->dt, r->dt, least,
+                    r->summary->node_names[node], strut_run_time(r), r->dt, least,
                     remedy);
 }
 
@@ -53,10 +53,10 @@ strut_status strut_run_stuck(const strut_run *r) {
         r->error, STRUT_DIVERGED,
         "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g "
         "s; use a smaller step, or look there for a member that passes through no length",
-        r->method->name, (double)r->state->step * r->dt,
+        r->method->name, strut_run_time(r),
         r->summary->node_names[r->state->trouble_node], r->dt);
   return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
-                    r->method->name, (double)r->state->step * r->dt, why[r->state->trouble]);
+                    r->method->name, strut_run_time(r), why[r->state->trouble]);
 }
 
 /* Has most of the energy that was exchanged come from nowhere? So it does where motions grow by
@@ -65,7 +65,8 @@ static bool energy_from_nowhere(const strut_run *r) {
   strut_energy e;
   if (!r->state->ledger) return false;
   if (!(r->dt > 0.5 * r->summary->step_limit)) return false; /* then it is not the step's limit */
-  strut_balance_fill(r->model, r->state, &r->initial, (double)r->state->step * r->dt, &e);
+  strut_balance_fill(r->model, r->state, &r->initial,
+                     strut_time_grid_at(&r->grid, r->state->step), &e);
   double there = e.kinetic + e.elastic + fabs(e.gravity) + e.contact;
   return e.residual > 0.5 * (e.moved + fabs(e.initial) + there);
 }

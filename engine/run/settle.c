@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/settle.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/forces/energy.h"
 #include "engine/integrate/integrator.h"
+
+/* Evaluations after which accelerations that rounding alone explains count as rest. */
+static const int64_t PATIENCE = 1000000;
 
 /* The scene with all that moves or holds by itself taken out. Shares texts and arrays. */
 static strut_status quiet_scene(const strut_scene *scene, strut_scene *quiet, strut_arena *arena) {
@@ -26,90 +31,157 @@ static strut_status quiet_scene(const strut_scene *scene, strut_scene *quiet, st
   return STRUT_OK;
 }
 
-static double largest(const double *x, int32_t n) {
+/* The node with the largest entry of x, and that entry's size: infinite where x is no number. */
+static double largest(const double *x, int32_t n, int32_t *node) {
   double most = 0.0;
+  *node = 0;
   for (int32_t i = 0; i < n; i++) {
-    if (!(fabs(x[i]) <= most)) most = fabs(x[i]);
+    if (!(fabs(x[i]) <= most)) most = fabs(x[i]), *node = i / 2;
     if (isnan(x[i])) return HUGE_VAL;
   }
   return most;
 }
 
-/* Steps until at rest. acceleration: (length) scratch. */
-static strut_status relax(const strut_model *model, strut_state *state,
-                          const strut_integrator *method, void *workspace, double *acceleration,
-                          const volatile sig_atomic_t *interrupt, strut_error *error) {
-  const strut_settle *wanted = &model->scene->settle;
-  double dt = model->scene->experiment.step, previous = 0.0;
-  int32_t both = model->length;
-  size_t bytes = (size_t)both * sizeof(double);
-  double speed = HUGE_VAL, push = HUGE_VAL;
-  memset(state->v, 0, bytes);
-  state->interrupt = interrupt;
-  if (method->restart) method->restart(model, state, workspace, dt);
-  while ((double)state->step * dt < wanted->limit) {
-    if (interrupt && *interrupt)
+/* The acceleration that the last bits of positions may leave at a node of stiff members. */
+static double rounding(const strut_relaxation *r) {
+  const strut_model *model = r->model;
+  const strut_member_table *t = &model->members;
+  double worst = 0.0, *force = r->acceleration;
+  memset(force, 0, (size_t)model->length * sizeof *force);
+  for (int32_t j = 0; j < t->count; j++) {
+    const double *a = r->state->q + t->from[j], *b = r->state->q + t->to[j];
+    double far = fmax(fmax(fabs(a[0]), fabs(a[1])), fmax(fabs(b[0]), fabs(b[1])));
+    force[t->from[j]] += t->stiffness[j] * far;
+    force[t->to[j]] += t->stiffness[j] * far;
+  }
+  for (int32_t i = 0; i < model->node_count; i++)
+    if (model->weight[i] > 0.0) worst = fmax(worst, force[2 * i] / model->weight[i]);
+  return 4.0 * DBL_EPSILON * worst;
+}
+
+static strut_status give_up(const strut_relaxation *r, strut_error *error) {
+  const strut_settle *wanted = &r->scene.settle;
+  int32_t fastest, pushed, length = r->model->length;
+  double speed = largest(r->state->v, length, &fastest);
+  strut_forces_acceleration(r->model, r->state, 0.0, r->state->q, r->state->v, r->acceleration);
+  double push = largest(r->acceleration, length, &pushed);
+  bool late = r->time >= wanted->limit, moves = !(speed < wanted->speed);
+  bool slides = r->scene.contact_count && !wanted->friction;
+  char within[60];
+  snprintf(within, sizeof within, late ? "%g s" : "%g evaluations of the forces",
+           late ? wanted->limit : (double)r->evaluations);
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "the structure did not come to rest within %s: largest speed %.3g m/s, "
+                    "largest acceleration %.3g m/s^2, node '%.60s' %s most; give a larger "
+                    "initial.settle.%s or looser speed and acceleration%s",
+                    within, speed, push, r->scene.nodes[moves ? fastest : pushed].name,
+                    moves ? "moving" : "accelerating", late ? "limit" : "evaluations",
+                    slides ? ", or let it hold by initial.settle.friction: kept" : "");
+}
+
+static strut_status fail_diverged(const strut_relaxation *r, double time, strut_error *error) {
+  if (r->state->trouble)
+    return strut_fail(error, STRUT_DIVERGED,
+                      "%s could not go on while coming to rest, after %g s; look for a member of "
+                      "zero length",
+                      r->method->name, time);
+  return strut_fail(error, STRUT_DIVERGED,
+                    "coming to rest before the run diverged after %g s with a step of %g s; "
+                    "use a smaller initial.settle.step",
+                    time, r->step);
+}
+
+/* No velocities: where the kinetic energy has passed a peak, and at first. */
+static void stop_motion(strut_relaxation *r) {
+  memset(r->state->v, 0, (size_t)r->model->length * sizeof(double));
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->step);
+}
+
+/* Steps until at rest; r->time and r->evaluations as they were before. */
+static strut_status relax(strut_relaxation *r, strut_error *error) {
+  const strut_settle *wanted = &r->scene.settle;
+  strut_state *state = r->state;
+  double dt = r->step, previous = 0.0, before = r->time, enough = wanted->acceleration;
+  double most = wanted->evaluations > 0.0 ? wanted->evaluations : STRUT_SETTLE_EVALUATIONS;
+  int64_t spent = r->evaluations;
+  int32_t length = r->model->length, node;
+  bool patient = true;
+  stop_motion(r);
+  while (r->time < wanted->limit && (double)r->evaluations < most) {
+    if (r->interrupt && *r->interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
-    method->advance(model, state, workspace, dt, 1);
+    r->method->advance(r->model, state, r->workspace, dt, 1);
+    r->time = before + (double)state->step * dt;
+    r->evaluations = spent + state->evaluations;
     if (state->trouble == STRUT_TROUBLE_INTERRUPT) continue;
-    if (state->trouble)
-      return strut_fail(error, STRUT_DIVERGED,
-                        "%s could not go on while coming to rest, after %g s; settle by another "
-                        "method or look for a member of zero length",
-                        method->name, (double)state->step * dt);
-    double kinetic = strut_energy_kinetic(model, state->v);
-    if (!isfinite(kinetic))
-      return strut_fail(error, STRUT_DIVERGED,
-                        "coming to rest before the run diverged after %g s with a step of %g s; "
-                        "use a smaller step",
-                        (double)state->step * dt, dt);
+    double kinetic = strut_energy_kinetic(r->model, state->v);
+    if (state->trouble || !isfinite(kinetic)) return fail_diverged(r, r->time - before, error);
     if (kinetic < previous) {
-      memset(state->v, 0, bytes);
-      if (method->restart) method->restart(model, state, workspace, dt);
+      stop_motion(r);
       kinetic = 0.0;
     }
     previous = kinetic;
-    speed = largest(state->v, both);
-    if (!(speed < wanted->speed)) continue;
-    strut_forces_acceleration(model, state, 0.0, state->q, state->v, acceleration);
-    push = largest(acceleration, both);
-    if (push < wanted->acceleration) return STRUT_OK;
+    if (patient && r->evaluations > PATIENCE) {
+      patient = false;
+      enough = fmax(enough, rounding(r));
+    }
+    if (!(largest(state->v, length, &node) < wanted->speed)) continue;
+    strut_forces_acceleration(r->model, state, 0.0, state->q, state->v, r->acceleration);
+    if (largest(r->acceleration, length, &node) < enough) return STRUT_OK;
   }
-  bool slides = model->scene->contact_count && !wanted->friction;
-  return strut_fail(error, STRUT_NOT_SETTLED,
-                    "the structure did not come to rest within %g s: largest speed %.3g m/s, "
-                    "largest acceleration %.3g m/s^2; give a larger initial.settle.limit or "
-                    "looser speed and acceleration%s",
-                    wanted->limit, speed, push,
-                    slides ? ", or let it hold by initial.settle.friction: kept" : "");
+  return give_up(r, error);
+}
+
+strut_status strut_relaxation_run(strut_relaxation *r, strut_error *error) {
+  r->state->interrupt = r->interrupt;
+  return relax(r, error);
+}
+
+/* Runge-Kutta, or with exact Coulomb friction, which that cannot take, the same from event to event. */
+static const strut_integrator *method_of(const strut_model *model) {
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    if (model->contacts.entry[i].law == STRUT_FRICTION_COULOMB)
+      return strut_integrator_find("rk4-events");
+  return strut_integrator_find("rk4");
+}
+
+strut_status strut_relaxation_create(const strut_model *model, strut_relaxation *r,
+                                     strut_error *error) {
+  *r = (strut_relaxation){.model = NULL};
+  const strut_scene *scene = model->scene;
+  strut_status status = quiet_scene(scene, &r->scene, &r->arena);
+  r->step = scene->settle.step > 0.0 ? scene->settle.step : scene->experiment.step;
+  r->acceleration = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
+  if (!r->acceleration) status = STRUT_NO_MEMORY;
+  if (status) return strut_fail(error, status, "out of memory");
+  status = strut_model_compile(&r->scene, &r->model, error);
+  if (!status) status = strut_state_create(r->model, &r->state, error);
+  if (status) return status;
+  r->method = method_of(r->model);
+  r->workspace = r->method->create(r->model, r->state);
+  return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+}
+
+void strut_relaxation_free(strut_relaxation *r) {
+  strut_state_free(r->state);
+  strut_model_free(r->model);
+  strut_arena_free(&r->arena);
+  *r = (strut_relaxation){.model = NULL};
 }
 
 strut_status strut_settle_state(const strut_model *model, strut_state *state,
                                 const volatile sig_atomic_t *interrupt, double *time,
                                 strut_error *error) {
-  const strut_integrator *method = strut_integrator_find(model->scene->experiment.integrator);
-  strut_arena arena = {0};
-  strut_scene scene;
-  strut_model *quiet = NULL;
-  strut_state *rest = NULL;
-  void *workspace = NULL;
+  strut_relaxation r;
   size_t bytes = (size_t)model->length * sizeof(double);
-  double *acceleration = strut_arena_allocate(&arena, 1, bytes);
-  strut_status status = quiet_scene(model->scene, &scene, &arena);
-  if (!acceleration) status = STRUT_NO_MEMORY;
-  if (status) strut_fail(error, status, "out of memory");
-  if (!status) status = strut_model_compile(&scene, &quiet, error);
-  if (!status) status = strut_state_create(quiet, &rest, error);
-  if (!status && !(workspace = method->create(quiet, rest)))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (!status) status = relax(quiet, rest, method, workspace, acceleration, interrupt, error);
+  strut_status status = strut_relaxation_create(model, &r, error);
+  r.interrupt = interrupt;
+  if (!status) status = strut_relaxation_run(&r, error);
   if (!status) {
-    *time = (double)rest->step * scene.experiment.step;
-    memcpy(state->q, rest->q, bytes);
+    *time = r.time;
+    memcpy(state->q, r.state->q, bytes);
     memset(state->v, 0, bytes);
   }
-  strut_state_free(rest);
-  strut_model_free(quiet);
-  strut_arena_free(&arena);
+  strut_relaxation_free(&r);
   return status;
 }

@@ -1,25 +1,88 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Coming to rest before a run: dynamic relaxation with kinetic damping.
+ * Coming to rest before a run: dynamic relaxation with kinetic damping, and whether the rest is stable.
+ *
+ * Where a structure settles does not depend on the method, step or accuracy of the run: it is always
+ * the classical Runge-Kutta method that settles, with settle.step. Every command that wants the
+ * settled start gets it from strut_settle_experiment, hence the same bits.
  */
 #ifndef STRUT_ENGINE_RUN_SETTLE_H
 #define STRUT_ENGINE_RUN_SETTLE_H
 
 #include <signal.h>
 
+#include "engine/integrate/step_limit.h"
 #include "engine/model/state.h"
+#include "engine/run/summary.h"
 
+/** A model without drives, driven loads, belt and, unless kept, friction, with a state that relaxes. */
+typedef struct strut_relaxation {
+  strut_scene scene;
+  strut_model *model; /* of it */
+  strut_state *state;
+  const struct strut_integrator *method;
+  void *workspace;
+  double *acceleration; /* (length) */
+  double step;          /* [s] */
+  double time;          /* simulated so far [s] */
+  int64_t evaluations;  /* so far */
+  const volatile sig_atomic_t *interrupt;
+  strut_arena arena;
+} strut_relaxation;
+
+/** The step is the scene's; it may be changed before it runs. STRUT_NO_MEMORY, STRUT_SINGULAR. */
+strut_status strut_relaxation_create(const strut_model *model, strut_relaxation *relaxation,
+                                     strut_error *error);
 /**
- * Lets the structure come to rest with actuators, loads on a signal and belt off, and friction too
- * unless the scene keeps it: it is
- * integrated with the scene's method and step, and all velocities are set to zero whenever the
+ * Integrates from the state's positions, at rest, and sets all velocities to zero whenever the
  * kinetic energy has passed a peak, until every speed and acceleration is below the scene's limits.
- * On STRUT_OK the state's positions are those of rest, its velocities 0, its time 0; *time is the
- * simulated time it took [s]. Else STRUT_NOT_SETTLED, STRUT_DIVERGED, STRUT_INTERRUPTED or
- * STRUT_NO_MEMORY.
+ * Fails with STRUT_NOT_SETTLED where the scene's limits of time or work are used up before,
+ * STRUT_DIVERGED, STRUT_INTERRUPTED.
  */
+strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error);
+void strut_relaxation_free(strut_relaxation *relaxation);
+
+/** A relaxation by itself, with the step as the scene gives it; *time is the time it took [s]. */
 strut_status strut_settle_state(const strut_model *model, strut_state *state,
                                 const volatile sig_atomic_t *interrupt, double *time,
                                 strut_error *error);
+
+/** settle_stability.c. The most unstable direction of an equilibrium. */
+typedef struct strut_instability {
+  int32_t node;       /* that moves most; -1: the equilibrium is not unstable */
+  double stiffness;   /* lowest eigenvalue of the Hessian [N/m] */
+  double growth_rate; /* [1/s] */
+  double *direction;  /* (length) 1 where the node moves; of the arena; NULL where not unstable */
+} strut_instability;
+
+/**
+ * Counts the negative eigenvalues of the tangent stiffness at q by the signs of its factor, contacts
+ * that touch closed, held along the ground too where they stick. Motions without stiffness, such as
+ * those of a structure that floats or slides freely, are no instability. STRUT_NO_MEMORY.
+ */
+strut_status strut_find_instability(const strut_model *model, const double *q, strut_arena *arena,
+                                    strut_instability *instability, strut_error *error);
+
+/**
+ * settle_experiment.c. The start of the model's experiment, settled: q (length) are the positions
+ * [m], *time what it simulated [s], `how` tells the rest. The step is chosen by the stability limit
+ * where the scene gives none that is stable; one that proves too large on the way is halved. With
+ * settle.perturb an unstable equilibrium is left. limits: of models seen before, may be NULL. Fails as
+ * strut_relaxation_run.
+ */
+STRUT_API strut_status strut_settle_experiment(const strut_model *model, strut_step_limits *limits,
+                                               const volatile sig_atomic_t *interrupt, double *q,
+                                               double *time, strut_settle_summary *how,
+                                               strut_error *error);
+
+/**
+ * A scene that starts where `scene` has settled, at rest, and does not settle: for studies that run
+ * one experiment several times. A plain copy where the scene does not settle. Its nodes are the
+ * arena's, all else is shared with `scene`.
+ */
+STRUT_API strut_status strut_settle_scene(const strut_scene *scene,
+                                          const volatile sig_atomic_t *interrupt,
+                                          strut_arena *arena, strut_scene *settled, double *time,
+                                          strut_settle_summary *how, strut_error *error);
 
 #endif

@@ -23,12 +23,16 @@ typedef struct strut_run_options {
   bool force;                             /* run even above the step limit */
   const volatile sig_atomic_t *interrupt; /* stops soon after it becomes non-zero; may be NULL */
   void (*progress)(void *context, double fraction); /* a few times a second; may be NULL */
-  void *progress_context;
+  void (*phase)(void *context, const char *name); /* a run in several parts begins another one, such
+                                 as "checking by adaptive"; may be NULL */
+  void *progress_context;     /* of both */
   strut_sink **sinks; /* (sink_count) */
   size_t sink_count;
-  const strut_snapshot *from; /* instead of the scene's start; its time becomes a whole number of
-                                 steps; may be NULL */
+  const strut_snapshot *from; /* instead of the scene's start; in a run that stops when it is steady
+                                 its time becomes a whole number of steps; may be NULL */
   strut_snapshot *to;         /* filled at the end; may be NULL */
+  int64_t most_evaluations;   /* of the forces: the run ends soon after with STRUT_WORK_LIMIT; 0: any */
+  bool chosen;                /* method and step were chosen for a wanted accuracy */
   bool without_ledger;        /* no works and no energy residual in the summary: 0. Cheaper */
 } strut_run_options;
 

@@ -44,6 +44,8 @@ static void finish_alone(hall *h, seat *s) {
 
 static bool fits(const hall *h, const seat *s) {
   const strut_run *r = &s->run;
+  if (r->measure.quantities) return false; /* lanes show positions and velocities only */
+  if (strut_run_last_step_due(r) || r->grid.offset != 0.0) return false;
   return h->batch && r->state->ledger != h->source->without_ledger &&
          h->batch->method == r->method && strut_batch_possible(r->model, r->method) &&
          strut_lanes_alike(h->source->example, r->model);
@@ -108,6 +110,12 @@ static void step(hall *h) {
   strut_subnormals_restore(subnormals);
 }
 
+static void leave_alone(hall *h, int32_t lane) {
+  strut_batch_get(h->batch, lane, h->seats[lane].run.state);
+  leave(h, lane);
+  finish_alone(h, &h->seats[lane]);
+}
+
 /* Looks at the lanes that have come to their stop; those that have ended leave. */
 static void look(hall *h) {
   for (int32_t l = 0; l < h->width; l++) {
@@ -118,6 +126,8 @@ static void look(hall *h) {
     if (status || s->stop == s->run.state->step) {
       leave(h, l);
       end(h, s, status);
+    } else if (strut_run_last_step_due(&s->run)) {
+      leave_alone(h, l);
     } else if (s->run.shot_periods != shot) {
       strut_batch_put(h->batch, l, s->run.state, s->run.workspace); /* it goes on from the orbit */
     }
@@ -131,9 +141,7 @@ static void finish_last(hall *h) {
   for (int32_t l = 0; l < h->width; l++) {
     seat *s = &h->seats[l];
     if (!s->taken) continue;
-    strut_batch_get(h->batch, l, s->run.state);
-    leave(h, l);
-    finish_alone(h, s);
+    leave_alone(h, l);
   }
 }
 

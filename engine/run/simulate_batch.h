@@ -2,6 +2,8 @@
 /**
  * Many runs on one core: those that are alike side by side in the lanes of a batch.
  *
+ * A last step that is shorter than the others is taken alone, out of the lanes.
+ *
  * Every summary, row of a recording and failure is what strut_simulate would give, bit for bit (a NAN's
  * sign aside). Runs that no lane can take are run alone in between: other methods than rk4 and
  * verlet-events, another topology than the batch's, bars that are rigid, other laws of the ground than

@@ -13,6 +13,7 @@
 #include "engine/run/simulate.h"
 #include "engine/run/steady.h"
 #include "engine/run/stick_band.h"
+#include "engine/run/time_grid.h"
 
 /** All that belongs to one run. */
 typedef struct strut_run {
@@ -29,9 +30,11 @@ typedef struct strut_run {
   strut_guard guard;
   strut_stick_band band;
   strut_stored initial;
+  strut_balance_watch balance;
   bool watching;
   strut_watch watch;
   double dt;
+  strut_time_grid grid;
   int64_t first, steps; /* the step number it begins with, and the one it is to end with */
   int64_t period_steps; /* of a drive period, where steady motion is watched for */
   int64_t more_periods; /* to run, and record, once it is steady */
@@ -55,6 +58,10 @@ strut_status strut_run_begin(const strut_model *model, const strut_run_options *
 strut_status strut_run_look(strut_run *run, int64_t *stop);
 /** From a look to the next one. */
 void strut_run_step(strut_run *run, int64_t stop);
+/** Is the step that is due the last one, and shorter than the others? Only strut_run_step takes it. */
+bool strut_run_last_step_due(const strut_run *run);
+/** The time that the run has come to [s]. */
+double strut_run_time(const strut_run *run);
 /** Fills the summary and frees what belongs to the run; `status` is what begin or look returned. */
 strut_status strut_run_end(strut_run *run, strut_status status);
 
@@ -71,6 +78,9 @@ int32_t strut_run_lost_node(const strut_model *model, const strut_state *state);
 strut_status strut_run_diverged(const strut_run *r, int32_t node);
 /** Fails for a method that could not go on. */
 strut_status strut_run_stuck(const strut_run *r);
+
+/** At the end: what is to be said of the result goes into the summary, which is filled. */
+void strut_run_warn(const strut_run *r);
 
 /** A place within the period that no symmetry of the drive prefers. */
 int64_t strut_run_middle(int64_t period);

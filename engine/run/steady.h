@@ -16,7 +16,7 @@
 #include "engine/run/measure.h"
 #include "engine/run/summary.h"
 
-enum { STRUT_RING = 32, STRUT_REPEATS = 6, STRUT_MARKS = 129 };
+enum { STRUT_RING = 32, STRUT_REPEATS = 6, STRUT_LONGEST_REPEAT = 8, STRUT_MARKS = 129 };
 
 typedef struct strut_watch {
   const strut_model *model;

@@ -16,11 +16,26 @@ typedef struct strut_band_watch {
   double change;   /* |a| dt along the ground, summed over them [m/s] */
 } strut_band_watch;
 
+/**
+ * A member between two nodes that stick: in its band each creeps at a speed of its own, which strains
+ * the member though nothing moves. Where static friction is the stronger, that may let go of one.
+ */
+typedef struct strut_band_tie {
+  int32_t member, contact[2];
+  bool held;     /* both stuck at the latest look */
+  double length; /* then [m] */
+  double force;  /* from creeping since they stick [N] */
+  double worst;  /* the largest so far, as a part of what holds the weaker node [1] */
+} strut_band_tie;
+
 typedef struct strut_stick_band {
   double step; /* [s] */
   int looks;
   strut_band_watch *watch; /* (contacts); NULL: nothing to watch */
   double *a, *scratch;     /* (length) */
+  strut_band_tie *ties;    /* (tie_count) */
+  int32_t tie_count;
+  int64_t last; /* step of the latest look */
 } strut_stick_band;
 
 /**
@@ -38,10 +53,13 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
 void strut_stick_band_look(const strut_model *model, const strut_state *state,
                            strut_stick_band *band);
 /**
- * The mean |a| dt of a contact while it slid [m/s], where that is more than a hundred times its band,
- * so that it stuck by accident if at all; else 0.
+ * The mean |a| dt of a contact while it slid [m/s], where its band is so much narrower that this
+ * changes the answer: half of that where static friction is the stronger, else a hundredth; else 0.
  */
 double strut_stick_band_missed(const strut_model *model, const strut_stick_band *band,
                                int32_t contact);
+
+/** The tie that creeping strains most, where that is enough to let go of a node; else NULL. */
+const strut_band_tie *strut_stick_band_strained(const strut_stick_band *band);
 
 #endif

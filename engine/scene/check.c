@@ -14,6 +14,10 @@
 void strut_find(strut_checker *checker, strut_subject subject, size_t index, const char *key,
                 const char *format, ...) {
   strut_findings *f = checker->findings;
+  if (f->count >= STRUT_FINDINGS_MOST) {
+    f->unstored++;
+    return;
+  }
   char text[600];
   va_list arguments;
   va_start(arguments, format);

@@ -34,9 +34,12 @@ typedef struct strut_finding {
   const char *message; /* one sentence without a full stop */
 } strut_finding;
 
+/** Most findings that are stored; later ones are only counted. */
+enum { STRUT_FINDINGS_MOST = 1000 };
+
 /** All findings; owns their messages. Zero-initialise it. */
 typedef struct strut_findings {
-  size_t count, capacity;
+  size_t count, capacity, unstored;
   strut_finding *items;
   strut_arena arena;
 } strut_findings;
@@ -46,12 +49,18 @@ typedef enum strut_purpose {
   STRUT_FOR_STATICS,
   STRUT_FOR_RUN,
   STRUT_FOR_RUN_TOLD, /* for a run whose step, or the accuracy it is chosen by, is told later */
-  STRUT_FOR_ANY /* for a run where the scene says anything about one, else for statics */
+  STRUT_FOR_ANY       /* for a run where the scene says anything about one, else for statics */
 } strut_purpose;
 
 /** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
                                          strut_findings *findings);
+/**
+ * What a valid scene has that is hardly meant, each cause once: rest lengths that drives take below
+ * zero, nodes that begin inside the ground, members that join the same two nodes, masses that no member
+ * holds. A warning's key is a word for programs, such as "inside_ground". STRUT_OK or STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_scene_warn(const strut_scene *scene, strut_findings *warnings);
 STRUT_API void strut_findings_free(strut_findings *findings);
 
 #endif

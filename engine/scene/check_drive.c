@@ -303,6 +303,11 @@ void strut_check_experiment(strut_checker *checker) {
   for (size_t i = 0; i < 3 && settle->wanted; i++)
     strut_find_range(checker, STRUT_ON_INITIAL, 0, limits[i].key, "settling", limits[i].value,
                      STRUT_ABOVE_ZERO);
+  if (settle->wanted)
+    strut_find_range(checker, STRUT_ON_INITIAL, 0, "evaluations", "settling", settle->evaluations,
+                     STRUT_NOT_NEGATIVE);
+  if (settle->wanted && !isfinite(settle->step))
+    strut_find(checker, STRUT_ON_INITIAL, 0, "step", "the step of settling is not finite");
   if (!isfinite(scene->gravity[0]) || !isfinite(scene->gravity[1]))
     strut_find(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
   if ((unsigned)scene->mass_model > STRUT_MASS_LUMPED)

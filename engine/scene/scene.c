@@ -13,6 +13,7 @@ void strut_scene_init(strut_scene *scene) {
   scene->search.seed = 1;
   scene->experiment.integrator = "rk4";
   scene->experiment.tolerance = 1e-6;
+  scene->experiment.budget = STRUT_USUAL_BUDGET;
   scene->experiment.refine_rate = 0.25;
   scene->experiment.refine_memory = 8.0;
   scene->experiment.steady = (strut_steady){.tolerance = 0.005, .successive = 5};

@@ -16,9 +16,12 @@
 #include "engine/base/export.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/scene/quantity.h"
 #include "engine/scene/signal.h"
 
 enum { STRUT_LANGUAGE_VERSION = 1 };
+
+enum { STRUT_USUAL_BUDGET = 20 }; /* see strut_experiment.budget */
 
 typedef struct strut_node {
   const char *name;
@@ -130,7 +133,13 @@ typedef struct strut_settle {
   double speed;        /* at rest when every speed is below this [m/s]; paper 1e-8 */
   double acceleration; /* and every acceleration below this [m/s^2]; paper 1e-8 */
   double limit;        /* gives up after this much simulated time [s] */
+  double evaluations;  /* and after this many evaluations of the forces; 0: STRUT_SETTLE_EVALUATIONS */
+  double step;         /* of the Runge-Kutta method that settles [s]; 0: the experiment's, whatever its
+                          method; below zero: chosen by the stability limit */
+  bool perturb;        /* leave an equilibrium that is unstable, and settle again */
 } strut_settle;
+
+static const double STRUT_SETTLE_EVALUATIONS = 4e7;
 
 typedef enum strut_channel {
   STRUT_CHANNEL_POSITION = 1,
@@ -192,6 +201,7 @@ typedef struct strut_experiment {
   double refine_memory;   /* taken from the scene: so many relaxation times long [1]; default 8 */
   double accuracy;        /* wanted of the measured quantity, relative [1]: method and step are
                              chosen by it; 0: they are as given */
+  double budget;          /* work allowed for that, in fine runs by a fixed step */
   strut_steady steady;
   double duration;        /* [s]; 0 when given in periods */
   double periods;         /* number of periods of signal `period_signal`; 0 when in seconds */
@@ -200,6 +210,8 @@ typedef struct strut_experiment {
   double measure_last;    /* window: the last so many periods (if periods > 0), else seconds; 0 =
                              the whole run */
   int32_t measure_node;   /* whose velocity (14) is measured; -1: the centre of mass */
+  size_t quantity_count;
+  strut_quantity_definition *quantities; /* (quantity_count) measured beside that velocity */
   double output_every;    /* sampling interval [s]; 0: a thousandth of the recorded time */
   double output_last;     /* record only the last so many periods or seconds; 0: all */
   unsigned channels;      /* strut_channel bits; default position, length, force */

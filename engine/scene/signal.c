@@ -91,6 +91,46 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
     evaluate(signals, index, t, turns, value, rate);
 }
 
+/* The first multiple of half a period after t, counted from where the phase is 0. */
+static double next_half_period(const strut_signal *s, double t) {
+  double halves = 2.0 * (s->frequency * (t - s->start) + s->phase);
+  double next = floor(halves) + 1.0;
+  double at = s->start + (0.5 * next - s->phase) / s->frequency;
+  if (!(at > t)) at = s->start + (0.5 * (next + 1.0) - s->phase) / s->frequency;
+  return at;
+}
+
+static double next_break_inside(const strut_signal *signals, const strut_signal *s, double t) {
+  double first = (double)INFINITY;
+  switch (s->kind) {
+    case STRUT_SQUARE:
+      return next_half_period(s, t);
+    case STRUT_HALF_SINE:
+      return s->start + 0.5 / s->frequency;
+    case STRUT_TABLE:
+      for (size_t k = s->point_count; k > 0 && s->time[k - 1] > t; k--) first = s->time[k - 1];
+      return first;
+    case STRUT_SUM:
+      for (size_t i = 0; i < s->term_count; i++)
+        first = fmin(first, strut_signal_next_break(signals, s->terms[i], t));
+      return first;
+    case STRUT_CONSTANT:
+    case STRUT_SINE:
+    case STRUT_RAMP:
+      break;
+  }
+  return first;
+}
+
+double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
+  const strut_signal *s = &signals[index];
+  if (s->kind == STRUT_TABLE) return next_break_inside(signals, s, t);
+  if (t < s->start) return s->start;
+  double first = next_break_inside(signals, s, t);
+  if (!(first > t)) first = (double)INFINITY;
+  return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
+}
+
 /* Longest period among a signal's repeating parts, or among its pulses; 0 where there is none. */
 static double longest_period(const strut_signal *signals, int32_t index, bool pulses) {
   const strut_signal *s = &signals[index];

@@ -52,9 +52,25 @@ STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index,
                                      double *value, double *rate);
 
 /**
+ * The first time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.
+ */
+STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t index, double t);
+
+/**
  * Period of a signal [s]: 1 / frequency; of a sum, the longest period of its terms if every other
  * one divides it; 0 where there is none.
  */
 STRUT_API double strut_signal_period(const strut_signal *signals, int32_t index);
+
+/**
+ * Times from `from` to `to` at which the signal may turn, jump or be steepest, in no order; the first
+ * ones of each wave. Fills up to `room` of them and returns how many.
+ */
+STRUT_API size_t strut_signal_times(const strut_signal *signals, int32_t index, double from,
+                                    double to, double *time, size_t room);
+
+/** The most that the signal changes within a step of `step` [s] at such a time, and that time. */
+STRUT_API double strut_signal_jump(const strut_signal *signals, int32_t index, double step,
+                                   double from, double to, double *when);
 
 #endif

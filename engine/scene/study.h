@@ -74,7 +74,9 @@ typedef struct strut_study_axis {
   X(RESIDUAL, "residual")                                                                          \
   X(CONTACTS, "contacts")                                                                          \
   X(POSITIONS, "positions")                                                                        \
-  X(OUTCOME, "outcome")
+  X(OUTCOME, "outcome")                                                                            \
+  X(QUANTITIES, "quantities")                                                                      \
+  X(KEPT, "accuracy_kept")
 
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word) STRUT_KEEP_##name,
@@ -110,7 +112,9 @@ typedef struct strut_study {
   const char *name, *description, *model; /* model: its file, from the study's folder */
   size_t axis_count, figure_count;
   strut_study_axis *axes;
-  unsigned keep;         /* bits 1 << strut_keep; 0: what is usual */
+  unsigned keep;         /* bits 1 << strut_keep; 0: what is usual, if no quantity is kept either */
+  size_t quantity_count;
+  const char **quantities; /* (quantity_count) measured quantities that are kept by name */
   bool trajectories;     /* a directory of results for each run */
   bool half_step;        /* run each point again with half the step */
   double check_accuracy; /* or with this accuracy; 0: not */

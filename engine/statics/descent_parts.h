@@ -46,4 +46,7 @@ int64_t strut_minimiser_looks(const strut_minimiser *minimiser);
 bool strut_descend_along(strut_minimiser *minimiser, const double *direction, double side,
                          double *q);
 
+/** From q by short steps, which pass over no well that is wider than a hundredth of the structure. */
+strut_descent_end strut_descend_gently(strut_minimiser *minimiser, double *q);
+
 #endif

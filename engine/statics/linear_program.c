@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <glpk.h>
 #include <math.h>
+#include <setjmp.h>
 
 /* Tried in turn: GLPK's own choice has been seen to call a programme infeasible that is not. */
 enum { SCALINGS = 3 };
@@ -47,22 +48,30 @@ static int kind_of(double low, double high) {
 }
 
 /* GLPK counts from 1. */
-static bool load_entries(const strut_linear_program *p, glp_prob *problem) {
+/* The entries as GLPK wants them, counted from 1. */
+typedef struct entries {
+  int *row, *column;
+  double *value;
+} entries;
+
+static bool make_entries(const strut_linear_program *p, entries *e) {
   size_t count = p->entry_count;
-  int *row = strut_allocate(count + 1, sizeof *row);
-  int *column = strut_allocate(count + 1, sizeof *column);
-  double *value = strut_allocate(count + 1, sizeof *value);
-  bool good = row && column && value;
-  for (size_t i = 0; i < count && good; i++) {
-    row[i + 1] = p->entry_row[i] + 1;
-    column[i + 1] = p->entry_column[i] + 1;
-    value[i + 1] = p->entry[i];
+  e->row = strut_allocate(count + 1, sizeof *e->row);
+  e->column = strut_allocate(count + 1, sizeof *e->column);
+  e->value = strut_allocate(count + 1, sizeof *e->value);
+  if (!e->row || !e->column || !e->value) return false;
+  for (size_t i = 0; i < count; i++) {
+    e->row[i + 1] = p->entry_row[i] + 1;
+    e->column[i + 1] = p->entry_column[i] + 1;
+    e->value[i + 1] = p->entry[i];
   }
-  if (good) glp_load_matrix(problem, (int)count, row, column, value);
-  strut_release(row);
-  strut_release(column);
-  strut_release(value);
-  return good;
+  return true;
+}
+
+static void free_entries(entries *e) {
+  strut_release(e->row);
+  strut_release(e->column);
+  strut_release(e->value);
 }
 
 static strut_program_end end_of(int code, int status) {
@@ -87,9 +96,8 @@ static int run_simplex(glp_prob *problem, int scaling) {
   return glp_simplex(problem, &how);
 }
 
-strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
-                                        strut_program_end *end) {
-  glp_term_out(GLP_OFF);
+static void solve(const strut_linear_program *p, const entries *e, double *x, double *sum,
+                  strut_program_end *end) {
   glp_prob *problem = glp_create_prob();
   glp_set_obj_dir(problem, GLP_MIN);
   if (p->rows > 0) glp_add_rows(problem, p->rows);
@@ -101,16 +109,45 @@ strut_status strut_linear_program_solve(const strut_linear_program *p, double *x
     glp_set_col_bnds(problem, j + 1, kind_of(p->low[j], p->high[j]), p->low[j], p->high[j]);
     glp_set_obj_coef(problem, j + 1, p->cost[j]);
   }
-  bool loaded = load_entries(p, problem);
-  if (loaded) {
-    *end = STRUT_PROGRAM_FAILED;
-    for (int i = 0; i < SCALINGS && *end != STRUT_PROGRAM_OPTIMAL; i++) {
-      int code = run_simplex(problem, scalings[i]);
-      *end = end_of(code, glp_get_status(problem));
-    }
-    *sum = glp_get_obj_val(problem);
-    for (int32_t j = 0; j < p->columns; j++) x[j] = glp_get_col_prim(problem, j + 1);
+  glp_load_matrix(problem, (int)p->entry_count, e->row, e->column, e->value);
+  *end = STRUT_PROGRAM_FAILED;
+  for (int i = 0; i < SCALINGS && *end != STRUT_PROGRAM_OPTIMAL; i++) {
+    int code = run_simplex(problem, scalings[i]);
+    *end = end_of(code, glp_get_status(problem));
   }
+  *sum = glp_get_obj_val(problem);
+  for (int32_t j = 0; j < p->columns; j++) x[j] = glp_get_col_prim(problem, j + 1);
   glp_delete_prob(problem);
-  return loaded ? STRUT_OK : STRUT_NO_MEMORY;
+}
+
+/* GLPK knows no other way out when memory fails than to end the process, or this. */
+static void leave(void *place) { longjmp(*(jmp_buf *)place, 1); }
+
+static int print_nothing(void *unused, const char *text) {
+  (void)unused;
+  (void)text;
+  return 1;
+}
+
+strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
+                                        strut_program_end *end) {
+  jmp_buf out;
+  entries e = {0};
+  if (!make_entries(p, &e) || glp_init_env() > 1) {
+    free_entries(&e);
+    return STRUT_NO_MEMORY;
+  }
+  if (setjmp(out)) { /* all that GLPK has is lost to us */
+    glp_free_env();
+    free_entries(&e);
+    return STRUT_NO_MEMORY;
+  }
+  glp_term_out(GLP_OFF);
+  glp_term_hook(print_nothing, NULL);
+  glp_error_hook(leave, &out);
+  solve(p, &e, x, sum, end);
+  glp_error_hook(NULL, NULL);
+  glp_term_hook(NULL, NULL);
+  free_entries(&e);
+  return STRUT_OK;
 }

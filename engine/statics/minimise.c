@@ -17,6 +17,8 @@ struct strut_minimiser {
   int64_t looks;
   double size;                /* of the structure [m] */
   double farthest;            /* no step may be longer [m] */
+  double first;               /* how long the first step may be [m] */
+  bool short_steps;           /* they began short, and may grow fast where the quadratic is exact */
   double *g, *g_trial, *step; /* (n) */
   double *straight;           /* (n) the step before it was bent */
   double *trial, *before;     /* (length) */
@@ -32,6 +34,7 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->potential = potential;
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
   m->farthest = HUGE_VAL;
+  m->first = 0.1 * m->size;
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
   m->room =
       dense ? strut_curvature_dense_create(potential) : strut_curvature_sparse_create(potential);
@@ -203,6 +206,12 @@ static double try_step(strut_minimiser *m, const double *q, double here, double 
   return ratio;
 }
 
+/* How much longer the next step may be. Short ones grow as long as the quadratic is true. */
+static double growth(const strut_minimiser *m, double ratio) {
+  if (!m->short_steps) return 2.5;
+  return fabs(ratio - 1.0) < 0.01 ? 10.0 : fabs(ratio - 1.0) < 0.25 ? 2.5 : 1.0;
+}
+
 /* One trust-region step; false where the radius has shrunk to nothing. */
 static bool descend_once(strut_minimiser *m, double *q, double still, double *radius,
                          double *energy) {
@@ -210,8 +219,11 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
   if (!(step.length > 0)) return false;
   for (int tries = 0; tries < 60; tries++) {
     double there, ratio = try_step(m, q, *energy, step.reduction, &there);
-    if (ratio > 1e-4) {
-      if (ratio > 0.75 && step.length > 0.99 * *radius) *radius = fmin(2.5 * *radius, m->farthest);
+    /* far more than expected: it may have left the valley it was in */
+    bool astray = m->short_steps && ratio > 1.75 && step.length > 1e-6 * m->size;
+    if (ratio > 1e-4 && !astray) {
+      if (ratio > 0.75 && step.length > 0.99 * *radius)
+        *radius = fmin(growth(m, ratio) * *radius, m->farthest);
       if (ratio < 0.25) *radius = 0.5 * step.length;
       keep_trial(m, q);
       *energy = there;
@@ -231,7 +243,7 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
 strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   int32_t n = m->potential->n, extra = 0;
-  double radius = fmin(0.1 * m->size, m->farthest), energy = strut_potential_value(m->potential, q);
+  double radius = fmin(m->first, m->farthest), energy = strut_potential_value(m->potential, q);
   memcpy(m->before, q, (size_t)m->potential->model->length * sizeof *q);
   strut_potential_gradient(m->potential, q, m->g);
   for (; end.iterations < MOST_STEPS; end.iterations++) {
@@ -261,19 +273,43 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   return end;
 }
 
+/*
+ * How far from a saddle the force down the step's direction is told from rounding. A well may lie as
+ * near as that to its saddle, where it is about to vanish.
+ */
+static double leave_saddle(strut_minimiser *m, const double *q, double side) {
+  const strut_potential *p = m->potential;
+  double far = 1e-7 * m->size, enough = 100.0 * strut_potential_rounding(p, q);
+  for (; far < 0.02 * m->size; far *= 4.0) {
+    double down = 0.0;
+    move(m, q, side * far);
+    strut_potential_gradient(p, m->trial, m->g_trial);
+    for (int32_t i = 0; i < p->n; i++) down -= side * m->step[i] * m->g_trial[i];
+    if (down > enough) break;
+  }
+  move(m, q, side * far);
+  return far;
+}
+
+/* Down by steps of at most `first` at first, which stay in the valley they are in. */
+static strut_descent_end descend_shortly(strut_minimiser *m, double first, double *q) {
+  double usual = m->first;
+  m->first = first, m->farthest = 0.03 * m->size, m->short_steps = true;
+  strut_descent end = strut_minimise(m, q, 0.0);
+  m->first = usual, m->farthest = HUGE_VAL, m->short_steps = false;
+  return end.end;
+}
+
+strut_descent_end strut_descend_gently(strut_minimiser *m, double *q) {
+  return descend_shortly(m, 0.005 * m->size, q);
+}
+
 bool strut_descend_along(strut_minimiser *m, const double *direction, double side, double *q) {
   const strut_potential *p = m->potential;
-  double here = strut_potential_value(p, q), far = 0.02 * m->size;
   for (int32_t i = 0; i < p->n; i++) m->step[i] = direction[p->coordinate[i]];
-  for (; far > 1e-7 * m->size; far *= 0.25) {
-    move(m, q, side * far);
-    if (strut_potential_value(p, m->trial) < here) break;
-  }
+  double first = leave_saddle(m, q, side);
   memcpy(q, m->trial, (size_t)p->model->length * sizeof *q);
-  m->farthest = 0.03 * m->size;
-  strut_descent end = strut_minimise(m, q, 0.0);
-  m->farthest = HUGE_VAL;
-  return end.end == STRUT_DESCENT_REACHED;
+  return descend_shortly(m, first, q) == STRUT_DESCENT_REACHED;
 }
 
 strut_descent strut_polish(strut_minimiser *m, double *q, double tolerance) {

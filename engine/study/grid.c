@@ -65,13 +65,6 @@ double strut_grid_value(const strut_study_column *column, int64_t i, int64_t cou
   return rounded(value, fabs(value));
 }
 
-void strut_grid_indices(const strut_study *study, int64_t point, int64_t *index) {
-  for (size_t i = study->axis_count; i-- > 0;) {
-    index[i] = point % study->axes[i].count;
-    point /= study->axes[i].count;
-  }
-}
-
 void strut_grid_values(const strut_study *study, int64_t point, strut_study_value *values) {
   size_t k = strut_grid_columns(study);
   for (size_t a = study->axis_count; a-- > 0;) {

@@ -20,10 +20,8 @@ STRUT_API const strut_study_column *strut_grid_column(const strut_study *study, 
  * every C library; the ends have their own bits.
  */
 STRUT_API double strut_grid_value(const strut_study_column *column, int64_t i, int64_t count);
-/** The values of all columns (strut_grid_columns) at a point. */
+/** The values of all columns (strut_grid_columns) at a point from 0 on; the last axis is the fastest. */
 STRUT_API void strut_grid_values(const strut_study *study, int64_t point,
                                  strut_study_value *values);
-/** The index into each axis (axis_count) of a point from 0 on; the last axis is the fastest. */
-STRUT_API void strut_grid_indices(const strut_study *study, int64_t point, int64_t *index);
 
 #endif

@@ -114,6 +114,9 @@ static void add_rest(structure *s, const strut_scene *scene) {
                            settle->speed,
                            settle->acceleration,
                            settle->limit,
+                           settle->evaluations,
+                           settle->step,
+                           settle->perturb,
                            (double)scene->search.starts,
                            (double)scene->search.seed};
   add_all(s, values, sizeof values / sizeof values[0]);

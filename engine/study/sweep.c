@@ -158,6 +158,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
                                .done = count - strut_slots_missing(slots),
                                .failed = strut_slots_failed(slots),
                                .last = -1};
+  if (options->directory) strut_sweep_records_clear(options->directory);
   if (jobs && s.worker.standing)
     work(&s, threads, lanes, jobs);
   else

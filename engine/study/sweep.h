@@ -28,6 +28,8 @@ typedef struct strut_sweep_plan {
   strut_sweep_scenes scenes;
   int64_t points;
   unsigned keep;       /* bits 1 << strut_keep */
+  size_t quantity_count;
+  const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;   /* each point is run twice; and outcomes are compared */
   size_t axis_columns; /* the first columns */
   size_t column_count;

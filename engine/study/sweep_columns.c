@@ -9,7 +9,8 @@
 
 #define BIT(name) (1u << STRUT_KEEP_##name)
 static const unsigned USUAL =
-    BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) | BIT(EVALUATIONS) | BIT(OUTCOME);
+    BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) | BIT(EVALUATIONS) | BIT(OUTCOME) |
+    BIT(QUANTITIES);
 
 /* What one word of `keep` stands for: columns, in order. The last has no name. */
 typedef struct entry {
@@ -36,6 +37,7 @@ static const entry entries[] = {
     {STRUT_KEEP_STEP, "step", "s", false},
     {STRUT_KEEP_STEP_LIMIT, "step_limit", "s", false},
     {STRUT_KEEP_EXPECTED, "expected_error", "1", false},
+    {STRUT_KEEP_KEPT, "accuracy_kept", "1", false},
     {STRUT_KEEP_ENERGY, "kinetic", "J", false},
     {STRUT_KEEP_ENERGY, "elastic", "J", false},
     {STRUT_KEEP_ENERGY, "gravity", "J", false},
@@ -52,11 +54,10 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
 
-/* An axis may bear the name of a column. */
-static bool is_axis(const strut_sweep_plan *plan, const char *name) {
+/* Is one of the first `count` columns called so? An axis may bear the name of a column. */
+static bool is_taken(const strut_sweep_plan *plan, size_t count, const char *name) {
   bool found = false;
-  for (size_t i = 0; i < plan->axis_columns && !found; i++)
-    found = strcmp(plan->columns[i].name, name) == 0;
+  for (size_t i = 0; i < count && !found; i++) found = strcmp(plan->columns[i].name, name) == 0;
   return found;
 }
 
@@ -64,7 +65,8 @@ static bool is_axis(const strut_sweep_plan *plan, const char *name) {
 static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
                        const char *unit, bool word) {
   const char *text = strut_arena_format(&plan->arena, "%s%s", prefix, name);
-  while (text && plan->column_count >= plan->axis_columns && is_axis(plan, text))
+  while (text && plan->column_count >= plan->axis_columns &&
+         is_taken(plan, plan->axis_columns, text))
     text = strut_arena_format(&plan->arena, "run_%s", text);
   plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
   return text != NULL;
@@ -83,6 +85,29 @@ static bool add_things(strut_sweep_plan *plan, const strut_scene *scene) {
   return fine;
 }
 
+static bool is_kept(const strut_study *study, const char *quantity) {
+  for (size_t i = 0; i < study->quantity_count; i++)
+    if (strcmp(study->quantities[i], quantity) == 0) return true;
+  return false;
+}
+
+/* The scene's quantities that are kept; where a column has the name of one, it gets another. */
+static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
+  const strut_experiment *e = &scene->experiment;
+  for (size_t i = 0; i < e->quantity_count; i++) {
+    const strut_quantity_definition *d = &e->quantities[i];
+    if (!keeps(plan, STRUT_KEEP_QUANTITIES) && !is_kept(plan->study, d->name)) continue;
+    const char *name = strut_arena_text(&plan->arena, d->name, strlen(d->name));
+    const char *unit = strut_arena_text(&plan->arena, d->unit, strlen(d->unit));
+    if (!name || !unit) return false;
+    plan->quantities[plan->quantity_count++] = name;
+    bool taken = is_taken(plan, plan->column_count, name) &&
+                 !is_taken(plan, plan->axis_columns, name);
+    if (!add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
+  }
+  return true;
+}
+
 static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   bool fine = true;
   for (size_t i = 0; i < plan->axis_columns && fine; i++) {
@@ -92,7 +117,7 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   for (size_t i = 0; i < ENTRIES && fine; i++)
     if (keeps(plan, entries[i].keep))
       fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
-  fine = fine && add_things(plan, scene);
+  fine = fine && add_things(plan, scene) && add_quantities(plan, scene);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
   if (fine && plan->check)
     fine = add_column(plan, "check_", "velocity", "m/s", false) &&
@@ -104,15 +129,19 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
 static strut_status make(strut_sweep_plan *plan, const strut_scene *scene, strut_error *error) {
   const strut_study *study = plan->study;
   bool shapes = scene->configuration_count > 0;
-  plan->keep = study->keep ? study->keep : USUAL;
-  if (!study->keep && !shapes) plan->keep &= ~BIT(OUTCOME);
+  bool usual = !study->keep && !study->quantity_count;
+  plan->keep = usual ? USUAL : study->keep;
+  if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
   plan->check = study->half_step || study->check_accuracy > 0.0;
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
-  size_t most = plan->axis_columns + ENTRIES + 4 + 2 * scene->contact_count + 2 * scene->node_count;
+  size_t quantities = scene->experiment.quantity_count;
+  size_t most = plan->axis_columns + ENTRIES + 4 + 2 * scene->contact_count +
+                2 * scene->node_count + quantities;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
-  if (!plan->columns || !add_columns(plan, scene))
+  plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
+  if (!plan->columns || !plan->quantities || !add_columns(plan, scene))
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return STRUT_OK;
 }
@@ -173,6 +202,7 @@ static double number_of(const strut_summary *s, const strut_scene *scene, size_t
                                   s->step,
                                   s->step_limit,
                                   s->accuracy.wanted > 0.0 ? s->accuracy.expected : (double)NAN,
+                                  s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN,
                                   s->energy.kinetic,
                                   s->energy.elastic,
                                   s->energy.gravity,
@@ -203,6 +233,13 @@ static void fill_things(const strut_sweep_plan *plan, const strut_scene *scene,
     strut_sweep_number(room, s && i < 2 * s->node_count ? s->positions[i] : (double)NAN);
 }
 
+/* A variant may measure other quantities than the first point, whose names the table has. */
+static double measured(const strut_summary *s, const char *name) {
+  for (size_t i = 0; i < s->measured_count; i++)
+    if (strcmp(s->measured[i].name, name) == 0) return s->measured[i].value;
+  return (double)NAN;
+}
+
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
                       const strut_summary *summary, const char *outcome, strut_sweep_room *room) {
   for (size_t i = 0; i < ENTRIES; i++) {
@@ -213,5 +250,7 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
       strut_sweep_number(room, summary ? number_of(summary, scene, i) : (double)NAN);
   }
   if (summary) fill_things(plan, scene, summary, room);
+  for (size_t i = 0; i < plan->quantity_count; i++)
+    strut_sweep_number(room, summary ? measured(summary, plan->quantities[i]) : (double)NAN);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(room, outcome);
 }

@@ -87,6 +87,8 @@ typedef struct strut_sweep_record strut_sweep_record;
 /** Takes results of a point into directory/runs/POINT. NULL with the error. */
 strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
                                              const char *scene_text, strut_error *error);
+/** Removes what killed processes left of unfinished runs below the directory, and nothing else. */
+void strut_sweep_records_clear(const char *directory);
 strut_sink *strut_sweep_record_sink(strut_sweep_record *record);
 /** Ends it: complete, or with a run that never began not at all. Frees it. */
 strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scene *scene,

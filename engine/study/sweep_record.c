@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The motion of one run of a sweep, as `strut run -o` writes it; the HDF5 library is one thread's. */
+#include <dirent.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "engine/output/file.h"
 #include "engine/output/hdf5.h"
@@ -80,6 +82,19 @@ strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t poin
   }
   record->outer = (strut_sink){record, begin, take, end, record->hdf5->channels};
   return record;
+}
+
+void strut_sweep_records_clear(const char *directory) {
+  strut_arena arena = {0};
+  char *runs = strut_arena_format(&arena, "%s/runs", directory);
+  DIR *entries = runs ? opendir(runs) : NULL;
+  for (struct dirent *entry = entries ? readdir(entries) : NULL; entry; entry = readdir(entries)) {
+    if (entry->d_name[0] == '.') continue;
+    char *path = strut_arena_format(&arena, "%s/%s", runs, entry->d_name);
+    if (path && strut_stage_sweep(path)) rmdir(path); /* which fails where anything else is in it */
+  }
+  if (entries) closedir(entries);
+  strut_arena_free(&arena);
 }
 
 strut_sink *strut_sweep_record_sink(strut_sweep_record *record) { return &record->outer; }

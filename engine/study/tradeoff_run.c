@@ -25,6 +25,7 @@ bool strut_study_adaptive(const strut_integrator *method) {
 
 strut_experiment strut_study_experiment(const study *s, size_t point) {
   strut_experiment e = s->scenes[point]->experiment;
+  e.quantity_count = 0; /* velocity and positions are compared, and what they cost */
   double most = s->options->periods > 0 ? s->options->periods : USUAL_PERIODS;
   e.accuracy = 0;
   e.steady = (strut_steady){.wanted = false};

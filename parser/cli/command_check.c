@@ -225,11 +225,25 @@ static void add_members(strut_json *json, const strut_scene *scene) {
   }
 }
 
+static bool add_warnings(strut_json *json, const strut_scene *scene) {
+  strut_findings found = {0};
+  strut_status status = strut_scene_warn(scene, &found);
+  struct cJSON *warnings = strut_json_array(json, json->root, "warnings");
+  for (size_t i = 0; i < found.count; i++) {
+    struct cJSON *warning = strut_json_object(json, warnings, NULL);
+    strut_json_text(json, warning, "code", found.items[i].key);
+    strut_json_text(json, warning, "text", found.items[i].message);
+  }
+  strut_findings_free(&found);
+  return status == STRUT_OK;
+}
+
 static strut_status print_json(const strut_plan *plan, const strut_scene *scene) {
   strut_json json = strut_json_begin();
   add_plan(&json, plan, scene);
   add_terms(&json, plan);
   add_members(&json, scene);
+  if (!add_warnings(&json, scene)) json.failed = true;
   char *text = strut_json_end(&json);
   if (!text) return strut_complain_of_memory();
   strut_status status = strut_print(text);
@@ -262,7 +276,9 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK && runs(&scene)) status = strut_integrator_check(model, &error);
   if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
   if (status == STRUT_OK) print_bands(model);
-  if (status != STRUT_OK) {
+  if (status == STRUT_OK && (status = strut_warn_of_scene(&scene))) {
+    /* said */
+  } else if (status != STRUT_OK) {
     strut_complain(&error);
   } else if (arguments->json) {
     status = print_json(&plan, &scene);

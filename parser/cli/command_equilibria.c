@@ -18,6 +18,8 @@
 /* The seed is kept as a JSON integer, which readers hold exactly up to here. */
 static const int64_t MOST_STARTS = 1000000000, MOST_SEED = 9007199254740992;
 
+static const char *const file_names[] = {"equilibria.json", NULL};
+
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold these contact nodes only, such as n1,n4"},
@@ -91,8 +93,7 @@ static strut_status report(const strut_arguments *arguments, const strut_equilib
   strut_status status = json && table ? STRUT_OK : strut_complain_of_memory();
   if (!status && arguments->output) {
     status = strut_directory_create(arguments->output, &error);
-    if (!status)
-      status = strut_file_write_text(arguments->output, "equilibria.json", json, &error);
+    if (!status) status = strut_file_write_text(arguments->output, "equilibria.json", json, &error);
     if (status) strut_complain(&error);
   }
   if (!status) status = strut_print(arguments->json ? json : table);
@@ -133,7 +134,7 @@ static strut_status search(const strut_arguments *arguments, const strut_plot *p
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_plot plot;
-  strut_status status = strut_try_output(arguments);
+  strut_status status = strut_try_output(arguments, file_names);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_equilibria, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);

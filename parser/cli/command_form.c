@@ -76,8 +76,8 @@ static strut_status show(const strut_arguments *arguments, const strut_scene *sc
   return status;
 }
 
-static strut_status draw(const strut_plot *plot, const strut_scene *scene,
-                         const double (*drawn)[2], strut_error *error) {
+static strut_status draw(const strut_plot *plot, const strut_scene *scene, const double (*drawn)[2],
+                         strut_error *error) {
   strut_model *model = NULL;
   if (!plot->path) return STRUT_OK;
   strut_status status = strut_model_compile(scene, &model, error);
@@ -107,6 +107,7 @@ static strut_status run(const strut_arguments *arguments) {
   strut_arena arena = {0};
   strut_status status = read_options(arguments, &wanted);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_form, arguments, 0, &plot);
+  if (status == STRUT_OK) status = strut_try_file(arguments->output);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;

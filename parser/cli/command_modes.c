@@ -12,6 +12,8 @@
 
 enum { MOST_MODES = 1000 };
 
+static const char *const file_names[] = {"modes.json", "modes.csv", NULL};
+
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_AT, "at", "NAME", "at this configuration's equilibrium, or 'drawn'"},
@@ -77,7 +79,7 @@ static strut_status run(const strut_arguments *arguments) {
                                              MOST_MODES, &count);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_modes, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
-  status = strut_try_output(arguments);
+  status = strut_try_output(arguments, file_names);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;

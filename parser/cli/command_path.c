@@ -7,14 +7,21 @@
 #include "engine/output/path_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
+#include "parser/cli/path_over.h"
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 
 enum { MOST_STEPS = 1000000 };
 
+static const char *const file_names[] = {"path.json", "path.csv", NULL};
+
 static const strut_option options[] = {
     {STRUT_OPTION_LOAD, "load", "NAME", "the load to grow; else all loads without a signal"},
-    {STRUT_OPTION_UNTIL, "until", "FACTOR", "factor of the load to end at; 1 if not given"},
+    {STRUT_OPTION_OVER, "over", "WHAT", "follow a parameter, an actuator, or NODE.x, NODE.y"},
+    {STRUT_OPTION_FROM, "from", "VALUE", "where to begin: factor, or in the unit of WHAT"},
+    {STRUT_OPTION_UNTIL, "until", "VALUE",
+     "where to end, likewise; a load's factor 1 if not given"},
+    {STRUT_OPTION_AT, "at", "NAME", "begin at this configuration's equilibrium"},
     {STRUT_OPTION_STEPS, "steps", "N", "most steps; 400 if not given"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
@@ -44,18 +51,6 @@ static strut_status show(const strut_arguments *arguments, const strut_path *pat
   return status;
 }
 
-static strut_status read_options(const strut_arguments *arguments, strut_path_options *wanted) {
-  int64_t steps = 0;
-  wanted->load = strut_option_text(arguments, STRUT_OPTION_LOAD);
-  strut_status status = strut_option_number(&strut_command_path, arguments, STRUT_OPTION_UNTIL,
-                                            STRUT_DIM_NONE, &wanted->until);
-  if (status == STRUT_OK)
-    status = strut_option_integer(&strut_command_path, arguments, STRUT_OPTION_STEPS, 1, MOST_STEPS,
-                                  &steps);
-  wanted->steps = (int32_t)steps;
-  return status;
-}
-
 /* Everything that was asked for; a sentence on stderr where that cannot be had. */
 static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
                            const strut_model *model, const strut_path *path) {
@@ -71,28 +66,40 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
-  strut_scene scene;
-  strut_path_options wanted = {0};
+static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
+                           const strut_path_options *wanted, const strut_scene *scene) {
   strut_path path = {0};
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_plot plot;
-  strut_status status = read_options(arguments, &wanted);
-  if (status == STRUT_OK) status = strut_plot_read(&strut_command_path, arguments, 0, &plot);
-  if (status != STRUT_OK) return status;
-  status = strut_try_output(arguments);
-  if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
-  if (status != STRUT_OK) return status;
-  status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = strut_path_follow(model, &wanted, &path, &error);
+  strut_status status = strut_model_compile(scene, &model, &error);
+  if (status == STRUT_OK) status = strut_path_follow(model, wanted, &path, &error);
   if (status == STRUT_OK)
-    status = report(arguments, &plot, model, &path);
+    status = report(arguments, plot, model, &path);
   else
     strut_complain(&error);
   strut_path_free(&path);
   strut_model_free(model);
+  return status;
+}
+
+static strut_status run(const strut_arguments *arguments) {
+  strut_scene scene;
+  strut_path_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT)};
+  strut_path_over_source source = {0};
+  strut_plot plot;
+  int64_t steps = 0;
+  strut_status status = strut_option_integer(&strut_command_path, arguments, STRUT_OPTION_STEPS, 1,
+                                             MOST_STEPS, &steps);
+  wanted.steps = (int32_t)steps;
+  if (status == STRUT_OK) status = strut_plot_read(&strut_command_path, arguments, 0, &plot);
+  if (status != STRUT_OK) return status;
+  status = strut_try_output(arguments, file_names);
+  if (status != STRUT_OK) return status;
+  status = strut_open_model_text(arguments, &source.text, &source.length, &scene);
+  if (status != STRUT_OK) return status;
+  status = strut_path_over_read(&strut_command_path, arguments, &scene, &source, &wanted);
+  if (status == STRUT_OK) status = follow(arguments, &plot, &wanted, &scene);
+  strut_path_over_free(&source);
   strut_scene_free(&scene);
   return status;
 }
@@ -100,13 +107,16 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_path = {
     .name = "path",
     .model = "MODEL",
-    .summary = "follows the equilibria as a load grows",
+    .summary = "follows the equilibria as a load, a length or any parameter changes",
     .details =
         "\nBegins without the load, at the equilibrium that the start comes to rest in, and\n"
         "follows the equilibria as the factor of the load grows, past limit points, to the\n"
-        "factor FACTOR. Finds the points where the factor turns back, where another path\n"
-        "branches off, where cables go slack or taut, where nodes touch or leave the ground.\n"
-        "Friction and drives are left out.\n",
+        "factor VALUE. Finds the points where the factor turns back, where another path\n"
+        "branches off, where cables go slack or taut, where nodes touch or leave the ground,\n"
+        "and what each does to stability. Friction and drives are left out.\n"
+        "--over follows something else, loads staying as they are: a number under\n"
+        "'parameters' (from the value that it has), an actuator (what it adds to its member's\n"
+        "rest length), or the displacement of a node along x or y, which is held from then on.\n",
     .options = options,
     .run = run,
     .timed = true,

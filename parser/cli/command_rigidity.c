@@ -10,6 +10,8 @@
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 
+static const char *const file_names[] = {"rigidity.json", NULL};
+
 static const strut_option options[] = {
     {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
@@ -64,7 +66,7 @@ static strut_status run(const strut_arguments *arguments) {
   strut_model *model = NULL;
   strut_error error = {0};
   strut_plot plot;
-  strut_status status = strut_try_output(arguments);
+  strut_status status = strut_try_output(arguments, file_names);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_rigidity, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);

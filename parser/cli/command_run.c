@@ -97,6 +97,7 @@ static strut_status simulate(const strut_model *model, const strut_arguments *ar
       .force = arguments->force,
       .interrupt = interrupt,
       .progress = progress.wanted ? strut_progress_show : NULL,
+      .phase = progress.wanted ? strut_progress_phase : NULL,
       .progress_context = &progress,
       .sinks = keep->sinks,
       .sink_count = keep->sink_count,
@@ -121,22 +122,8 @@ static strut_status print_summary(const strut_arguments *arguments, const strut_
 
 /* A result that is there, but is not what the scene meant. */
 static void warn(const strut_summary *summary) {
-  for (size_t i = 0; i < summary->contact_count; i++) {
-    const strut_contact_summary *contact = &summary->contacts[i];
-    if (!(contact->band_needed > 0.0)) continue;
-    fprintf(
-        stderr,
-        "strut: warning: node '%s' stuck to the ground by accident, if at all: a step changes its "
-        "slip by %.2g m/s, a hundred times its band or more; use stick_velocity >= %.2g m/s, a "
-        "smaller step, or a method with events\n",
-        contact->node, contact->band_needed, contact->band_needed);
-  }
-  if (summary->status == STRUT_OK && summary->limit_fell.limit > 0.0)
-    fprintf(stderr,
-            "strut: warning: the largest stable step fell to %.4g s at t = %.9g s, below the step "
-            "%g s; use solver.step <= %.2g s\n",
-            summary->limit_fell.limit, summary->limit_fell.time, summary->step,
-            0.9 * summary->limit_fell.limit);
+  for (size_t i = 0; i < summary->warning_count; i++)
+    fprintf(stderr, "strut: warning: %s\n", summary->warnings[i].text);
 }
 
 /* Last, for it takes longest: what was computed is on the screen by then. */
@@ -189,7 +176,9 @@ static strut_status run(const strut_arguments *arguments) {
     strut_scene_free(&scene);
     return status;
   }
-  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK) status = strut_warn_of_scene(&scene);
+  if (status != STRUT_OK) error.status = status;
+  if (status == STRUT_OK) status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_run_pictures_check(&pictures, model, &error);
   if (status == STRUT_OK) {
     status = run_model(arguments, model, &pictures);

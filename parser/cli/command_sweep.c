@@ -155,6 +155,8 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
   strut_status status = find_shard(arguments, study, &shard, &path);
   if (status) return status;
   status = strut_sweep_texts_check(arguments, study, &error);
+  if (!status && !shard.count)
+    status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
   if (!status) status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, shard, &error);
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);

@@ -36,8 +36,6 @@ static bool ends_with(const char *text, const char *end) {
 /* Before anything is computed: a name for a page, and a place where it can be written. */
 static strut_status check_output(const strut_arguments *arguments) {
   const char *path = arguments->output;
-  strut_file file;
-  strut_error error = {0};
   if (!path) {
     fprintf(stderr, "strut view: where to? give -o FILE.html\n");
     return STRUT_USAGE;
@@ -46,12 +44,7 @@ static strut_status check_output(const strut_arguments *arguments) {
     fprintf(stderr, "strut view: '%s' is no name for a page: it ends with .html\n", path);
     return STRUT_USAGE;
   }
-  strut_status status = strut_file_open_path(&file, path, &error);
-  if (status == STRUT_OK)
-    strut_file_abandon(&file);
-  else
-    strut_complain(&error);
-  return status;
+  return strut_try_file(path);
 }
 
 /* A search that finds nothing, or cannot, is no reason to have no page: the page says why. Only an
@@ -116,8 +109,8 @@ static strut_status show(const strut_arguments *arguments, const strut_opened *o
 static strut_status run(const strut_arguments *arguments) {
   strut_opened opened = {0};
   int search = SEARCH_ALL;
-  strut_status status = strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA,
-                                          searches, &search);
+  strut_status status =
+      strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
   if (status == STRUT_OK) status = check_output(arguments);
   if (status == STRUT_OK)
     status = strut_open_run(&strut_command_view, arguments, STRUT_OPEN_AS_RUN, ROOM, &opened);

@@ -43,13 +43,15 @@ static void say(const strut_arguments *arguments, const strut_trajectory *motion
            STRUT_VTK_MOST_FRAMES);
 }
 
+static const char *const none[] = {NULL}; /* frames are checked when their number is known */
+
 strut_status strut_export_vtk(const strut_command *command, const strut_arguments *arguments) {
   strut_opened opened = {0};
   strut_arena arena = {0};
   strut_trajectory still = {0};
   strut_error error = {0};
   strut_vtk_written written = {0};
-  strut_status status = strut_try_output(arguments);
+  strut_status status = strut_try_output(arguments, none);
   if (status == STRUT_OK)
     status = strut_open_run(command, arguments, STRUT_OPEN_FOR_ANY, STRUT_TRAJECTORY_ROOM, &opened);
   if (status != STRUT_OK) return status;

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "engine/output/hdf5.h"
 #include "engine/output/quantity_text.h"
 #include "parser/cli/commands.h"
 #include "parser/cli/streams.h"
@@ -28,7 +29,8 @@ static strut_status run_command(const strut_command *command, int argc, char **a
     strut_command_help(command);
   } else if (status == STRUT_OK) {
     status = command->run(&arguments);
-    if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet) print_time(now() - begin);
+    if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet)
+      print_time(now() - begin);
   }
   strut_arguments_free(&arguments);
   return status;
@@ -64,6 +66,7 @@ static strut_status run_program(int argc, char **argv) {
 
 int main(int argc, char **argv) {
   strut_streams_open();
+  strut_hdf5_leave_at_exit();
   gsl_set_error_handler_off(); /* GSL reports by its return values; it must not abort */
   return strut_streams_close(run_program(argc, argv));
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/statics/equilibria/stand.h"
 #include "parser/cli/streams.h"
@@ -35,6 +36,12 @@ static strut_status read_source(const strut_arguments *arguments, const source *
     if (messages) fputs(messages, stderr);
     if (!messages) status = STRUT_NO_MEMORY;
   }
+  if (status == STRUT_OK && diagnostics.note_count) {
+    const char *notes = strut_diagnostics_render_notes(&diagnostics);
+    if (notes) fputs(notes, stderr);
+    if (!notes) strut_scene_free(scene);
+    if (!notes) status = STRUT_NO_MEMORY;
+  }
   if (status == STRUT_NO_MEMORY) {
     strut_document_room_fail(from->name, from->text, from->length, &error);
     strut_complain(&error);
@@ -55,7 +62,8 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
   bool told = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
               strut_option_text(arguments, STRUT_OPTION_STEP);
   strut_purpose run = told ? STRUT_FOR_RUN_TOLD : STRUT_FOR_RUN;
-  status = read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, scene);
+  status =
+      read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, scene);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
   status = strut_stand_resolve(scene, &error);
@@ -66,12 +74,51 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
   return status;
 }
 
-strut_status strut_try_output(const strut_arguments *arguments) {
+strut_status strut_warn_of_scene(const strut_scene *scene) {
+  strut_findings warnings = {0};
+  strut_status status = strut_scene_warn(scene, &warnings);
+  for (size_t i = 0; i < warnings.count && !status; i++)
+    fprintf(stderr, "strut: warning: %s\n", warnings.items[i].message);
+  strut_findings_free(&warnings);
+  return status ? strut_complain_of_memory() : STRUT_OK;
+}
+
+strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
+                                   strut_scene *scene) {
+  source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
+  strut_error error = {0};
+  strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
+  *text = NULL;
+  if (status != STRUT_OK) {
+    strut_complain(&error);
+    return status;
+  }
+  status = read_source(arguments, &from, STRUT_FOR_ANY, scene);
+  if (status != STRUT_OK) {
+    strut_release(from.text);
+    return status;
+  }
+  *text = from.text;
+  *length = from.length;
+  return STRUT_OK;
+}
+
+strut_status strut_try_output(const strut_arguments *arguments, const char *const *names) {
   strut_results results = {0};
   strut_error error = {0};
   if (!arguments->output) return STRUT_OK;
-  strut_status status = strut_results_begin(&results, arguments->output, &error);
+  strut_status status = strut_results_begin_named(&results, arguments->output, names, &error);
   if (status != STRUT_OK) strut_complain(&error);
   strut_results_abandon(&results);
+  return status;
+}
+
+strut_status strut_try_file(const char *path) {
+  strut_file file = {0};
+  strut_error error = {0};
+  if (!path) return STRUT_OK;
+  strut_status status = strut_file_open_path(&file, path, &error);
+  if (status != STRUT_OK) strut_complain(&error);
+  strut_file_abandon(&file);
   return status;
 }

@@ -42,6 +42,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_SEED,
   STRUT_OPTION_MATRICES,
   STRUT_OPTION_LOAD,
+  STRUT_OPTION_OVER, /* what a path is followed over */
   STRUT_OPTION_UNTIL,
   STRUT_OPTION_STEPS,
   STRUT_OPTION_FROM,

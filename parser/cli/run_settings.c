@@ -37,6 +37,7 @@ strut_status strut_run_settings_apply(const strut_command *command,
   } numbers[] = {{STRUT_OPTION_ACCURACY, STRUT_DIM_NONE, &e->accuracy},
                  {STRUT_OPTION_STEP, STRUT_DIM_TIME, &e->step},
                  {STRUT_OPTION_TOLERANCE, STRUT_DIM_NONE, &e->tolerance},
+                 {STRUT_OPTION_BUDGET, STRUT_DIM_NONE, &e->budget},
                  {STRUT_OPTION_STEADY, STRUT_DIM_NONE, &steady}};
   strut_status status = set_method(command, arguments, e);
   bool by_hand = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR) ||
@@ -46,7 +47,7 @@ strut_status strut_run_settings_apply(const strut_command *command,
                                  numbers[i].value);
     bool given = strut_option_text(arguments, numbers[i].id);
     if (status == STRUT_OK && given && !(*numbers[i].value > 0.0))
-      return refuse("--accuracy, --step, --tolerance and --steady must be greater than 0");
+      return refuse("--accuracy, --budget, --step, --tolerance and --steady must be greater than 0");
   }
   if (status != STRUT_OK) return status;
   if (strut_option_text(arguments, STRUT_OPTION_STEADY)) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/output/figures/table_map.h"
+#include "engine/output/ownership.h"
 #include "engine/study/study_runs.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
@@ -45,9 +46,10 @@ static strut_status check_column(const source *s, const strut_study_figure *figu
     if (strcmp(other, name) != 0) continue;
     if (number ? !holds_texts(s, i) : tells_apart(s, i)) return STRUT_OK;
     return strut_fail(error, STRUT_BAD_SCENE,
-                      number ? "figure '%.60s' of the study: column '%.60s' holds texts, not numbers"
-                             : "figure '%.60s' of the study: '%.60s' is recorded; expected an axis, "
-                               "or 'node'",
+                      number
+                          ? "figure '%.60s' of the study: column '%.60s' holds texts, not numbers"
+                          : "figure '%.60s' of the study: '%.60s' is recorded; expected an axis, "
+                            "or 'node'",
                       figure->name, name);
   }
   if (!name) return STRUT_OK;
@@ -93,6 +95,22 @@ strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error
     const source s = {.plan = plan, .runs = of_runs(&plan->study->figures[i])};
     status = check_figure(&s, &plan->study->figures[i], error);
   }
+  return status;
+}
+
+strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const char *directory,
+                                             strut_error *error) {
+  const strut_study *study = plan->study;
+  strut_arena arena = {0};
+  const char **names = strut_arena_allocate(&arena, study->figure_count + 2, sizeof *names);
+  if (names) names[0] = "table.csv";
+  for (size_t i = 0; i < study->figure_count && names; i++) {
+    names[i + 1] = strut_arena_format(&arena, "%s.svg", study->figures[i].name);
+    if (!names[i + 1]) names = NULL;
+  }
+  strut_status status = names ? strut_ownership_check(directory, names, error)
+                              : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_arena_free(&arena);
   return status;
 }
 

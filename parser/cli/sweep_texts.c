@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "engine/output/file.h"
+#include "engine/output/ownership.h"
 
 /* A copy, and where it came from. */
 typedef struct copy {
@@ -49,10 +50,10 @@ static strut_status check(const char *directory, const copy *c, strut_arena *are
   struct stat found;
   char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
   if (!path) return no_memory(error);
-  bool free = stat(path, &found) != 0 || same_file(path, c->source);
-  if (free || !(lies_in(directory, c->study, arena) || lies_in(directory, c->model, arena)) ||
-      holds(path, c->text))
+  if (stat(path, &found) != 0 || same_file(path, c->source) || holds(path, c->text))
     return STRUT_OK;
+  if (!lies_in(directory, c->study, arena) && !lies_in(directory, c->model, arena))
+    return strut_ownership_check_path(path, error);
   return strut_fail(error, STRUT_USAGE,
                     "'%s' is the folder of the study or its model, and the copy of '%s' that goes "
                     "with results would take the place of '%s': give another directory",
@@ -63,7 +64,7 @@ static strut_status write(const char *directory, const copy *c, strut_arena *are
                           strut_error *error) {
   char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
   if (!path) return no_memory(error);
-  if (same_file(path, c->source)) return STRUT_OK; /* it stands there already */
+  if (same_file(path, c->source) || holds(path, c->text)) return STRUT_OK; /* it stands there */
   return strut_file_write_text(directory, c->name, c->text, error);
 }
 

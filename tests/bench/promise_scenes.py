@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random scenes of four classes: smooth, contact, friction, stiff. Numbers in SI units.
+"""Random scenes of five classes: smooth, contact, friction, stiff, wide. Numbers in SI units.
 
 make(kind, random) gives (scene, grid): the scene as a mapping that JSON writes, and a time [s] that
 divides the whole run and its window, small beside the fastest motion that matters.
 """
 import math
+
+import wide_scenes
 
 GRAVITY = 9.81
 
@@ -310,12 +312,18 @@ def stiffness_ratio(random):
     return 10 ** random.uniform(3, 6)
 
 
+def wide(random):
+    scene, unit = wide_scenes.make(random)
+    return scene, unit / 1000
+
+
 CLASSES = {
     "smooth": [chain, net, tumbling, shaken],
     "contact": [dropped, ball, tethered, hopper],
     "friction": [belt, block, crawler, two_masses, lambda r: dropped(r, True)],
     "stiff": [lambda r: chain(r, stiffness_ratio(r)), lambda r: tumbling(r, stiffness_ratio(r)),
               lambda r: shaken(r, stiffness_ratio(r))],
+    "wide": [wide],
 }
 
 

@@ -166,6 +166,50 @@ expect 0 run "$work/short.yaml" --accuracy 0.1% --json
 cp "$work/out" "$work/json"
 about "$(field .velocity)" "$right" 0.001
 
+# Scenes of others. Steps that the motion bears well but for its accuracy: an independent program, and
+# adaptive with a tolerance of 1e-10, say 0.116804.
+for wanted in "1% 0.01" "0.2% 0.002"; do
+  set -- $wanted
+  expect 0 run "$here/capped.yaml" --accuracy "$1" --json
+  cp "$work/out" "$work/json"
+  about "$(field .velocity)" 0.116804 "$2"
+  [ "$(field '.accuracy.kept and .accuracy.expected > 0')" = true ] || fail "capped: not kept"
+done
+# Chaos is no answer: fine runs say 0.106, 0.122, 0.020.
+expect 0 run "$here/chaotic.yaml" --accuracy 0.2% --json
+cp "$work/out" "$work/json"
+[ "$(field '(.accuracy.kept | not) and .accuracy.expected > 0.1')" = true ] || fail "chaotic: kept"
+field .accuracy.why | grep -q 'nearby motions separate' || fail "chaotic: no reason"
+# Work is bounded, and what could not be settled within it says so.
+expect 0 run "$here/chaotic.yaml" --accuracy 0.2% --budget 1 --json
+cp "$work/out" "$work/json"
+[ "$(field '(.accuracy.kept | not) and .force_evaluations + .accuracy.check_evaluations < 1e6')" = true ] ||
+  fail "budget: spent more than twice"
+field .accuracy.why | grep -q 'larger budget' || fail "budget: not named"
+expect 1 run "$here/chaotic.yaml" --accuracy 1% --budget 0
+err_has "greater than 0"
+# What is measured is what is promised: a mass that a cable catches, m g + sqrt((m g)^2 + k m v^2).
+cat >"$work/catch.yaml" <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  pin: {position: [0, 0], fixed: both}
+  mass: {position: [0, -0.2], mass: 1}
+members:
+  catch: {kind: cable, nodes: [pin, mass], stiffness: 5000 N/m, rest_length: 0.5 m}
+run:
+  duration: 0.5 s
+  measure: {quantities: {peak: {of: catch.force, take: max, accuracy: 0.1 %}, across: com.vx}}
+solver: {accuracy: 5 %}
+END
+expect 0 run "$work/catch.yaml" --json
+cp "$work/out" "$work/json"
+about "$(field .measured.peak.value)" 181.64199963918244 0.001
+[ "$(field '.measured.peak | .kept and .expected < 0.18')" = true ] || fail "catch: peak"
+[ "$(field '.measured.across | .kept and .zero')" = true ] || fail "catch: zero by symmetry"
+expect 0 run "$work/catch.yaml"
+out_has "known within"
+
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4
 err_has "not both"

@@ -21,7 +21,7 @@ except ImportError as missing:
     sys.exit(77)
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from findings import fail, files_in, finish  # noqa: E402
 
 strut = os.path.abspath(sys.argv[1])
 models = os.path.abspath("models")
@@ -265,7 +265,7 @@ members:
 
     # ---- files ----
     run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
-    names = sorted(os.listdir("kept"))
+    names = sorted(files_in("kept"))
     if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model-2.svg",
                  "model-3.svg"]:
         fail(f"files: {names}")
@@ -278,7 +278,7 @@ members:
         if open(f"kept/{name}", "rb").read() != first[name]:
             fail(f"{name} is not the same a second time")
     run("compare", "one.yaml", "-q", "-o", "kept", "--no-motion")
-    if len(os.listdir("kept")) != 4:
+    if len(files_in("kept")) != 4:
         fail("a picture of an earlier comparison stays")
     run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
     tree.parse("sheet.svg")

@@ -70,4 +70,116 @@ loads: {tip: {node: d, force: [1, 0]}}
 END
 expect 0 path chain.yaml
 out_has "2 m             0 m  stable"
+
+# Over something else than a load: closed forms of the arch, held at y by 2 k y (l0 / l - 1).
+cat >over.yaml <<'END'
+strut: 1
+name: Arch
+parameters: {k: 1000 N/m, span: 1 m, load: 1 N}
+nodes:
+  left: {position: [-span, 0], fixed: both}
+  right: {position: [span, 0], fixed: both}
+  top: {position: [0, 0.3], mass: 1, fixed: x}
+  low: {position: [0, -1], fixed: both}
+members:
+  a: {kind: bar, nodes: [left, top], stiffness: k, rest_length: 1.0440306508910551}
+  b: {kind: bar, nodes: [right, top], stiffness: k, rest_length: 1.0440306508910551}
+  tie: {kind: spring, nodes: [top, low], stiffness: 1 mN/m, rest_length: 1.3}
+signals: {wave: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}
+actuators: {pull: {member: tie, signal: wave}}
+loads: {weight: {node: top, force: [0, -load]}}
+configurations:
+  flat: {top: [0, 0.3]}
+  inverted: {top: [0, -0.3]}
+END
+# The stiffness at which it gives way under 1 N: 100.50336 N/m, and no further.
+expect 0 path over.yaml --over k --until "60 N/m" --steps 60 --json -o over
+jq -e '.over == "k" and .unit == "N/m" and .load == null and .points[0].value == 1000 and
+  .events[0].kind == "limit point" and (.events[0].value - 100.50336 | fabs) < 2e-2 and
+  .events[0].stable_before and (.events[0].stable_after | not) and .events[0].negative_after == 1 and
+  ([.points[] | .forces.a] | max) < 0 and
+  ([.points[] | .reactions.left[1] + .reactions.right[1] - 1 + .reactions.low[1] | fabs] | max) < 1e-9
+  ' "$work/out" >jq.out || fail "the path over k in JSON"
+head -n 1 over/path.csv | grep -qF 'value [N/m],arc,negative_eigenvalues,event,left.x [m]' || fail "header"
+head -n 1 over/path.csv | grep -qF 'a.force [N],b.force [N],tie.force [N],left.reaction_x [N]' ||
+  fail "forces in the header"
+expect 0 path over.yaml --over k --until "60 N/m" --steps 60
+out_has "k can fall no further here; top moves most, unstable from here"
+out_has "left support y"
+# Through both limit points, which are none where the apex is held.
+expect 0 path over.yaml --over top.y --until "-0.5 m" --json
+jq -e '.unit == "m" and (.events | length) == 0 and ([.points[] | .stable] | all) and
+  .points[-1].value == -0.5 and
+  ([.points[] | .reactions.top[1]] | max > 10 and min < -8)' "$work/out" >jq.out ||
+  fail "the apex pushed through"
+expect 0 path over.yaml --over top.y --until "-0.5 m"
+out_has "reaction"
+expect 0 path over.yaml --over left.x --from "1 mm" --until "5 mm" --json
+jq -e '.points[0].value == 1e-3 and (.points[-1].nodes.left[0] - -0.995 | fabs) < 1e-12' "$work/out" \
+  >jq.out || fail "a support displaced"
+expect 0 path over.yaml --over pull --until "-0.2 m" --json
+jq -e '.over == "pull" and .points[-1].value == -0.2 and .points[-1].forces.tie > 1.9e-4' \
+  "$work/out" >jq.out || fail "an actuator"
+expect 0 path over.yaml --over span --until "1.02 m"
+out_has "1.02 m"
+"$strut" path - --over k --until "900 N/m" <over.yaml >"$work/out" || fail "a model from stdin"
+out_has "900 N/m"
+# From another equilibrium: the inverted arch carries the same load upside down without a limit point.
+expect 0 path over.yaml --at inverted --until 12 --json
+jq -e '(.points[0].nodes.top[1] - -0.3 | fabs) < 1e-3 and (.events | length) == 0' "$work/out" \
+  >jq.out || fail "--at inverted"
+expect 0 path over.yaml --at flat --from 1 --until 12 --json
+jq -e '.points[0].factor == 1 and .points[0].force == 1 and .points[0].nodes.top[1] < 0.2999 and
+  .events[0].kind == "limit point"' "$work/out" >jq.out || fail "--at flat --from 1"
+expect 1 path over.yaml --at upright
+err_has "there is no configuration 'upright'"
+expect 3 path over.yaml --at drawn --from 1 --until 2
+err_has "'drawn' is no equilibrium where the path begins"
+
+# Where Zeeman's machine folds: first and second derivative zero on the circle of a rigid bar, to 30 digits.
+expect 0 path "$here/../../models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y \
+  --until "-0.1 m" --json
+jq -e '[.events[] | .kind] == ["limit point", "limit point"] and
+  (.events[0].value - -0.144560047338849 | fabs) < 2e-11 and
+  (.events[1].value - -0.343357043537997 | fabs) < 2e-11' \
+  "$work/out" >jq.out || fail "the fold lines"
+# The crawler's states give way where its drive is long enough.
+expect 0 path "$here/../../models/crawler/crawler.yaml" --over drive --at I --until "8 mm" --json
+jq -e '([.events[] | .kind] | index("lift-off")) as $lift |
+  .events[$lift + 1].kind == "limit point at a kink" and .end == "invalid" and
+  (.remark | contains("rest length of m8 would be negative")) and
+  ([.points[] | .contacts.n1 + .contacts.n2 + .contacts.n4 | . - 1.3734 | fabs] | max) < 1e-9' \
+  "$work/out" >jq.out || fail "the crawler over its drive"
+
+# It ends where the scene means nothing any more, and says why.
+expect 0 path over.yaml --set load=0 --over k --until "-10 N/m" --json
+jq -e '.end == "invalid" and (.points[-1].value | fabs) < 1e-3 and
+  (.remark | contains("over.yaml:") and contains("stiffness"))' "$work/out" >jq.out ||
+  fail "the end of what is valid"
+# What cannot be followed.
+expect 1 path over.yaml --over kk --until 3
+err_has "did you mean 'k'?"
+expect 1 path over.yaml --over tip.y --until 3
+err_has "did you mean 'top.y'?"
+expect 1 path over.yaml --over weight --until 3
+err_has "'weight' is a load; --load weight follows its factor"
+expect 1 path over.yaml --over k
+err_has "missing --until VALUE"
+expect 1 path over.yaml --over k --until "3 m"
+err_has "--until expects a stiffness"
+expect 1 path over.yaml --over k --until "1000 N/m"
+err_has "the path would end where it begins"
+expect 1 path over.yaml --over k --load weight --until 3
+err_has "leave out either it or --over"
+expect 1 path over.yaml --over pull --from "-2 m" --until 0
+err_has "the rest length of tie would be negative"
+sed 's/load: 1 N/load: 1 N, speed: 3, shape: "flat"/; s/frequency: 1 Hz/frequency: speed/
+  $a initial: {configuration: shape}' over.yaml >idle.yaml
+expect 1 path idle.yaml --over speed --until 5
+err_has "speed changes nothing that matters at rest"
+expect 1 path idle.yaml --over shape --until 5
+err_has "parameter 'shape' is a text; a path needs a number"
+sed -i 's/speed: 3/speed: 3, unused: 4/' idle.yaml
+expect 2 path idle.yaml --over unused --until 5
+err_has "nothing in the scene uses parameter 'unused'"
 done_testing

@@ -226,9 +226,49 @@ def killed_and_resumed():
     check(again["computed"] == 0, "a finished sweep computes again")
 
 
+def stages(folder):
+    """Folders below it in which results of runs are gathered."""
+    return [f"{path}/{name}" for path, names, _ in os.walk(f"{work}/{folder}") for name in names
+            if name.startswith(".strut-stage-")]
+
+
+def killed_while_recording():
+    write("motions.yaml", MOTIONS)
+    run("sweep", "motions.yaml", "-o", "recorded", "--quiet")
+    left = 0
+    for n in range(kills):
+        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2",
+                                  "--quiet"], cwd=work)
+        deadline = time.monotonic() + 60
+        while child.poll() is None and not stages("cut") and time.monotonic() < deadline:
+            time.sleep(0.002)
+        time.sleep(random.uniform(0.0, 0.05))
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+        left += len(stages("cut"))
+        if os.path.exists(f"{work}/cut/points.slots") and n % 3 == 2:
+            os.remove(f"{work}/cut/points.slots")  # begin anew, so that there is something to kill
+    check(left > 0, "no kill left anything: nothing was tested")
+    # What is not provably strut's stays: other names, no mark, the mark of another machine.
+    others = ["cut/runs/000000002/.strut-stage-mine", "cut/runs/000000003/.strut-stage-1-0"]
+    for folder, name in zip(others, ("notes", ".strut-stage")):
+        os.makedirs(f"{work}/{folder}", exist_ok=True)
+        write(f"{folder}/{name}", "mine\n")
+    run("sweep", "motions.yaml", "-o", "cut", "--quiet")
+    check(sorted(stages("cut")) == [f"{work}/{folder}" for folder in others],
+          f"after kills: {stages('cut')}")
+    for folder, name in zip(others, ("notes", ".strut-stage")):
+        check(read(f"{folder}/{name}") == b"mine\n", f"{folder} was touched")
+    check(read("cut/table.csv") == read("recorded/table.csv"), "after kills: table")
+    for n in range(11):
+        for file in ("summary.json", "trajectory.h5", "scene.yaml"):
+            name = f"runs/{n:09d}/{file}"
+            check(read(f"cut/{name}") == read(f"recorded/{name}"), f"after kills: {name}")
+
+
 def interrupted():
-    os.makedirs(f"{work}/stopped")
-    write("stopped/table.csv", "of an earlier sweep")
+    run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
+    os.remove(f"{work}/stopped/points.slots")  # its table is that of an earlier sweep then
     child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "stopped", "--threads", "1"],
                              cwd=work, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     path = f"{work}/stopped/points.slots"
@@ -382,7 +422,7 @@ trajectories: yes
             "--quiet")
         folder = f"motion/runs/{n:09d}"
         check(sorted(os.listdir(f"{work}/{folder}")) ==
-              ["scene.yaml", "summary.json", "trajectory.h5"], "files of a run")
+              [".strut-files", "scene.yaml", "summary.json", "trajectory.h5"], "files of a run")
         # The scene's text names a parameter as it was given; the rest has the same bytes.
         there, alone = (json.loads(read(f"{d}/summary.json")) for d in (folder, "alone"))
         check(there == alone, f"{folder}/summary.json")
@@ -520,7 +560,7 @@ try:
     for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes,
                  lanes_change_nothing, killed_and_resumed, interrupted, points_that_fail,
                  failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
-                 trajectories,
+                 trajectories, killed_while_recording,
                  what_has_changed_is_refused, names_of_columns, two_at_once,
                  no_room, wrong_use, memory_is_flat):
         began = time.time()

@@ -12,7 +12,11 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from findings import files_in  # noqa: E402
+
 strut = os.path.abspath(sys.argv[1])
+slower = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
 HOPPER = "tests/cli/hopper.yaml"
 failures = 0
@@ -24,8 +28,17 @@ def fail(text):
     print("FAILED:", text)
 
 
+def budgeted(words):
+    """The words, with times after --budget as much longer as this build is slower (sanitizers)."""
+    words = list(words)
+    for i, word in enumerate(words[1:], 1):
+        if words[i - 1] == "--budget" and re.fullmatch(r"\d+ s", word):
+            words[i] = f"{slower * int(word[:-2])} s"
+    return words
+
+
 def run(*words, code=0):
-    done = subprocess.run([strut, "tradeoff", *words], capture_output=True, text=True,
+    done = subprocess.run([strut, "tradeoff", *budgeted(words)], capture_output=True, text=True,
                           stdin=subprocess.DEVNULL)
     if done.returncode != code:
         fail(f"strut tradeoff {' '.join(words)}: {done.returncode}, not {code}: {done.stderr}")
@@ -217,8 +230,8 @@ if answer:
 with tempfile.TemporaryDirectory() as here:
     out = os.path.join(here, "deep", "out")
     done = run(BALL, "--steps", "4", "-o", out, "--own-model")
-    if sorted(os.listdir(out)) != ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"]:
-        fail(f"files: {os.listdir(out)}")
+    if sorted(files_in(out)) != ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"]:
+        fail(f"files: {files_in(out)}")
     if "Advice" not in done.stdout or "0.5 %:" not in done.stdout:
         fail(f"the table lacks something: {done.stdout}")
     written = json.load(open(os.path.join(out, "tradeoff.json")))
@@ -233,14 +246,14 @@ with tempfile.TemporaryDirectory() as here:
     svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
     if "</svg>" not in svg:
         fail("half a picture")
-    before = {f: open(os.path.join(out, f), "rb").read() for f in os.listdir(out)}
+    before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
     os.mkdir(os.path.join(here, "blocked"))
     os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
     done = run(BALL, "--steps", "1", "-o", os.path.join(here, "blocked"), code=4)
-    if done.stdout or os.listdir(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
-        fail(f"a blocked file: {done.stdout} {os.listdir(os.path.join(here, 'blocked'))}")
+    if done.stdout or files_in(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
+        fail(f"a blocked file: {done.stdout} {files_in(os.path.join(here, 'blocked'))}")
     run(BALL, "--methods", "rk5", "-o", out, code=1)
-    if before != {f: open(os.path.join(out, f), "rb").read() for f in os.listdir(out)}:
+    if before != {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}:
         fail("a refusal changed files")
     done = run(BALL, "--steps", "1", "-o", "/dev/full/x", code=4)
 

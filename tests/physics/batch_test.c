@@ -7,6 +7,7 @@
 
 #include "engine/integrate/batch.h"
 #include "tests/physics/random_scene.h"
+#include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
@@ -206,6 +207,33 @@ static void test_crawler(void **unused) {
     }
 }
 
+/* Blocks exactly at the edge of Karnopp's band, and pushed by exactly what holds: as alone. */
+static void run_at_edges(const char *method, way how) {
+  static const double belts[] = {1, -1, 0, 0, 1, -1}, pushes[] = {0, 0, 8, -8, 8, 8};
+  enum { POINTS = 6 };
+  static point points[POINTS];
+  const double band = 0.125, depth = 1.0 / 64, k = 1024; /* N = 16, exactly */
+  for (int i = 0; i < POINTS; i++) {
+    strut_scene *scene = &points[i].scene;
+    strut_scene_init(scene);
+    build_rough_contact(scene, build_mass(scene, 0, -depth, 1), k, 0, 0.5, 0.25, band);
+    build_load(scene, 0, pushes[i], -16, -1);
+    scene->ground.belt_speed = belts[i] * band;
+    begin_point(&points[i], method, 1.0 / 1024, 3, true);
+    assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
+  }
+  run_in_lanes(points, POINTS, how, true);
+  for (int i = 0; i < POINTS; i++) {
+    assert_true(points[i].alone.state->v[0] != 0.0); /* none of them is held */
+    end_point(&points[i]);
+  }
+}
+
+static void test_edges_of_friction(void **unused) {
+  (void)unused;
+  for (size_t w = 0; w < way_count(); w++) run_at_edges("rk4", ways[w]);
+}
+
 /* What has no kernel, or another topology, is refused. */
 static void test_refusals(void **unused) {
   (void)unused;
@@ -229,6 +257,34 @@ static void test_refusals(void **unused) {
 }
 
 /* The batch asks for memory a handful of times, and says so when there is none. */
+/* A triangle on four nodes; each variant joins, drives, loads or touches something else. */
+static strut_model *variant(strut_scene *scene, int which) {
+  strut_scene_init(scene);
+  scene->mass_model = STRUT_MASS_LUMPED;
+  for (int i = 0; i < 4; i++) build_mass(scene, i, i * i, 1);
+  build_member(scene, STRUT_SPRING, which == 1 ? 3 : 0, 1, 10, 1, 0);
+  build_member(scene, STRUT_SPRING, 1, which == 2 ? 3 : 2, 10, 1, 0);
+  build_actuator(scene, which == 3, build_sine(scene, 0.1, 1));
+  build_load(scene, which == 4 ? 2 : 1, 1, 0, 0);
+  build_contact(scene, which == 5 ? 2 : 1, 100, 1);
+  return motion_compile(scene);
+}
+
+static void test_only_one_topology_shares_a_batch(void **unused) {
+  (void)unused;
+  strut_scene scene, other;
+  strut_model *first = variant(&scene, 0);
+  for (int which = 0; which <= 5; which++) {
+    strut_model *model = variant(&other, which);
+    assert_int_equal(strut_lanes_alike(first, model), which == 0);
+    assert_int_equal(strut_lanes_alike(model, first), which == 0);
+    strut_model_free(model);
+    strut_scene_free(&other);
+  }
+  strut_model_free(first);
+  strut_scene_free(&scene);
+}
+
 static void test_no_memory(void **unused) {
   (void)unused;
   strut_scene crawler;
@@ -249,9 +305,12 @@ static void test_no_memory(void **unused) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_structures), cmocka_unit_test(test_random_events),
-      cmocka_unit_test(test_crawler),
-      cmocka_unit_test(test_refusals), cmocka_unit_test(test_no_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_random_structures),
+                                     cmocka_unit_test(test_random_events),
+                                     cmocka_unit_test(test_crawler),
+                                     cmocka_unit_test(test_edges_of_friction),
+                                     cmocka_unit_test(test_refusals),
+                                     cmocka_unit_test(test_only_one_topology_shares_a_batch),
+                                     cmocka_unit_test(test_no_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

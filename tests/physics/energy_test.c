@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The energy balance of a run: closed on smooth scenes, closing with the step on the others. */
 #include <math.h>
+#include <signal.h>
+#include <sys/time.h>
 
 #include "tests/physics/smooth_scenes.h"
 #include "tests/support/build.h"
@@ -143,12 +145,73 @@ static void test_the_parts_of_a_loaded_mass(void **unused) {
   strut_scene_free(&scene);
 }
 
+/* A slack cable stores nothing, a taut one c s^2 / 2. */
+static void test_a_slack_cable_stores_nothing(void **unused) {
+  (void)unused;
+  for (int slack = 0; slack < 2; slack++) {
+    strut_scene scene;
+    strut_scene_init(&scene);
+    build_support(&scene, 0, 0);
+    build_support(&scene, 0.7, 0);
+    build_mass(&scene, 5, 5, 2);
+    build_sized(&scene, STRUT_CABLE, 0, 1, 300, 1, 0, slack ? 0.9 : 0.5);
+    scene.nodes[2].velocity[0] = 3;
+    motion_experiment(&scene, 1e-3, 0.1);
+    strut_summary s = motion_simulate(&scene);
+    double stored = slack ? 0 : 0.5 * 300 * 0.2 * 0.2;
+    assert_near(s.energy.elastic, stored, 1e-14);
+    assert_near(s.energy.initial, 9 + stored, 1e-14);
+    strut_summary_free(&s);
+    strut_scene_free(&scene);
+  }
+}
+
+static volatile sig_atomic_t ring;
+
+static void note_ring(int number) {
+  (void)number;
+  ring = 1;
+}
+
+/* One step of the grid that takes the adaptive method for ever: a signal ends it, and undoes it all. */
+static void test_an_interrupted_step_is_undone_with_its_works(void **unused) {
+  (void)unused;
+  const struct itimerval soon = {.it_value = {.tv_usec = 50000}};
+  struct sigaction before, action = {.sa_handler = note_ring};
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, 0.1);
+  build_member(&scene, STRUT_SPRING, 0, 1, 1e6, 0.01, 0);
+  build_load(&scene, 1, 1, 0, build_sine(&scene, 1, 300));
+  scene.nodes[1].start[0] = 1.01;
+  motion_experiment(&scene, 1e9, 1e9);
+  motion_begin_by(&m, &scene, "adaptive", 1e9);
+  m.state->ledger = true;
+  m.state->interrupt = &ring;
+  ring = 0;
+  assert_int_equal(sigaction(SIGALRM, &action, &before), 0);
+  assert_int_equal(setitimer(ITIMER_REAL, &soon, NULL), 0);
+  motion_steps(&m, 1);
+  assert_int_equal(sigaction(SIGALRM, &before, NULL), 0);
+  assert_int_equal(m.state->trouble, STRUT_TROUBLE_INTERRUPT);
+  assert_true(m.state->evaluations > 100); /* it had gone somewhere */
+  assert_int_equal(m.state->step, 0);
+  assert_true(m.state->q[2] == 1.01 && m.state->v[2] == 0);
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) assert_true(m.state->work[p] == 0);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_smooth_scenes_close_their_balance),
       cmocka_unit_test(test_scenes_with_jumps_close_as_the_step_falls),
       cmocka_unit_test(test_the_parts_of_a_sliding_block),
       cmocka_unit_test(test_the_parts_of_a_loaded_mass),
+      cmocka_unit_test(test_a_slack_cable_stores_nothing),
+      cmocka_unit_test(test_an_interrupted_step_is_undone_with_its_works),
   };
   return cmocka_run_group_tests_name("energy", tests, NULL, NULL);
 }

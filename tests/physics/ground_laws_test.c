@@ -13,9 +13,7 @@ static const double K = 1e4, MASS = 0.5, G = 9.81;
  * m u du/dd = -c d (1 + chi u): F(u) = u/chi - ln(1 + chi u)/chi^2 falls by c d^2 / (2 m), so that
  * F(approach) = F(-departure).
  */
-static double potential(double u, double chi) {
-  return u / chi - log1p(chi * u) / (chi * chi);
-}
+static double potential(double u, double chi) { return u / chi - log1p(chi * u) / (chi * chi); }
 
 static double departure_after(double approach, double chi) {
   double low = 0, high = fmin(approach, (1 - 1e-15) / chi), wanted = potential(approach, chi);
@@ -55,6 +53,32 @@ static void test_hunt_crossley_restitution_and_depth(void **unused) {
   }
 }
 
+/* A node that leaves faster than 1 / chi, from deep in the ground: nothing holds it back. */
+static void test_hunt_crossley_never_pulls(void **unused) {
+  (void)unused;
+  const double chi = 3, speed = 2, depth = 0.01, step = 1e-4;
+  const strut_integrator *method;
+  for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
+    strut_scene scene;
+    motion m;
+    if (method->no_ground) continue;
+    strut_scene_init(&scene);
+    build_contact(&scene, build_mass(&scene, 0, -depth, MASS), K, 0);
+    scene.nodes[0].velocity[1] = speed;
+    scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
+    scene.contacts[0].dissipation = chi;
+    motion_experiment(&scene, step, 1);
+    motion_begin_by(&m, &scene, method->name, step);
+    for (int k = 0; k < 10; k++) {
+      motion_steps(&m, 10); /* out after 50 */
+      assert_near(m.state->v[1], speed, 1e-12);
+    }
+    assert_near(m.state->q[1], speed * 100 * step - depth, 1e-12);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
 /* A block on its static depth, so that N = m g. */
 static void block(strut_scene *scene, double slope, double mu, double width) {
   strut_scene_init(scene);
@@ -85,7 +109,8 @@ static void test_smooth_friction_slows_a_block_by_its_closed_form(void **unused)
     motion_steps(&m, 4000);
     double u = hypot(m.state->v[0], m.state->v[1]);
     assert_near(slid(u, width), slid(start, width) - mu * G * time, 1e-8);
-    assert_relative(m.state->work[STRUT_POWER_FRICTION], 0.5 * MASS * (start * start - u * u), 1e-8);
+    assert_relative(m.state->work[STRUT_POWER_FRICTION], 0.5 * MASS * (start * start - u * u),
+                    1e-8);
     motion_end(&m);
     strut_scene_free(&scene);
   }
@@ -142,6 +167,7 @@ static void test_exact_friction_needs_a_method_with_events(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_hunt_crossley_restitution_and_depth),
+      cmocka_unit_test(test_hunt_crossley_never_pulls),
       cmocka_unit_test(test_smooth_friction_slows_a_block_by_its_closed_form),
       cmocka_unit_test(test_smooth_friction_creeps),
       cmocka_unit_test(test_the_step_limit_counts_smooth_friction),

@@ -110,6 +110,62 @@ static void test_a_ball_flies_freely_until_its_cable_is_taut(void **unused) {
   strut_scene_free(&scene);
 }
 
+/* Every method: a cable that lengthens but is slack lets a ball fly on, whatever its damper. */
+static void test_a_slack_cable_holds_nothing_back_by_any_method(void **unused) {
+  (void)unused;
+  const strut_integrator *method;
+  for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
+    strut_scene scene;
+    motion m;
+    strut_scene_init(&scene);
+    build_support(&scene, 0, 0);
+    build_mass(&scene, 0.5, 0.1, 0.5);
+    build_sized(&scene, STRUT_CABLE, 0, 1, 400, 30, 0, 1);
+    scene.nodes[1].velocity[0] = 2;
+    motion_experiment(&scene, STEP, 1);
+    motion_begin_by(&m, &scene, method->name, STEP);
+    motion_steps(&m, 200);
+    assert_near(m.state->v[2], 2, 1e-14);
+    assert_near(m.state->v[3], 0, 1e-14);
+    assert_near(m.state->q[2], 0.9, 1e-13);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/*
+ * A damped cable that was pulled out draws its ball in until damper and spring balance, at the phase
+ * acos(zeta): from there on the ball keeps its speed, A omega exp(-zeta acos(zeta) / sqrt(1 - zeta^2)).
+ */
+static void test_a_cable_lets_go_where_its_damper_would_push(void **unused) {
+  (void)unused;
+  static const struct {
+    const char *method;
+    double tolerance;
+  } known[] = {
+      {"rk4-events", 1e-9}, {"adaptive", 1e-6}, {"verlet-events", 1e-4}, {"euler-events", 1e-2}};
+  const double k = 400, mass = 0.5, out = 0.1, omega = sqrt(k / mass), zeta = 0.2;
+  double speed = out * omega * exp(-zeta * acos(zeta) / sqrt(1 - zeta * zeta));
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+    strut_scene scene;
+    motion m;
+    strut_scene_init(&scene);
+    build_support(&scene, 0, 0);
+    build_mass(&scene, 1, 0, mass);
+    build_sized(&scene, STRUT_CABLE, 0, 1, k, 2 * zeta * sqrt(k * mass), 0, 1);
+    scene.nodes[1].start[0] = 1 + out;
+    motion_experiment(&scene, 1e-4, 1);
+    motion_begin_by(&m, &scene, known[i].method, 1e-4);
+    motion_steps(&m, 1000); /* a quarter of a period is 56 ms */
+    double first = m.state->v[2];
+    assert_relative(-first, speed, known[i].tolerance);
+    motion_steps(&m, 1000);
+    assert_near(m.state->v[2], first, 1e-14);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
 /* An actuator that lengthens a cable lets it go slack; the rate of the drive pulls through k only
    while it is taut. */
 static void test_a_driven_cable_goes_slack(void **unused) {
@@ -138,6 +194,8 @@ int main(void) {
       cmocka_unit_test(test_the_ellipse_may_be_as_narrow_as_one_likes),
       cmocka_unit_test(test_a_slack_cable_carries_nothing),
       cmocka_unit_test(test_a_ball_flies_freely_until_its_cable_is_taut),
+      cmocka_unit_test(test_a_slack_cable_holds_nothing_back_by_any_method),
+      cmocka_unit_test(test_a_cable_lets_go_where_its_damper_would_push),
       cmocka_unit_test(test_a_driven_cable_goes_slack),
   };
   return cmocka_run_group_tests_name("member_laws", tests, NULL, NULL);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tests/physics/smooth_scenes.h"
+#include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 
@@ -67,7 +68,67 @@ static void test_every_method_has_its_order(void **unused) {
   assert_int_equal(failures, 0);
 }
 
+/* A ball on a driven cable that catches it and lets it go again: where it is after half a second. */
+static double caught_ball(const char *method, double step, double tolerance) {
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 0.8, 0, 0.5);
+  int32_t cable = build_sized(&scene, STRUT_CABLE, 0, 1, 400, 2, 0, 1);
+  build_actuator(&scene, cable, build_sine(&scene, 0.05, 2));
+  scene.nodes[1].velocity[0] = 1;
+  motion_experiment(&scene, step, 1);
+  if (tolerance > 0) scene.experiment.tolerance = tolerance;
+  motion_begin_by(&m, &scene, method, step);
+  motion_steps(&m, llround(0.5 / step));
+  assert_true(m.state->events == 2);
+  double x = m.state->q[2];
+  motion_end(&m);
+  strut_scene_free(&scene);
+  return x;
+}
+
+/* Methods with events keep their order across them, drives that go on meanwhile included. */
+static void test_events_keep_the_order(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events"};
+  double exact = caught_ball("rk4-events", 1.0 / 16384, 0);
+  for (int i = 0; i < 3; i++) {
+    double error[5], step = i == 0 ? 1.0 / 128 : 1.0 / 512;
+    for (int k = 0; k < 5; k++)
+      error[k] = fabs(caught_ball(methods[i], ldexp(step, -k), 0) - exact);
+    double order = observed_order(error, 5);
+    print_message("%s: order %.2f across events, errors %.2g to %.2g m\n", methods[i], order,
+                  error[0], error[4]);
+    assert_true(order > (i == 0 ? 3.7 : i == 1 ? 1.7 : 0.8));
+  }
+  assert_near(caught_ball("adaptive", 1.0 / 128, 1e-9), exact, 1e-8);
+}
+
+/* Fast, but small beside the structure: it is the error of the velocity that error control must see. */
+static void test_error_control_sees_velocities(void **unused) {
+  (void)unused;
+  const double size = 1e-6, omega = 1000, time = 0.1;
+  strut_scene scene;
+  motion m;
+  strut_scene_init(&scene);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, 1);
+  build_member(&scene, STRUT_SPRING, 0, 1, omega * omega, 0, 0);
+  scene.nodes[1].velocity[0] = size * omega;
+  motion_experiment(&scene, 0.01, time);
+  scene.experiment.tolerance = 1e-6;
+  motion_begin_by(&m, &scene, "adaptive", 0.01);
+  motion_steps(&m, 10);
+  assert_near(m.state->v[2], size * omega * cos(omega * time), 1e-3 * size * omega);
+  motion_end(&m);
+  strut_scene_free(&scene);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_method_has_its_order)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_method_has_its_order),
+                                     cmocka_unit_test(test_events_keep_the_order),
+                                     cmocka_unit_test(test_error_control_sees_velocities)};
   return cmocka_run_group_tests_name("order", tests, NULL, NULL);
 }

@@ -107,7 +107,7 @@ static void check_rows(double step, double duration, double last, double every, 
   double start = last > 0 ? duration - last : 0;
   for (size_t i = 0; i < count; i++) {
     const double *row = first.row[i];
-    double due = start + (double)i * every; /* the first step at or after it */
+    double due = fmin(start + (double)i * every, duration); /* the first step at or after it */
     double at = ceil(due / step - 1e-6) * step;
     assert_near(row[0], at, 1e-12);
     assert_near(row[first.offset[0] + 2], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
@@ -122,8 +122,8 @@ static void test_rows_come_at_their_times(void **unused) {
   check_rows(1e-3, 1, 0, 0.01, 101);
   check_rows(1e-3, 1, 0, 0.0025, 401);  /* between steps: the next one */
   check_rows(1e-3, 1, 0.2, 0.01, 21);   /* the last 0.2 s only */
-  check_rows(0.01, 1, 0, 0.3, 4);       /* 0, 0.3, 0.6, 0.9 */
-  check_rows(1e-4, 110, 1, 1 / 7.3, 8); /* far from 0 */
+  check_rows(0.01, 1, 0, 0.3, 5);       /* 0, 0.3, 0.6, 0.9, and the end */
+  check_rows(1e-4, 110, 1, 1 / 7.3, 9); /* far from 0 */
 }
 
 static void test_rows_are_a_thousandth_apart_if_nothing_is_said(void **unused) {
@@ -363,12 +363,42 @@ static void test_every_allocation_may_fail(void **unused) {
   strut_scene_free(&scene);
 }
 
+/* A block that exact friction holds against a push: what is recorded is what holds it. */
+static void test_contact_forces_of_methods_with_events(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
+  const double mass = 2, g = 9.81, k = 1e4, push = 0.2 * mass * g;
+  for (int i = 0; i < 4; i++) {
+    strut_scene scene;
+    strut_error error;
+    clean(NULL);
+    strut_scene_init(&scene);
+    build_contact(&scene, build_mass(&scene, 0, -mass * g / k, mass), k, 10);
+    scene.contacts[0].friction =
+        (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = 0.5, .mu_kinetic = 0.4};
+    scene.gravity[1] = -g;
+    build_load(&scene, 0, push, 0, -1);
+    motion_experiment(&scene, 1e-3, 0.1);
+    scene.experiment.integrator = methods[i];
+    scene.experiment.output_every = 0.01;
+    scene.experiment.channels = STRUT_CHANNEL_CONTACT;
+    assert_int_equal(run(&scene, &error), STRUT_OK);
+    assert_true(first.count == 11 && first.width == 3);
+    for (size_t r = 0; r < first.count; r++) {
+      assert_near(first.row[r][1], mass * g, 1e-9);
+      assert_near(first.row[r][2], -push, 1e-9);
+    }
+    strut_scene_free(&scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup(test_rows_come_at_their_times, clean),
       cmocka_unit_test_setup(test_rows_are_a_thousandth_apart_if_nothing_is_said, clean),
       cmocka_unit_test_setup(test_no_step_is_recorded_twice, clean),
       cmocka_unit_test_setup(test_every_channel_holds_what_it_says, clean),
+      cmocka_unit_test_setup(test_contact_forces_of_methods_with_events, clean),
       cmocka_unit_test_setup(test_each_sink_gets_the_channels_it_wants, clean),
       cmocka_unit_test_setup(test_recording_changes_no_bit, clean),
       cmocka_unit_test_setup(test_a_sink_that_fails_stops_the_run, clean),

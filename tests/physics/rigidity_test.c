@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tests/physics/truss.h"
+#include "tests/support/build.h"
 #include "tests/support/check.h"
 
 static const double X[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 0}, {2, 1}};
@@ -209,8 +210,8 @@ static void test_hexagon_of_two_struts(void **unused) {
   assert_near(t.found.spaces.kept, 0.572, 5e-4);
   const double *d = t.found.mechanisms.list[0].motion; /* nodes 2, 3, 5, 6 */
   double unit = d[0] / -0.375;
-  const double shear[] = {-0.375, 0.330718914, -0.375, -0.330718914,
-                          0.375,  -0.330718914, 0.375, 0.330718914};
+  const double shear[] = {-0.375, 0.330718914,  -0.375, -0.330718914,
+                          0.375,  -0.330718914, 0.375,  0.330718914};
   for (int i = 0; i < 8; i++) assert_near(fabs(d[i]), fabs(unit * shear[i]), 1e-9);
   assert_near(d[0], d[2], 1e-12);
   assert_near(d[4], d[6], 1e-12);
@@ -247,8 +248,8 @@ static void test_prestress_stiffens(void **unused) {
   assert_true(t.found.mechanisms.by_forces);
   /* by hand: sum of density |d2 - d1|^2 over |d|^2, d as above, |d|^2 = 4 (0.375^2 + (h/2)^2) */
   double sum = 0.0, a = 0.375, b = h / 2.0, all = 4 * (a * a + b * b);
-  sum += 4 * 0.5 * (a * a + b * b);          /* sloping cables, length 1: their one free end */
-  sum += 2 * 0.5 * h * 4 * b * b;            /* horizontal cables: ends move by -+b in y */
+  sum += 4 * 0.5 * (a * a + b * b);           /* sloping cables, length 1: their one free end */
+  sum += 2 * 0.5 * h * 4 * b * b;             /* horizontal cables: ends move by -+b in y */
   sum += 2 * 0.5 * (-0.75 / 1.5) * 4 * a * a; /* struts: ends move by -+a in x */
   assert_near(t.found.mechanisms.list[0].stiffness, sum / all, 1e-12);
   truss_free(&t);
@@ -366,6 +367,40 @@ static void test_parallel_bars_move(void **unused) {
   truss_free(&t);
 }
 
+/* A frame of `count` directions, each a straight row of three nodes that can be stressed alone. */
+static bool lies_on_conic(int count, const double *angle) {
+  strut_scene scene;
+  truss t;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, 0, 1);
+  for (int k = 0; k < count; k++)
+    for (int i = 1; i <= 2; i++) build_mass(&scene, i * cos(angle[k]), i * sin(angle[k]), 1);
+  for (int k = 0; k < count; k++) {
+    int32_t near = 2 * k + 1, far = near + 1;
+    build_member(&scene, STRUT_CABLE, 0, near, 1, 0, 0);
+    build_member(&scene, STRUT_CABLE, near, far, 1, 0, 0);
+    build_member(&scene, STRUT_BAR, 0, far, 1, 0, 0);
+  }
+  truss_look(&t, &scene);
+  assert_true(t.found.stress.tested);
+  bool on_conic = t.found.stress.on_conic;
+  truss_free(&t);
+  return on_conic;
+}
+
+/* Two directions, however they are turned, always lie on a conic; three that differ never do. */
+static void test_two_directions_lie_on_a_conic(void **unused) {
+  (void)unused;
+  for (int i = 0; i < 12; i++) {
+    double turn = 0.5 * i, angle[] = {turn, turn + 0.9 + 0.1 * i, turn + 0.4};
+    assert_true(lies_on_conic(1, angle));
+    assert_true(lies_on_conic(2, angle));
+    assert_false(lies_on_conic(3, angle));
+    angle[2] = angle[0] + 1e-3; /* near is not on it */
+    assert_false(lies_on_conic(3, angle));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_x_frame),
@@ -384,6 +419,7 @@ int main(void) {
       cmocka_unit_test(test_von_mises),
       cmocka_unit_test(test_flat_von_mises),
       cmocka_unit_test(test_parallel_bars_move),
+      cmocka_unit_test(test_two_directions_lie_on_a_conic),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

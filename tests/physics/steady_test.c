@@ -76,7 +76,42 @@ static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
   strut_scene_free(&scene);
 }
 
-/* The drive's phase matters only every other period: forced at 1 Hz and 0.5 Hz. */
+/*
+ * A mass that is dragged along the ground comes to its speed as exp(-t / tau): smooth friction is a
+ * damper of mu N / w at speeds far below w. It is steady once what is still to come is within the
+ * tolerance of the speed; the speed told is that of the latest five periods, so older by half of them.
+ */
+static void creeping(double tolerance) {
+  strut_scene scene;
+  const double mu = 0.5, width = 100, damper = mu * 9.81 / width, speed = 1;
+  strut_scene_init(&scene);
+  build_mass(&scene, 0, -9.81 / 1e4, 1); /* where the ground carries it */
+  scene.gravity[1] = -9.81;
+  build_contact(&scene, 0, 1e4, 0);
+  scene.contacts[0].friction =
+      (strut_friction){.law = STRUT_FRICTION_SMOOTH, .mu_kinetic = mu, .width = width};
+  build_load(&scene, 0, 1, 0, build_sine(&scene, 1, 1));
+  build_load(&scene, 0, damper * speed, 0, -1);
+  driven_watch(&scene, 0.005, 400, tolerance);
+  strut_summary s = motion_simulate(&scene);
+  assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
+  double left = exp(-damper * s.duration); /* of the speed, after the latest period */
+  assert_within(left, 0.25 * tolerance, 1.05 * tolerance);
+  /* the sine's first push leaves a speed of its own, 1 / (2 pi), that dies alike */
+  double told = speed - (speed - 1 / (2 * PI)) * exp(-damper * (s.duration - 2.5));
+  assert_near(s.velocity, told, 0.1 * tolerance);
+  strut_summary_free(&s);
+  strut_scene_free(&scene);
+}
+
+static void test_what_is_steady_is_so_within_the_tolerance(void **unused) {
+  (void)unused;
+  creeping(0.02);
+  creeping(0.005);
+  creeping(0.001);
+}
+
+/* The drive\'s phase matters only every other period: forced at 1 Hz and 0.5 Hz. */
 static void test_a_motion_that_repeats_every_second_period(void **unused) {
   (void)unused;
   strut_scene scene;
@@ -168,6 +203,7 @@ int main(void) {
       cmocka_unit_test(test_slow_transients_are_not_steady),
       cmocka_unit_test(test_a_damped_oscillator_becomes_steady),
       cmocka_unit_test(test_shooting_finds_the_orbit_and_its_multipliers),
+      cmocka_unit_test(test_what_is_steady_is_so_within_the_tolerance),
       cmocka_unit_test(test_a_motion_that_repeats_every_second_period),
       cmocka_unit_test(test_what_a_snapping_truss_is_said_to_do_it_does),
       cmocka_unit_test(test_late_loads_and_beats_are_not_steady),

@@ -34,16 +34,20 @@ def centres(paths, page):
             for line in path.lines if max(p[0] for p in line) - min(p[0] for p in line) < 6]
 
 
-def check_curve(what, paths, rows, column, sign):
-    """Where the rows of path.csv are on the page. Cairo drops points on straight lines."""
+def check_curve(what, paths, rows, column, sign, height="factor", upright=False):
+    """Where the rows of path.csv are on the page. Cairo drops points on straight lines.
+
+    The motion of `column` runs to the right and `height` up, or the other way round.
+    """
     unstable = [int(r["negative_eigenvalues"] or 0) > 0 for r in rows]
     pieces = [(line, bool(path.dash)) for path in paths for line in path.lines
               if near(path.stroke, CURVE) and abs(path.width - CURVE_WIDTH) < 1e-6
               and not path.curved]
     if any(unstable):
         pieces.pop()  # the sample in the key
-    values = [[sign * (float(r[column]) - float(rows[0][column])) for r in rows],
-              [-float(r["factor"]) for r in rows]]
+    motion = [sign * (float(r[column]) - float(rows[0][column])) for r in rows]
+    over = [float(r[height]) for r in rows]
+    values = [over, [-v for v in motion]] if upright else [motion, [-v for v in over]]
     low = [min(v) for v in values]
     corner = [min(p[d] for line, _ in pieces for p in line) for d in (0, 1)]
     scale = [(max(p[d] for line, _ in pieces for p in line) - corner[d]) / (max(values[d]) - low[d])
@@ -90,7 +94,8 @@ def check_shapes(what, paths, answer, members, larger):
                 return fail(f"{what}: {a}-{b} of shape {i} is not drawn where it is")
 
 
-def check(model, arguments, column, sign, larger, width="page", shapes=True):
+def check(model, arguments, column, sign, larger, width="page", shapes=True, height="factor",
+          upright=False):
     what = f"{model} {' '.join(arguments)}"
     with tempfile.TemporaryDirectory() as here:
         file = os.path.join(here, "a.svg")
@@ -102,7 +107,7 @@ def check(model, arguments, column, sign, larger, width="page", shapes=True):
         rows = list(csv.DictReader(open(os.path.join(here, "path.csv"), newline="")))
         page_width, page_height, paths = read(file)
     answer = json.loads(run.stdout)
-    drawn = check_curve(what, paths, rows, column, sign)
+    drawn = check_curve(what, paths, rows, column, sign, height, upright)
     if not drawn:
         return
     dots = centres(paths, page_width)
@@ -126,6 +131,58 @@ check("models/gallery/x-frame.yaml", ["--set", "right=1", "--load", "push", "--u
       "n3.x [m]", 1, 1)
 check("models/gallery/x-joint.yaml", ["--set", "load=1", "--until", "15"], "top_right.y [m]", -1,
       500)
+
+# Pushed through by the apex, which draws its reaction; and over a number, which runs to the right.
+check("models/gallery/von-mises.yaml", ["--over", "apex.y", "--until", "-0.5 m"], "apex.y [m]", -1,
+      1, height="apex.reaction_y [N]")
+check("models/gallery/von-mises.yaml", ["--set", "load=0.01", "--over", "load", "--until",
+                                       "0.1 N"],
+      "apex.y [m]", -1, 1, height="value [N]", upright=True, shapes=False)
+
+# A slider that snaps from one cable to the other: dashes from kink to kink, and nowhere else.
+TOGGLE = """strut: 1
+nodes:
+  anchor: {position: [0, 0.5], fixed: both}
+  left: {position: [-1, 0], fixed: both}
+  right: {position: [1, 0], fixed: both}
+  tip: {position: [-0.12, 0], fixed: y}
+members:
+  over: {kind: spring, nodes: [anchor, tip], stiffness: 500, rest_length: 0.7}
+  a: {kind: cable, nodes: [left, tip], stiffness: 2000, rest_length: 1.1}
+  b: {kind: cable, nodes: [right, tip], stiffness: 2000, rest_length: 1.1}
+loads:
+  push: {node: tip, force: [2 N, 0]}
+"""
+STOP = 0.1
+TURN = 500 * (1 - 0.7 / math.hypot(STOP, 0.5)) * -STOP / 2
+with tempfile.TemporaryDirectory() as here:
+    model, file = os.path.join(here, "toggle.yaml"), os.path.join(here, "a.svg")
+    open(model, "w", encoding="utf-8").write(TOGGLE)
+    run = subprocess.run([strut, "path", model, "--until", str(2 * TURN), "--plot", file, "--json",
+                          "-o", here], capture_output=True, text=True)
+    if run.returncode != 0:
+        fail(f"toggle: {run.stderr}")
+    else:
+        rows = list(csv.DictReader(open(os.path.join(here, "path.csv"), newline="")))
+        drawn = check_curve("toggle", read(file)[2], rows, "tip.x [m]", 1)
+        for row in rows:
+            x = float(row["tip.x [m]"])
+            middle = -STOP - 1e-9 < x < STOP - 1e-9
+            if row["negative_eigenvalues"] and (int(row["negative_eigenvalues"]) > 0) != middle:
+                fail(f"toggle: the path from x = {x} on is judged wrong: {row}")
+        dashed = [line for path in read(file)[2] if path.dash and near(path.stroke, CURVE)
+                  and abs(path.width - CURVE_WIDTH) < 1e-6 for line in path.lines]
+        kinks = [d for d, row in zip(drawn, rows) if row["event"] == "limit point at a kink"]
+        if len(dashed) != 2 or len(kinks) != 2:  # the branch, and the sample in the key
+            fail(f"toggle: {len(dashed)} dashed lines, {len(kinks)} kinks")
+        else:
+            for end, kink in zip((dashed[0][0], dashed[0][-1]), kinks):
+                if math.dist(end, kink) > 0.02:
+                    fail(f"toggle: the unstable branch ends at {end}, the kink is at {kink}")
+        answer = json.loads(run.stdout)
+        for event, turn in zip(answer["events"], (TURN, TURN, -TURN, -TURN)):
+            if abs(event["factor"] - turn) > 1e-9 or abs(event["force"] - 2 * turn) > 1e-9:
+                fail(f"toggle: {event['kind']} at {event['factor']}, not {turn}")
 
 # Names of any script and length, and a node that comes to touch the ground.
 LONG = "a_rather_long_name_of_some_sixty_letters_for_a_mere_node_of_it"

@@ -18,6 +18,9 @@ except ImportError:
     print("skipped: Python has no VTK (Debian: python3-vtk9)")
     sys.exit(77)
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from findings import files_in  # noqa: E402
+
 strut, hopper = map(os.path.abspath, sys.argv[1:3])
 work = tempfile.mkdtemp()
 os.chdir(work)
@@ -84,7 +87,7 @@ def test_run():
     check([d[0] for d in frames] == [r["time"] for r in node_rows], "times differ")
     check(all(d[2] == "ground.vtp" for d in listed if d[1] == 1), "the ground is not part 1")
     wanted = {"structure.pvd", "ground.vtp"} | {d[2] for d in frames}
-    check(set(os.listdir("vtk")) == wanted, "files: " + str(set(os.listdir("vtk")) ^ wanted))
+    check(set(files_in("vtk")) == wanted, "files: " + str(set(files_in("vtk")) ^ wanted))
     first = read("vtk/" + frames[0][2])
     nodes, members = names(first, "node_names"), names(first, "member_names")
     check(nodes == ["foot", "body", "arm"] and members == ["leg", "rope", "stay"], "names")
@@ -127,8 +130,8 @@ def test_run():
 def test_model():
     """One frame, in the shape asked for; frames of an earlier export go."""
     call(0, "export", hopper, "--format", "vtk", "-o", "vtk")
-    check(sorted(os.listdir("vtk")) == ["ground.vtp", "structure.pvd", "structure_00000.vtp"],
-          "stale frames: " + str(len(os.listdir("vtk"))))
+    check(sorted(files_in("vtk")) == ["ground.vtp", "structure.pvd", "structure_00000.vtp"],
+          "stale frames: " + str(len(files_in("vtk"))))
     data = read("vtk/structure_00000.vtp")
     check(data.GetPoint(2) == (-0.05, 0.1, 0), "drawn")
     stay = math.hypot(0.05, 0.1)
@@ -167,7 +170,7 @@ def test_thinning():
 
 
 def test_trouble():
-    before = sorted(os.listdir("vtk"))
+    before = sorted(files_in("vtk"))
     for code, words, message in [
             (4, ["export", "vtk", "--format", "vtk", "-o", "x"], "holds no run"),
             (4, ["export", "nowhere", "--format", "vtk", "-o", "x"], "nowhere"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What tests of the program share: findings, told as they come and counted, and the exit code."""
+import os
 import sys
 
 _found = 0
@@ -14,6 +15,11 @@ def fail(text):
 def check(good, text):
     if not good:
         fail(text)
+
+
+def files_in(folder):
+    """Names of all files in a folder but strut's list of those it wrote."""
+    return [name for name in os.listdir(folder) if name != ".strut-files"]
 
 
 def finish(tested=True):

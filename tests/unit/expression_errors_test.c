@@ -214,7 +214,7 @@ static void random_texts_are_survived(void **state) {
 static void lookups_are_few(void **state) {
   (void)state;
   int calls = 0;
-  strut_scope counting = {test_lookup, test_scope.names, &calls};
+  strut_scope counting = {.lookup = test_lookup, .names = test_scope.names, .context = &calls};
   strut_quantity q;
   strut_expression_error error;
   assert_true(strut_expression_evaluate("10 mm", &counting, &q, &error));

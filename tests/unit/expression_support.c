@@ -14,11 +14,11 @@ int test_lookup(void *context, const char *name, size_t length, strut_quantity *
   static const struct {
     const char *name;
     strut_quantity value;
-  } table[] = {{"f", {10, {0, 0, -1, 0}, false}},
-               {"a", {0.002, {0, 1, 0, 0}, false}},
-               {"t", {3, {0, 0, 0, 0}, true}},
-               {"two", {2, {0, 0, 0, 0}, true}},
-               {"amplitude", {0.001, {0, 1, 0, 0}, false}}};
+  } table[] = {{"f", {10, {0, 0, -1, 0}, false, false}},
+               {"a", {0.002, {0, 1, 0, 0}, false, false}},
+               {"t", {3, {0, 0, 0, 0}, true, false}},
+               {"two", {2, {0, 0, 0, 0}, true, false}},
+               {"amplitude", {0.001, {0, 1, 0, 0}, false, false}}};
   if (context) ++*(int *)context;
   if (length == 4 && memcmp(name, "lost", 4) == 0) return -1;
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
@@ -35,7 +35,7 @@ static const char *names(const void *context, size_t i) {
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 
-const strut_scope test_scope = {test_lookup, names, NULL};
+const strut_scope test_scope = {.lookup = test_lookup, .names = names};
 
 static strut_quantity evaluate(const char *text) {
   strut_quantity q = {0};
@@ -63,7 +63,7 @@ void expect_quantity(const char *text, double value, strut_dimension dimension) 
 }
 
 void expect_error(const char *text, size_t offset, size_t length, const char *message) {
-  strut_quantity q = {7, STRUT_DIM_MASS, false};
+  strut_quantity q = {7, STRUT_DIM_MASS, false, false};
   strut_expression_error error;
   if (strut_expression_evaluate(text, &test_scope, &q, &error))
     fail_msg("'%s' gave %.17g", text, q.value);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that appear whole or not at all, and directories of them. */
+#include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -15,6 +17,39 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "tests/unit/scratch.h"
+
+/* What the disk is asked for, in order; link options lead calls of fsync and rename here. */
+enum { MOST_ASKED = 16 };
+static struct asked {
+  bool renames;
+  ino_t file; /* synchronised or renamed */
+  off_t size; /* of it, then */
+} asked[MOST_ASKED];
+static int asked_count;
+static int fsync_fails; /* with this errno */
+
+int __real_fsync(int descriptor);
+int __real_rename(const char *from, const char *to);
+int __wrap_fsync(int descriptor);
+int __wrap_rename(const char *from, const char *to);
+
+int __wrap_fsync(int descriptor) {
+  struct stat found;
+  if (fsync_fails) {
+    errno = fsync_fails;
+    return -1;
+  }
+  if (asked_count < MOST_ASKED && fstat(descriptor, &found) == 0)
+    asked[asked_count++] = (struct asked){false, found.st_ino, found.st_size};
+  return __real_fsync(descriptor);
+}
+
+int __wrap_rename(const char *from, const char *to) {
+  struct stat found;
+  if (asked_count < MOST_ASKED && stat(from, &found) == 0)
+    asked[asked_count++] = (struct asked){true, found.st_ino, found.st_size};
+  return __real_rename(from, to);
+}
 
 static void assert_content(const char *path, const char *expected) {
   size_t length = 0;
@@ -67,6 +102,38 @@ static void test_permissions_follow_the_umask(void **unused) {
   umask(before);
   assert_int_equal(stat(scratch_path("a.txt"), &found), 0);
   assert_int_equal(found.st_mode & 0777, 0640);
+  scratch_remove();
+}
+
+/* A file's bytes are on the disk before its name is, and the name before it is told to be there. */
+static void test_the_disk_has_a_file_before_its_name(void **unused) {
+  (void)unused;
+  struct stat folder, file;
+  const char *directory = scratch_make();
+  char text[5001];
+  memset(text, 'x', 5000);
+  text[5000] = '\0';
+  asked_count = 0;
+  assert_int_equal(strut_file_write_text(directory, "a.txt", text, NULL), STRUT_OK);
+  assert_int_equal(stat(directory, &folder), 0);
+  assert_int_equal(stat(scratch_path("a.txt"), &file), 0);
+  assert_int_equal(asked_count, 3);
+  assert_true(!asked[0].renames && asked[0].file == file.st_ino && asked[0].size == 5000);
+  assert_true(asked[1].renames && asked[1].file == file.st_ino);
+  assert_true(!asked[2].renames && asked[2].file == folder.st_ino);
+  scratch_remove();
+}
+
+static void test_a_disk_that_cannot_keep_it_is_told(void **unused) {
+  (void)unused;
+  strut_error error = {0};
+  const char *directory = scratch_make();
+  fsync_fails = EIO;
+  strut_status status = strut_file_write_text(directory, "a.txt", "x", &error);
+  fsync_fails = 0;
+  assert_int_equal(status, STRUT_FILE_TROUBLE);
+  assert_non_null(strstr(error.message, "a.txt"));
+  assert_int_equal(scratch_count(directory), 0);
   scratch_remove();
 }
 
@@ -235,11 +302,49 @@ static void test_results_without_memory(void **unused) {
   scratch_remove();
 }
 
+/* A process that ends without removing its stage, as one that is killed. */
+static void leave_a_stage(const char *directory) {
+  pid_t child = fork();
+  if (child == 0) {
+    strut_results results = {0};
+    if (strut_results_begin(&results, directory, NULL) != STRUT_OK) _exit(1);
+    _exit(strut_file_write_text(results.stage, "nodes.csv", "half", NULL) != STRUT_OK);
+  }
+  int status = 1;
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_int_equal(status, 0);
+}
+
+static void test_stages_of_dead_processes_go(void **unused) {
+  (void)unused;
+  strut_results alive = {0}, next = {0};
+  scratch_make();
+  char *out = strdup(scratch_path("out"));
+  assert_int_equal(strut_results_begin(&alive, out, NULL), STRUT_OK);
+  assert_int_equal(strut_file_write_text(alive.stage, "nodes.csv", "mine", NULL), STRUT_OK);
+  leave_a_stage(out);
+  assert_int_equal(scratch_count(out), 2);
+  assert_int_equal(mkdir(scratch_path("out/.strut-stage-7-0"), 0777), 0); /* killed at once */
+  assert_int_equal(mkdir(scratch_path("out/.strut-stage-8-0"), 0777), 0);
+  assert_int_equal(strut_file_write_text(scratch_path("out/.strut-stage-8-0"), "x", "x", NULL), 0);
+  assert_int_equal(strut_results_begin(&next, out, NULL), STRUT_OK);
+  assert_int_equal(scratch_count(out), 3); /* the living one, the next one, the one without a mark */
+  assert_true(scratch_exists(scratch_path("out/.strut-stage-8-0/x")));
+  assert_int_equal(strut_results_commit(&alive, NULL), STRUT_OK);
+  assert_content(scratch_path("out/nodes.csv"), "mine");
+  strut_results_abandon(&next);
+  assert_int_equal(scratch_count(out), 2);
+  free(out);
+  scratch_remove();
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_file_appears_on_commit_only),
       cmocka_unit_test(test_abandon_keeps_the_old_file),
       cmocka_unit_test(test_permissions_follow_the_umask),
+      cmocka_unit_test(test_the_disk_has_a_file_before_its_name),
+      cmocka_unit_test(test_a_disk_that_cannot_keep_it_is_told),
       cmocka_unit_test(test_two_writers_do_not_meet),
       cmocka_unit_test(test_messages_name_the_file_and_the_reason),
       cmocka_unit_test(test_directories),
@@ -249,6 +354,7 @@ int main(void) {
       cmocka_unit_test(test_abandoned_results_leave_no_directory),
       cmocka_unit_test(test_results_know_early_what_will_fail),
       cmocka_unit_test(test_results_without_memory),
+      cmocka_unit_test(test_stages_of_dead_processes_go),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,6 +87,21 @@ static void even_steps_are_round(void **unused) {
     }
 }
 
+/* Ends with more than 15 digits are as written, however many values lie between. */
+static void ends_are_as_written(void **unused) {
+  (void)unused;
+  const double ends[] = {1.0 / 3.0, 0.1 + 0.2, 3.14159265358979323846, 1e22 / 7.0, 1e-300 / 3.0};
+  for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++)
+    for (int64_t count = 2; count < 20; count++) {
+      double to = ends[k], from = to / 7.0;
+      assert_true(value_of(STRUT_RANGE_EVEN, from, to, count - 1, count) == to);
+      assert_true(value_of(STRUT_RANGE_RATIO, from, to, count - 1, count) == to);
+      assert_true(value_of(STRUT_RANGE_EVEN, to, from, count - 1, count) == from);
+      assert_true(value_of(STRUT_RANGE_RATIO, to, from, count - 1, count) == from);
+      assert_true(value_of(STRUT_RANGE_STEP, to, from, 0, count) == to);
+    }
+}
+
 /* What is not round stays within 15 digits; the smallest and the largest numbers stay numbers. */
 static void extremes(void **unused) {
   (void)unused;
@@ -100,11 +115,37 @@ static void extremes(void **unused) {
   assert_true(isfinite(value_of(STRUT_RANGE_RATIO, 1e-300, 1e300, 599, 601)));
 }
 
+/* The last axis runs fastest: by hand for 2 x 3 x 2 points. */
+static void points_count_the_last_axis_first(void **unused) {
+  (void)unused;
+  static const int64_t counts[] = {2, 3, 2};
+  strut_study_column columns[3];
+  strut_study_axis axes[3];
+  int64_t point = 0;
+  for (int i = 0; i < 3; i++) {
+    columns[i] =
+        (strut_study_column){.name = "a", .kind = STRUT_RANGE_STEP, .from = 10 * i, .step = 1};
+    axes[i] = (strut_study_axis){.count = counts[i], .column_count = 1, .columns = &columns[i]};
+  }
+  const strut_study study = {.name = "test", .axis_count = 3, .axes = axes};
+  assert_int_equal(strut_grid_points(&study), 12);
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b < 3; b++)
+      for (int c = 0; c < 2; c++, point++) {
+        strut_study_value values[3];
+        strut_grid_values(&study, point, values);
+        assert_true(values[0].number == a && values[1].number == 10 + b);
+        assert_true(values[2].number == 20 + c);
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(decades_are_round),
       cmocka_unit_test(other_ratios),
       cmocka_unit_test(even_steps_are_round),
+      cmocka_unit_test(ends_are_as_written),
+      cmocka_unit_test(points_count_the_last_axis_first),
       cmocka_unit_test(extremes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

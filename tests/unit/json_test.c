@@ -53,7 +53,8 @@ static strut_summary make_summary(void) {
                          .node_names = names,
                          .positions = positions,
                          .contacts = contacts,
-                         .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, -1e-17, 13}};
+                         .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, -1e-17, 13},
+                         .balance = STRUT_BALANCE_OPEN};
 }
 
 static const cJSON *at(const cJSON *from, const char *key) {
@@ -94,7 +95,8 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
   for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
     assert_number(energy, fields[i].key, fields[i].value);
   }
-  assert_int_equal(cJSON_GetArraySize(energy), sizeof fields / sizeof fields[0]);
+  assert_text(energy, "balance", "open");
+  assert_int_equal(cJSON_GetArraySize(energy), sizeof fields / sizeof fields[0] + 1);
 }
 
 static void test_every_field(void **unused) {

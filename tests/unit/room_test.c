@@ -3,6 +3,7 @@
    nonzeros, a text by its colons and commas. */
 #include "engine/model/room.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 
@@ -152,6 +153,10 @@ static void test_a_large_text(void **unused) {
   char *text = strut_allocate(5 * PAIRS + 1, 1);
   struct rlimit before, now;
   strut_error error = {0};
+  if (SANITIZED) { /* has mapped far more than any limit, and stops where it may map no more */
+    strut_release(text);
+    skip();
+  }
   assert_non_null(text);
   for (int i = 0; i < PAIRS; i++) memcpy(text + 5 * i, "k: v\n", 5);
   assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
@@ -161,7 +166,10 @@ static void test_a_large_text(void **unused) {
   assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
   assert_int_equal(status, STRUT_NO_MEMORY);
   print_message("%s\n", error.message);
-  assert_non_null(strstr(error.message, "reading 'large.yaml' needs at least 404 MB"));
+  char needs[80]; /* a key and a value for each pair, and the text */
+  snprintf(needs, sizeof needs, "reading 'large.yaml' needs at least %.0f MB",
+           1e-6 * (2.0 * PAIRS * sizeof(strut_tree) + 5.0 * PAIRS));
+  assert_non_null(strstr(error.message, needs));
   strut_release(text);
 }
 

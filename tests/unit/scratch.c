@@ -34,7 +34,8 @@ int scratch_count(const char *path) {
   DIR *open = opendir(path);
   if (!open) return -1;
   int count = -2; /* . and .. */
-  while (readdir(open)) count++;
+  for (struct dirent *entry = readdir(open); entry; entry = readdir(open))
+    if (strcmp(entry->d_name, ".strut-files") != 0) count++; /* the list of what strut wrote */
   closedir(open);
   return count;
 }

@@ -201,8 +201,53 @@ static void periods(void **state) {
   assert_true(strut_signal_period(s, 10) == 1.0 / 3);
 }
 
+/* When a signal or its rate jumps next: by hand, for each kind. */
+static void breaks(void **unused) {
+  (void)unused;
+  static const double times[] = {0.5, 1.0, 2.0}, values[] = {0, 1, 1};
+  static const int32_t terms[] = {1, 4};
+  strut_signal s[7];
+  for (int i = 0; i < 7; i++) s[i] = strut_signal_default((strut_signal_kind)i);
+  s[0] = strut_signal_default(STRUT_SINE);
+  s[0].frequency = 3, s[0].amplitude = 1;
+  s[1] = strut_signal_default(STRUT_SQUARE);
+  s[1].frequency = 4, s[1].amplitude = 1, s[1].phase = 0.25, s[1].start = 0.1;
+  s[2] = strut_signal_default(STRUT_HALF_SINE);
+  s[2].frequency = 2, s[2].amplitude = 1, s[2].start = 1;
+  s[3] = strut_signal_default(STRUT_RAMP);
+  s[3].start = 1, s[3].stop = 3;
+  s[4] = strut_signal_default(STRUT_TABLE);
+  s[4].time = times, s[4].value = values, s[4].point_count = 3;
+  s[5] = strut_signal_default(STRUT_SUM);
+  s[5].terms = terms, s[5].term_count = 2;
+  s[6] = strut_signal_default(STRUT_CONSTANT);
+  s[6].start = 1, s[6].stop = 2;
+  assert_true(isinf(strut_signal_next_break(s, 0, 5)));
+  assert_true(fabs(strut_signal_next_break(s, 1, 0) - (0.1)) <= 1e-15);
+  /* half periods of 1/8 s, the first a quarter of a period after the start */
+  assert_true(fabs(strut_signal_next_break(s, 1, 0.1) - (0.1625)) <= 1e-12);
+  assert_true(fabs(strut_signal_next_break(s, 1, 0.17) - (0.2875)) <= 1e-12);
+  double t = 0.1;
+  for (int k = 0; k < 1000; k++) { /* none twice, none left out */
+    double next = strut_signal_next_break(s, 1, t + 1e-9);
+    assert_true(fabs(next - (0.1625 + 0.125 * k)) <= 1e-9);
+    t = next;
+  }
+  assert_true(strut_signal_next_break(s, 2, 0) == 1.0);
+  assert_true(strut_signal_next_break(s, 2, 1) == 1.25);
+  assert_true(isinf(strut_signal_next_break(s, 2, 1.25)));
+  assert_true(strut_signal_next_break(s, 3, 0) == 1.0 && strut_signal_next_break(s, 3, 1) == 3.0);
+  assert_true(isinf(strut_signal_next_break(s, 3, 3)));
+  assert_true(strut_signal_next_break(s, 4, 0) == 0.5 && strut_signal_next_break(s, 4, 0.5) == 1.0);
+  assert_true(strut_signal_next_break(s, 4, 1.5) == 2.0 && isinf(strut_signal_next_break(s, 4, 2)));
+  assert_true(fabs(strut_signal_next_break(s, 5, 0.45) - (0.5)) <= 1e-12);
+  assert_true(strut_signal_next_break(s, 6, 0) == 1.0 && strut_signal_next_break(s, 6, 1) == 2.0);
+  assert_true(isinf(strut_signal_next_break(s, 6, 2)));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(breaks),
       cmocka_unit_test(defaults),
       cmocka_unit_test(constants_begin_at_zero),
       cmocka_unit_test(sines),

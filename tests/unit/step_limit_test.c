@@ -65,6 +65,90 @@ static void test_limit_of_a_damped_oscillator(void **unused) {
     }
 }
 
+/* Of a mass on damped ground each method has a limit of its own; implicit dampers have none. */
+static void test_limit_of_each_method_on_damped_ground(void **unused) {
+  (void)unused;
+  const double k = 900, mass = 4, omega = 15, zetas[] = {0.2, 2};
+  const double rk4[] = {2.9401, 0.74631717};
+  const strut_integrator *method;
+  for (int z = 0; z < 2; z++)
+    for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
+      double zeta = zetas[z], limit, expected = INFINITY;
+      strut_scene scene;
+      strut_scene_init(&scene);
+      build_mass(&scene, 0, 0.5, mass);
+      build_contact(&scene, 0, k, zeta * 2 * sqrt(k * mass));
+      strut_model *model = motion_compile(&scene);
+      assert_int_equal(strut_step_limit_for(model, method, &limit, NULL), STRUT_OK);
+      if (method->region == STRUT_REGION_RK4) expected = rk4[z] / omega;
+      if (method->region == STRUT_REGION_EULER) expected = 2 / omega * (hypot(zeta, 1) - zeta);
+      if (method->region == STRUT_REGION_VERLET)
+        expected = strut_verlet_limit(omega * omega, 2 * zeta * omega);
+      if (method->implicit_damper) expected = 2 / omega;
+      if (isinf(expected))
+        assert_true(isinf(limit));
+      else
+        assert_relative(limit, expected, 1e-4);
+      strut_model_free(model);
+      strut_scene_free(&scene);
+    }
+}
+
+/* Each number that a limit depends on, changed a little; false: there are no more. */
+static bool change(strut_scene *s, int which) {
+  double *const numbers[] = {&s->nodes[1].mass,         &s->members[0].stiffness,
+                             &s->members[0].damping,    &s->members[0].mass,
+                             &s->contacts[0].stiffness, &s->contacts[0].damping,
+                             &s->members[0].rest_value, &s->ground.slope};
+  const int count = sizeof numbers / sizeof numbers[0];
+  if (which == count) s->mass_model = STRUT_MASS_LUMPED;
+  if (which == count + 1) s->nodes[1].fixed[0] = true;
+  if (which == count + 2) s->nodes[1].start[1] += 0.1;
+  if (which >= count) return which <= count + 2;
+  *numbers[which] = *numbers[which] * 1.25 + (*numbers[which] == 0.0 ? 0.1 : 0.0);
+  return true;
+}
+
+/* What was found for one model is told of another only where all is alike that matters. */
+static void test_limits_are_recalled_for_the_same_model_only(void **unused) {
+  (void)unused;
+  strut_step_limits kept = {0};
+  const strut_integrator *rk4 = strut_integrator_find("rk4"),
+                         *euler = strut_integrator_find("euler");
+  double first = 0, limit, own;
+  for (int which = -1;; which++) {
+    strut_scene scene;
+    strut_scene_init(&scene);
+    build_support(&scene, 0, 1);
+    build_mass(&scene, 0.6, 0.2, 2);
+    build_sized(&scene, STRUT_SPRING, 0, 1, 400, 20, 1, 0.8);
+    build_contact(&scene, 1, 900, 40);
+    if (which >= 0 && !change(&scene, which)) {
+      strut_scene_free(&scene);
+      break;
+    }
+    strut_model *model = motion_compile(&scene);
+    assert_int_equal(strut_step_limit_recall(model, rk4, &kept, &limit, NULL), STRUT_OK);
+    assert_int_equal(strut_step_limit_for(model, rk4, &own, NULL), STRUT_OK);
+    assert_same_bits(limit, own);
+    if (which < 0)
+      first = limit;
+    else if (limit == first)
+      fail_msg("change %d changes no limit", which);
+    int64_t found = kept.count;
+    assert_int_equal(strut_step_limit_recall(model, rk4, &kept, &limit, NULL), STRUT_OK);
+    assert_int_equal(kept.count, found);
+    assert_same_bits(limit, own);
+    if (which < 0) {
+      assert_int_equal(strut_step_limit_recall(model, euler, &kept, &limit, NULL), STRUT_OK);
+      assert_int_equal(strut_step_limit_for(model, euler, &own, NULL), STRUT_OK);
+      assert_same_bits(limit, own);
+    }
+    strut_model_free(model);
+    strut_scene_free(&scene);
+  }
+}
+
 static void test_nothing_limits_free_masses(void **unused) {
   (void)unused;
   strut_scene scene;
@@ -220,6 +304,8 @@ int main(void) {
       cmocka_unit_test(test_limits_on_the_axes),
       cmocka_unit_test(test_limits_of_damped_modes),
       cmocka_unit_test(test_limit_of_a_damped_oscillator),
+      cmocka_unit_test(test_limit_of_each_method_on_damped_ground),
+      cmocka_unit_test(test_limits_are_recalled_for_the_same_model_only),
       cmocka_unit_test(test_nothing_limits_free_masses),
       cmocka_unit_test(test_limit_of_rows_of_bars),
       cmocka_unit_test(test_limit_of_damped_rows),

@@ -7,18 +7,20 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/output/draw/axes.h"
 #include "engine/output/draw/key.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/path_figure_parts.h"
 
 static const double EDGE = 4.0, BETWEEN = 12.0, WIDE = 330.0; /* [pt] */
-static const double CURVE_SHAPE = 0.72; /* height over width of the curve's box */
+static const double CURVE_SHAPE = 0.72;        /* height over width of the curve's box */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
 static const char MINUS[] = "\xE2\x88\x92";
-enum { NAME = 28 }; /* bytes of a name in the key */
+enum { NAME = 28 };              /* bytes of a name in the key */
 static const double SAME = 1e-7; /* of the whole arc: events so close are one */
 
 bool strut_path_load_grows(const strut_path *path, const strut_load *load) {
+  if (path->over != STRUT_PATH_OVER_LOAD) return false;
   if (path->load) return strcmp(load->name, path->load) == 0;
   return load->signal < 0;
 }
@@ -33,13 +35,18 @@ static double motion_of(const strut_path *path, int32_t coordinate) {
   return most;
 }
 
-/* The coordinate of a loaded node that moves farthest; of any node where loads act on none. */
+/* The coordinate of a loaded node that moves farthest; of a free one where loads act on none. */
 static void choose_coordinate(strut_path_picture *p) {
   const strut_scene *scene = p->model->scene;
   double most = -1.0;
-  for (int pass = 0; pass < 2 && most < 0; pass++)
+  if (p->path->coordinate >= 0) { /* the one that is displaced */
+    p->coordinate = p->path->coordinate;
+    p->sign = motion_of(p->path, p->coordinate) < 0 ? -1.0 : 1.0;
+    return;
+  }
+  for (int pass = 0; pass < 3 && most < 0; pass++)
     for (int32_t i = 0; i < 2 * p->model->node_count; i++) {
-      bool loaded = pass == 1;
+      bool loaded = pass == 2 || (pass == 1 && !p->model->fixed[i]);
       for (size_t l = 0; l < scene->load_count; l++)
         loaded = loaded || (scene->loads[l].node == i / 2 &&
                             strut_path_load_grows(p->path, &scene->loads[l]));
@@ -51,12 +58,21 @@ static void choose_coordinate(strut_path_picture *p) {
     }
 }
 
-static void add_vertex(strut_path_picture *p, double factor, const double *q, bool unstable) {
+/* The force of a load that the value stands for, the reaction to a displacement, or the value. */
+static double height_of(const strut_path *path, double value, const double *reaction) {
+  if (path->coordinate >= 0) return reaction[path->coordinate];
+  return path->reference > 0 ? value * path->reference : value;
+}
+
+static void add_vertex(strut_path_picture *p, double value, const double *q, const double *force,
+                       const double *reaction, bool unstable) {
   p->vertices[p->count++] = (strut_path_vertex){
-      .factor = factor,
+      .value = value,
       .motion = p->sign * (q[p->coordinate] - p->path->points[0].q[p->coordinate]),
+      .height = height_of(p->path, value, reaction),
       .unstable = unstable,
-      .q = q};
+      .q = q,
+      .force = force};
 }
 
 static strut_path_stop *add_stop(strut_path_picture *p, size_t vertex) {
@@ -99,7 +115,7 @@ static void add_event(strut_path_picture *p, size_t index, double whole) {
   }
 }
 
-/* Points and events in the order of their arcs. An edge is as stable as the point it touches. */
+/* Points and events in the order of their arcs. An edge is as stable as what it begins at says. */
 static void put_in_order(strut_path_picture *p) {
   const strut_path *path = p->path;
   double whole = fmax(path->points[path->point_count - 1].arc, 1e-300);
@@ -107,10 +123,11 @@ static void put_in_order(strut_path_picture *p) {
   for (size_t k = 0; k < path->point_count; k++) {
     const strut_path_point *point = &path->points[k];
     for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
-      add_vertex(p, path->events[at].factor, path->events[at].q, point->negative > 0);
+      const strut_path_event *event = &path->events[at];
+      add_vertex(p, event->factor, event->q, event->force, event->reaction, event->after > 0);
       add_event(p, at, whole);
     }
-    add_vertex(p, point->factor, point->q, point->negative > 0);
+    add_vertex(p, point->factor, point->q, point->force, point->reaction, point->negative > 0);
     if (k == 0) snprintf(add_stop(p, p->count - 1)->text, STRUT_PATH_STOP_TEXT, "start");
   }
   snprintf(add_stop(p, p->count - 1)->text, STRUT_PATH_STOP_TEXT, "end");
@@ -119,9 +136,14 @@ static void put_in_order(strut_path_picture *p) {
     char *text = p->stops[i].text;
     size_t used = strlen(text);
     p->stops[i].colour = strut_palette_sequence((double)i / (double)(p->stop_count - 1));
-    double factor = p->vertices[p->stops[i].vertex].factor;
-    snprintf(text + used, STRUT_PATH_STOP_TEXT - used, ", %s%.5g", factor < 0 ? MINUS : "",
-             fabs(factor));
+    double value = p->vertices[p->stops[i].vertex].value, reference = path->reference;
+    const char *unit = reference > 0 ? "N" : path->unit;
+    if (*unit)
+      snprintf(text + used, STRUT_PATH_STOP_TEXT - used, ", %s",
+               strut_drawn_quantity(reference > 0 ? value * reference : value, 5, unit).text);
+    else
+      snprintf(text + used, STRUT_PATH_STOP_TEXT - used, ", %s%.5g", value < 0 ? MINUS : "",
+               fabs(value));
   }
   strut_c_locale_leave(locale);
 }
@@ -144,11 +166,12 @@ static bool prepare(strut_path_picture *p, strut_arena *arena) {
   p->vertices = strut_arena_allocate(arena, most, sizeof *p->vertices);
   p->points = strut_arena_allocate(arena, most, sizeof *p->points);
   p->shape = strut_arena_allocate(arena, (size_t)p->model->length, sizeof *p->shape);
-  p->other_room = STRUT_PATH_STOPS * (p->model->scene->member_count + 2) +
-                  p->model->scene->load_count;
+  p->other_room =
+      STRUT_PATH_STOPS * (p->model->scene->member_count + 2) + p->model->scene->load_count;
   p->others = strut_arena_allocate(arena, 2 * p->other_room, sizeof *p->others);
   p->taut = strut_arena_allocate(arena, p->model->scene->member_count + 1, sizeof *p->taut);
   if (!p->vertices || !p->points || !p->shape || !p->taut || !p->others) return false;
+  p->upright = p->path->over == STRUT_PATH_OVER_ACTUATOR || p->path->over == STRUT_PATH_OVER_SCENE;
   choose_coordinate(p);
   put_in_order(p);
   choose_enlargement(p);
@@ -169,8 +192,7 @@ static size_t make_key(const strut_path_picture *p, char notes[2][NOTE],
                                       .letter = p->stops[i].letter[0] ? p->stops[i].letter : NULL,
                                       .text = p->stops[i].text};
   if (p->events_left) {
-    snprintf(notes[0], NOTE, "and %zu more event%s", p->events_left,
-             p->events_left > 1 ? "s" : "");
+    snprintf(notes[0], NOTE, "and %zu more event%s", p->events_left, p->events_left > 1 ? "s" : "");
     items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = notes[0]};
   }
   if (unstable)
@@ -206,8 +228,8 @@ static strut_status draw(strut_path_picture *p, const char *name, double width,
     shapes.height = fmin(strut_path_shapes_height(p, inside), 0.9 * inside);
   }
   double below = shapes.y + shapes.height + 0.5 * BETWEEN;
-  status = strut_canvas_open(name, width, below + key + EDGE, p->model->scene->name, &p->canvas,
-                             error);
+  status =
+      strut_canvas_open(name, width, below + key + EDGE, p->model->scene->name, &p->canvas, error);
   if (status != STRUT_OK) return status;
   strut_path_draw_curve(p, curve);
   strut_path_draw_shapes(p, shapes);

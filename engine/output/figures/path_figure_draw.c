@@ -12,7 +12,6 @@
 enum { NAMED = 12, LABEL = 200, DIRECTIONS = 12 };
 
 static const double MARKER = 2.7, LETTER = 8.5, MARGIN = 15.0, ARROW = 22.0; /* [pt] */
-static const double SLACK = 1e-9; /* of the rest length: a cable that just ceases to pull */
 static const double PI = 3.14159265358979323846;
 
 static double from_segment(const double p[2], const double a[2], const double b[2]) {
@@ -41,8 +40,7 @@ static void draw_letters(strut_path_picture *p, strut_box inside, const double (
     if (!p->stops[i].letter[0]) continue;
     for (int k = 0; k < DIRECTIONS; k++) {
       double angle = 2 * PI * (k + 0.5) / DIRECTIONS, free = LETTER;
-      const double at[2] = {points[i][0] + LETTER * cos(angle),
-                            points[i][1] - LETTER * sin(angle)};
+      const double at[2] = {points[i][0] + LETTER * cos(angle), points[i][1] - LETTER * sin(angle)};
       for (size_t j = 0; j + 1 < p->count; j++)
         free = fmin(free, from_segment(at, p->points[j], p->points[j + 1]));
       for (size_t j = 0; j < p->stop_count; j++)
@@ -58,7 +56,10 @@ static void draw_letters(strut_path_picture *p, strut_box inside, const double (
       placed[count][1] = at[1];
     }
     strut_draw_text(p->canvas, placed[count][0], placed[count][1], p->stops[i].letter,
-                    (strut_font){.size = 8, .bold = true, .across = 0.5, .down = 0.5,
+                    (strut_font){.size = 8,
+                                 .bold = true,
+                                 .across = 0.5,
+                                 .down = 0.5,
                                  .halo = strut_faded(strut_grey(1), 0.85)});
     for (int side = -1; side <= 1; side += 2) {
       const double *at = placed[count], half = 3.0;
@@ -84,23 +85,44 @@ static const char *cut(strut_path_picture *p, const char *name, double width,
   return strut_text_fit(p->canvas, name, (strut_font){.size = 8}, width, 0, text);
 }
 
+/* What the curve shows of the parameter, in words; cut to a width. */
+static void name_height(strut_path_picture *p, double width, char label[LABEL]) {
+  char fitted[STRUT_FITTED_TEXT];
+  const strut_path *path = p->path;
+  bool force = path->reference > 0, all = path->over == STRUT_PATH_OVER_LOAD && !path->load;
+  if (path->over == STRUT_PATH_OVER_LOAD)
+    snprintf(label, LABEL, "%s of %.100s", force ? "force" : "factor",
+             !all                     ? cut(p, path->name, width - 100, fitted)
+             : force && path->several ? "each load"
+                                      : "the load");
+  else if (path->coordinate >= 0)
+    snprintf(label, LABEL, "reaction of %.100s", cut(p, path->name, width - 100, fitted));
+  else
+    snprintf(label, LABEL, "%.100s", cut(p, path->name, width - 40, fitted));
+}
+
 static strut_axes place_axes(strut_path_picture *p, strut_box box, char labels[2][LABEL]) {
   static const char *const ways[] = {"to the left", "to the right", "downwards", "upwards"};
   char fitted[STRUT_FITTED_TEXT];
   const char *node = p->model->scene->nodes[p->coordinate / 2].name;
-  snprintf(labels[0], LABEL, "motion of %.100s %s", cut(p, node, box.width - 170, fitted),
+  bool force = p->path->reference > 0 || p->path->coordinate >= 0;
+  snprintf(labels[0], LABEL, "motion of %.100s %s",
+           cut(p, node, p->upright ? box.height - 125 : box.width - 170, fitted),
            ways[2 * (p->coordinate % 2) + (p->sign > 0)]);
-  snprintf(labels[1], LABEL, "factor of %.100s",
-           p->path->load ? cut(p, p->path->load, box.height - 100, fitted) : "the load");
-  strut_axis x = {.name = labels[0], .unit = "m", .low = (double)NAN, .high = (double)NAN};
-  strut_axis y = {.name = labels[1], .unit = "", .low = (double)NAN, .high = (double)NAN};
+  name_height(p, p->upright ? box.width : box.height, labels[1]);
+  strut_axis motion = {.name = labels[0], .unit = "m", .low = (double)NAN, .high = (double)NAN};
+  strut_axis height = {.name = labels[1],
+                       .unit = force ? "N" : p->path->unit,
+                       .low = (double)NAN,
+                       .high = (double)NAN};
   for (size_t k = 0; k < p->count; k++) {
-    strut_axis_include(&x, p->vertices[k].motion);
-    strut_axis_include(&y, p->vertices[k].factor);
+    strut_axis_include(&motion, p->vertices[k].motion);
+    strut_axis_include(&height, p->vertices[k].height);
   }
-  strut_axis_settle(&x, 0.05);
-  strut_axis_settle(&y, 0.05);
-  return strut_axes_place(p->canvas, box, x, y, NULL);
+  strut_axis_settle(&motion, 0.05);
+  strut_axis_settle(&height, 0.05);
+  return strut_axes_place(p->canvas, box, p->upright ? height : motion,
+                          p->upright ? motion : height, NULL);
 }
 
 void strut_path_draw_curve(strut_path_picture *p, strut_box box) {
@@ -109,7 +131,8 @@ void strut_path_draw_curve(strut_path_picture *p, strut_box box) {
   strut_axes axes = place_axes(p, box, labels);
   strut_draw_axes(p->canvas, &axes, NULL);
   for (size_t k = 0; k < p->count; k++)
-    strut_axes_point(&axes, p->vertices[k].motion, p->vertices[k].factor, p->points[k]);
+    strut_axes_point(&axes, p->upright ? p->vertices[k].height : p->vertices[k].motion,
+                     p->upright ? p->vertices[k].motion : p->vertices[k].height, p->points[k]);
   strut_canvas_clip(p->canvas, axes.frame);
   const strut_pen zero = {.colour = strut_grey(0.6), .width = 0.6, .butt = true};
   if (axes.y.low < 0 && axes.y.high > 0) {
@@ -144,14 +167,10 @@ static const double *enlarged(strut_path_picture *p, const double *q) {
   return p->shape;
 }
 
-/* Which cables pull there, told from the motion as it is. */
-static const double *find_taut(strut_path_picture *p, const double *q) {
-  for (size_t j = 0; j < p->model->scene->member_count; j++) {
-    const int32_t *node = p->model->scene->members[j].node;
-    const double *a = q + 2 * node[0], *b = q + 2 * node[1];
-    double rest = p->model->members.rest[j];
-    p->taut[j] = hypot(b[0] - a[0], b[1] - a[1]) > rest * (1 + SLACK) ? 1.0 : 0.0;
-  }
+/* Which cables pull there; of other members it does not matter. */
+static const double *find_taut(strut_path_picture *p, const strut_path_vertex *vertex) {
+  for (size_t j = 0; j < p->model->scene->member_count; j++)
+    p->taut[j] = vertex->force[j] > 0 ? 1.0 : 0.0;
   return p->taut;
 }
 
@@ -191,8 +210,7 @@ static bool load_arrow(const strut_path_picture *p, const strut_window *window,
   for (int32_t i = 0; i < 2 * p->model->node_count; i++)
     middle[i % 2] += q[i] / p->model->node_count;
   double length = ARROW * fmax(0.3, size / largest), outwards = 0.0;
-  for (int d = 0; d < 2; d++)
-    outwards += (q[2 * load->node + d] - middle[d]) * load->force[d];
+  for (int d = 0; d < 2; d++) outwards += (q[2 * load->node + d] - middle[d]) * load->force[d];
   strut_window_point(window, q + 2 * load->node, ends[0]);
   for (int d = 0; d < 2; d++) {
     double step = (d ? -1.0 : 1.0) * load->force[d] / size;
@@ -251,10 +269,11 @@ void strut_path_draw_shapes(strut_path_picture *p, strut_box box) {
   p->other_count = 0; /* the curve's letters are elsewhere */
   strut_draw_ground(p->canvas, &window, p->model);
   for (size_t i = 0; i < p->stop_count; i++) {
-    const double *q = p->vertices[p->stops[i].vertex].q;
+    const strut_path_vertex *vertex = &p->vertices[p->stops[i].vertex];
+    const double *q = vertex->q;
     const strut_structure_style style = {.colouring = STRUT_COLOUR_ONE,
                                          .colour = p->stops[i].colour,
-                                         .slack_forces = find_taut(p, q),
+                                         .slack_forces = find_taut(p, vertex),
                                          .thinness = 0.3,
                                          .no_supports = i > 0};
     strut_draw_structure(p->canvas, &window, p->model, enlarged(p, q), &style);

@@ -2,9 +2,11 @@
 #include "engine/statics/equilibria/equilibria.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/run/settle.h"
 #include "engine/statics/equilibria/barriers.h"
 #include "engine/statics/equilibria/hunt.h"
 #include "engine/statics/equilibria/naming.h"
@@ -17,6 +19,8 @@ static strut_status no_memory(strut_hunt *h) {
 static void count_starts(strut_hunt *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
   h->out->missed = fmax(h->out->missed, set->missed);
+  h->out->missed_below = fmax(h->out->missed_below, set->missed_below);
+  h->out->unmet += set->unmet;
   h->out->missed_one = fmax(h->out->missed_one, set->missed_one);
   h->out->cut_short = h->out->cut_short || set->cut_short;
 }
@@ -282,6 +286,40 @@ static strut_status search(strut_hunt *h) {
   return status;
 }
 
+/* The equilibrium on the real ground whose shape is nearest, if that is near, in model sizes. */
+static int32_t find_nearest(const strut_model *model, const strut_equilibria *all,
+                            const double *q) {
+  double least = 1e-4 * model->size;
+  int32_t nearest = -1;
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    bool unstable = !e->supports && e->fate == STRUT_FATE_UNSTABLE;
+    if (e->fate != STRUT_FATE_STANDS && !unstable) continue;
+    const double *shape = unstable ? e->point.q : e->rest;
+    double away = strut_shape_distance(model, q, shape, false, NULL);
+    if (away < least) least = away, nearest = (int32_t)i;
+  }
+  return nearest;
+}
+
+/* Where the run of the scene starts, if it settles: that, too, is one of the equilibria. */
+static strut_status settle_start(strut_hunt *h, const strut_model *model) {
+  double *q, time;
+  strut_error trouble = {0};
+  h->out->start = -1;
+  if (!model->scene->settle.wanted || !model->mass || h->options->standing_only) return STRUT_OK;
+  q = strut_arena_allocate(&h->out->arena, (size_t)model->length, sizeof *q);
+  if (!q) return no_memory(h);
+  strut_status status = strut_settle_experiment(model, NULL, h->options->interrupt, q, &time,
+                                                &h->out->settle, &trouble);
+  if (!status) h->out->start = find_nearest(model, h->out, q);
+  if (!status) return STRUT_OK;
+  if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)
+    return strut_fail(h->error, status, "%s", trouble.message);
+  snprintf(h->out->start_trouble, sizeof h->out->start_trouble, "%s", trouble.message);
+  return STRUT_OK; /* the list stands without it */
+}
+
 strut_status strut_equilibria_find(const strut_model *model,
                                    const strut_equilibria_options *options,
                                    strut_equilibria *equilibria, strut_error *error) {
@@ -290,6 +328,7 @@ strut_status strut_equilibria_find(const strut_model *model,
   strut_status status = prepare(&h, model);
   if (!status) status = search(&h);
   if (!status) status = finish(&h);
+  if (!status) status = settle_start(&h, model);
   strut_landscape_free(&h.landscape);
   strut_relaxer_free(h.relaxer);
   strut_potential_free(h.world);

@@ -8,6 +8,7 @@
 
 #include <signal.h>
 
+#include "engine/run/summary.h"
 #include "engine/statics/search/critical.h"
 
 typedef enum strut_fate {
@@ -59,8 +60,13 @@ typedef struct strut_equilibria {
   uint64_t seed;
   int64_t starts;
   double missed;            /* the largest over the searches, as in strut_critical_set */
-  double missed_one;        /* the same, its upper bound */
+  double missed_below;      /* its upper 95 % limit */
+  double missed_one;        /* upper 95 % limit on the share of starts of a stable one never met */
+  int64_t unmet;            /* stable ones, over all searches, that no random start met */
   bool cut_short;           /* some search ended early, for the structure's size */
+  strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
+  int32_t start;            /* the equilibrium it settled in, or -1: it is none of the list */
+  char start_trouble[600];  /* why the start did not come to rest; else empty */
   char remark[400];         /* why there is none, or what moves freely; else empty */
   strut_arena arena;
 } strut_equilibria;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/run/settle.h"
 #include "engine/statics/equilibria/hunt.h"
 #include "engine/statics/equilibria/naming.h"
 
@@ -282,6 +283,17 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
   return status;
 }
 
+/* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
+static strut_status from_settling(const strut_model *model, strut_arena *arena, strut_stand *stand,
+                                  strut_error *error) {
+  double time;
+  strut_status status =
+      strut_settle_experiment(model, NULL, NULL, stand->q, &time, &stand->settle, error);
+  if (!status) status = judge(model, arena, stand, error);
+  if (!model->scene->settle.friction) stand->at_rest = true;
+  return status;
+}
+
 strut_status strut_stand_find(const strut_model *model, const char *name, strut_arena *arena,
                               strut_stand *stand, strut_error *error) {
   const strut_scene *scene = model->scene;
@@ -304,6 +316,8 @@ strut_status strut_stand_find(const strut_model *model, const char *name, strut_
       memcpy(stand->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
     return judge(model, arena, stand, error);
   }
+  if (!c && scene->settle.wanted && model->mass)
+    return from_settling(model, arena, stand, error);
   strut_status status = seek(model, c, stand->q, error);
   if (!status) status = judge(model, arena, stand, error);
   stand->at_rest = true;

@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_STAND_H
 
 #include "engine/model/model.h"
+#include "engine/run/summary.h"
 
 typedef struct strut_stand {
   const char *name;  /* "drawn", "start", a configuration's, or one that the list of all gives */
@@ -17,10 +18,12 @@ typedef struct strut_stand {
   int32_t closed_count;
   int32_t *closed;   /* (closed_count) nodes that touch the ground */
   double *normal;    /* (closed_count) forces of the ground on them [N] */
+  strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
 } strut_stand;
 
 /**
- * name NULL or "start": the equilibrium that the scene's start comes to rest in; "drawn": the drawn
+ * name NULL or "start": the equilibrium that the scene's start comes to rest in, where the scene
+ * settles the very positions that its run starts from (engine/run/settle.h); "drawn": the drawn
  * shape as it is; else a configuration of the scene: from its positions where it has some, else by a
  * search on its contacts; "unnamed-3" and the like: from the list that strut_equilibria_find makes
  * with the scene's own effort. All in the arena. Fails with STRUT_USAGE and a suggestion for an unknown

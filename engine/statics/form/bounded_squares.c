@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "engine/statics/form/parts.h"
+#include "engine/statics/lu.h"
 
 enum { ROUNDS = 1000 };
 
@@ -70,12 +71,11 @@ static size_t find_step(problem *p) {
 }
 
 static bool solve_step(problem *p, size_t size) {
-  int sign;
   gsl_matrix_view a = gsl_matrix_submatrix(p->system, 0, 0, size, size);
   gsl_vector_view b = gsl_vector_subvector(p->right, 0, size);
   gsl_vector_view x = gsl_vector_subvector(p->solution, 0, size);
   gsl_permutation order = {size, p->order->data};
-  if (gsl_linalg_LU_decomp(&a.matrix, &order, &sign)) return false;
+  strut_lu_factor(&a.matrix, &order);
   for (size_t i = 0; i < size; i++)
     if (gsl_matrix_get(&a.matrix, i, i) == 0) return false;
   return gsl_linalg_LU_solve(&a.matrix, &order, &b.vector, &x.vector) == 0;

@@ -11,7 +11,7 @@
 #define STRUT_ENGINE_STATICS_MODES_EXTENDED_FACTOR_H
 
 #include "engine/model/linear_solver.h"
-#include "engine/statics/modes/double_double.h"
+#include "engine/base/double_double.h"
 
 typedef struct strut_extended_factor {
   int32_t n;

@@ -239,6 +239,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_modes_option
   modes->at = stand.name;
   modes->q = stand.q;
   modes->at_rest = stand.at_rest;
+  modes->settle = stand.settle;
   modes->closed = stand.closed;
   modes->closed_count = stand.closed_count;
   uint8_t *held = strut_arena_allocate(&modes->arena, (size_t)model->length, sizeof *held);

@@ -13,6 +13,7 @@
 #define STRUT_ENGINE_STATICS_MODES_MODES_H
 
 #include "engine/model/model.h"
+#include "engine/run/summary.h"
 
 enum { STRUT_DENSE_MODES = 400, STRUT_SPARSE_MODES = 10, STRUT_DAMPED_MODES = 160 };
 
@@ -50,6 +51,7 @@ typedef struct strut_modes {
   bool dense;            /* all modes were computed */
   bool damped_exactly;   /* damping from the quadratic eigenproblem; else by the modal quotient */
   bool at_rest;          /* the shape is an equilibrium */
+  strut_settle_summary settle; /* of strut_stand */
   double condition;      /* largest eigenvalue over the smallest that is not zero */
   size_t count;
   strut_mode *list; /* by eigenvalue */

@@ -8,7 +8,7 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_VIBRATION_H
 #define STRUT_ENGINE_STATICS_MODES_VIBRATION_H
 
-#include "engine/statics/modes/double_double.h"
+#include "engine/base/double_double.h"
 #include "engine/statics/potential.h"
 
 /** A member in the shape. */

@@ -7,7 +7,7 @@
 
 #include "engine/statics/path/system.h"
 
-/** A step: from one point of the path to the next, and the tangent it began with. (n + 1) each. */
+/** A step: from one point (2 n + 2) of the path to the next, and the tangent (n + 1) it began with. */
 typedef struct strut_path_piece {
   const double *from, *tangent, *to;
   double length; /* tangent . (to - from) */
@@ -23,12 +23,9 @@ double strut_path_measure_switch(strut_path_system *system, const double *y,
 /** An eigenvalue of the stiffness, counted from the lowest. */
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
                                      const strut_path_piece *piece, int32_t which);
-/** The factor's part of the tangent: 0 at a limit point. */
-double strut_path_measure_turn(strut_path_system *system, const double *y,
-                               const strut_path_piece *piece, int32_t which);
 
 /**
- * The point y (n + 1) of the piece where the measure is 0; it must have different signs at the ends.
+ * The point y (2 n + 2) of the piece where the measure is 0; it must have different signs at the ends.
  * Returns the place along the tangent, 0 to piece->length, or -1: no such change of sign.
  */
 double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which load, from which equilibrium, and the walk from there. See path.h. */
+/* What is followed, from which equilibrium, and the walk from there. See path.h. */
 #include "engine/statics/path/path.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/statics/equilibria/stand.h"
 #include "engine/statics/minimise.h"
 #include "engine/statics/path/walk.h"
 
@@ -12,10 +14,12 @@ enum { DEFAULT_STEPS = 400, NAMES = 400 };
 
 /* Of the rounding in forces: what a descent may leave, as the path is corrected further anyway. */
 static const double NEARLY = 1e6;
+static const double ALIKE = 1e-12; /* forces of several loads that count as one number */
 
 const char *strut_path_event_name(strut_path_event_kind kind) {
-  static const char *const names[] = {"limit point", "bifurcation", "slack",
-                                      "taut",        "touchdown",   "lift-off"};
+  static const char *const names[] = {
+      "limit point",           "bifurcation",          "slack", "taut", "touchdown", "lift-off",
+      "limit point at a kink", "bifurcation at a kink"};
   return names[kind];
 }
 
@@ -34,50 +38,134 @@ static strut_status no_such_load(const strut_scene *scene, const char *name, str
                     list);
 }
 
-/* Adds the loads that the factor multiplies to `load` and takes them, where constant, off `base`. */
-static strut_status choose_loads(const strut_scene *scene, const char *name, double *base,
-                                 double *load, strut_error *error) {
-  bool found = false, acts = false;
+/* Is it one of the loads that the factor multiplies? */
+static bool is_followed(const strut_load *load, const char *name) {
+  return name ? strcmp(load->name, name) == 0 : load->signal < 0;
+}
+
+/* Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path. */
+static strut_status choose_loads(const strut_scene *scene, const char *name, double *load,
+                                 strut_path *path, strut_error *error) {
+  bool found = false, acts = false, alike = true;
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
-    if (name ? strcmp(l->name, name) != 0 : l->signal >= 0) continue;
+    if (!is_followed(l, name)) continue;
+    double size = hypot(l->force[0], l->force[1]);
+    path->several = found;
+    alike = alike && (!found || fabs(size - path->reference) <= ALIKE * size);
+    path->reference = size;
     found = true;
     for (int c = 0; c < 2; c++) {
       int32_t at = 2 * l->node + c;
       load[at] += l->force[c];
-      if (l->signal < 0) base[at] -= l->force[c];
       acts = acts || (load[at] != 0 && !scene->nodes[l->node].fixed[c]);
     }
   }
+  if (!alike) path->reference = 0;
   if (found && acts) return STRUT_OK;
   if (name && scene->load_count && !found) return no_such_load(scene, name, error);
   if (!found)
-    return strut_fail(error, STRUT_USAGE,
-                      "the scene has no constant load to follow; give it one under 'loads'");
+    return strut_fail(
+        error, STRUT_USAGE,
+        "the scene has no constant load to follow; give it one under 'loads', or follow "
+        "something else (--over)");
   return strut_fail(error, STRUT_USAGE,
                     "the load%s%s acts on nothing that can move; there is no path to follow",
                     name ? " " : "", name ? name : "");
 }
 
-/* The equilibrium without the load that the start comes to rest in: q. */
-static strut_status begin_at(const strut_model *model, const double *base, double *q,
-                             strut_error *error) {
+/* All that a path is made from. */
+typedef struct beginning {
+  const strut_path_options *options;
+  const strut_model *drawn; /* the model that was given */
+  strut_scene scene; /* where the parameter is `from`; its arena is its own only if `owned` */
+  bool owned;
+  strut_model *model; /* of that scene */
+  double *load, *q;   /* (length) loads at factor 1 [N]; the equilibrium [m] */
+  uint8_t *held;      /* (length) a free coordinate that is displaced; NULL without one */
+  strut_arena arena;
+} beginning;
+
+/* Loads of the scene that is followed, at the factor that the path begins with. */
+static bool scale_loads(beginning *b) {
+  const strut_scene *drawn = b->drawn->scene;
+  strut_load *loads = strut_arena_allocate(&b->arena, drawn->load_count, sizeof *loads);
+  if (!loads) return false;
+  b->scene.loads = loads;
+  for (size_t i = 0; i < drawn->load_count; i++) {
+    loads[i] = drawn->loads[i];
+    if (!is_followed(&loads[i], b->options->load)) continue;
+    loads[i].signal = -1;
+    for (int c = 0; c < 2; c++) loads[i].force[c] *= b->options->from;
+  }
+  return true;
+}
+
+/* The driven member with the rest length that the path begins with. */
+static strut_status lengthen_member(beginning *b, strut_error *error) {
+  const strut_scene *drawn = b->drawn->scene;
+  int32_t driven = drawn->actuators[b->options->index].member;
+  strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
+  if (!members) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  memcpy(members, drawn->members, drawn->member_count * sizeof *members);
+  b->scene.members = members;
+  members[driven].stiffness = b->drawn->members.stiffness[driven];
+  members[driven].axial_stiffness = 0;
+  members[driven].rest_kind = STRUT_REST_LENGTH;
+  members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
+  if (members[driven].rest_value >= 0) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be negative at the beginning",
+                    members[driven].name);
+}
+
+/* A support where the path begins. */
+static bool move_support(beginning *b) {
+  const strut_scene *drawn = b->drawn->scene;
+  int32_t at = b->options->index;
+  strut_node *nodes = strut_arena_allocate(&b->arena, drawn->node_count, sizeof *nodes);
+  if (!nodes) return false;
+  memcpy(nodes, drawn->nodes, drawn->node_count * sizeof *nodes);
+  b->scene.nodes = nodes;
+  if (nodes[at / 2].fixed[at % 2]) nodes[at / 2].start[at % 2] += b->options->from;
+  return true;
+}
+
+/* Scene and model where the parameter is `from`. */
+static strut_status make_model(beginning *b, strut_error *error) {
+  const strut_path_options *o = b->options;
+  strut_status status = STRUT_OK;
+  bool made = true;
+  b->scene = *b->drawn->scene;
+  if (o->over == STRUT_PATH_OVER_LOAD) made = scale_loads(b);
+  if (o->over == STRUT_PATH_OVER_COORDINATE) made = move_support(b);
+  if (o->over == STRUT_PATH_OVER_ACTUATOR) status = lengthen_member(b, error);
+  if (!made) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (o->over == STRUT_PATH_OVER_SCENE) {
+    status = o->scene_at(o->context, o->from, &b->scene, error);
+    b->owned = status == STRUT_OK;
+  }
+  return status ? status : strut_model_compile(&b->scene, &b->model, error);
+}
+
+/* q goes downhill to an equilibrium, with `held` coordinates where they are. */
+static strut_status descend(const strut_model *model, const uint8_t *held, bool without, double *q,
+                            strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
-  strut_status status = strut_potential_create(model, NULL, true, &potential, error);
-  if (status == STRUT_OK) {
-    memcpy(potential->force, base, (size_t)model->length * sizeof *base);
+  const char *where = without ? "without the load" : "at the beginning of the path";
+  strut_status status = strut_potential_create(model, held, true, &potential, error);
+  if (status == STRUT_OK && potential->n > 0)
     status = strut_minimiser_create(potential, &minimiser, error);
-  }
-  if (status == STRUT_OK) {
+  if (status == STRUT_OK && potential->n > 0) {
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "without the load there is no equilibrium to begin at: nothing holds the "
-                          "structure; support it or give it a ground");
+                          "%s there is no equilibrium to begin at: nothing holds the "
+                          "structure; support it or give it a ground",
+                          where);
     else if (descent.end == STRUT_DESCENT_EXHAUSTED && descent.residual > NEARLY * descent.rounding)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "without the load no equilibrium was found to begin at: %.3g N are left",
+                          "%s no equilibrium was found to begin at: %.3g N are left", where,
                           descent.residual);
   }
   strut_minimiser_free(minimiser);
@@ -85,8 +173,38 @@ static strut_status begin_at(const strut_model *model, const double *base, doubl
   return status;
 }
 
+/* The equilibrium of that name. */
+static strut_status begin_at_name(beginning *b, strut_error *error) {
+  strut_stand stand;
+  strut_status status = strut_stand_find(b->model, b->options->at, &b->arena, &stand, error);
+  if (status) return status;
+  if (!stand.at_rest)
+    return strut_fail(error, STRUT_NOT_SETTLED,
+                      "'%.100s' is no equilibrium where the path begins: %.3g N are left",
+                      stand.name, stand.residual);
+  memcpy(b->q, stand.q, (size_t)b->model->length * sizeof *b->q);
+  return STRUT_OK;
+}
+
+/* The equilibrium to begin at, in q. A free coordinate to be displaced is held from then on. */
+static strut_status find_beginning(beginning *b, strut_error *error) {
+  const strut_path_options *o = b->options;
+  size_t length = (size_t)b->model->length;
+  bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
+  memcpy(b->q, b->model->start, length * sizeof *b->q);
+  strut_status status =
+      o->at ? begin_at_name(b, error) : descend(b->model, NULL, without, b->q, error);
+  if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
+  b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
+  if (!b->held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  b->held[o->index] = 1;
+  if (o->from == 0) return STRUT_OK;
+  b->q[o->index] += o->from;
+  return descend(b->model, b->held, false, b->q, error);
+}
+
 static bool make_walk(strut_path_walk *w) {
-  size_t count = (size_t)w->system.n + 1;
+  size_t count = 2 * ((size_t)w->system.n + 1);
   double **arrays[] = {&w->y,     &w->tangent, &w->next,  &w->next_tangent,
                        &w->trial, &w->spare,   &w->upward};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
@@ -98,59 +216,92 @@ static bool make_walk(strut_path_walk *w) {
   return true;
 }
 
-static strut_status walk_from(const strut_model *model, const double *base, const double *load,
-                              const double *q, double until, int32_t steps, strut_path *path,
+static strut_status create_walk(beginning *b, double until, strut_path_walk *w,
+                                strut_error *error) {
+  strut_path_system *s = &w->system;
+  strut_status status = strut_path_system_create(b->model, b->held, s, error);
+  if (status) return status;
+  if (s->n > STRUT_PATH_COORDINATES)
+    return strut_fail(error, STRUT_USAGE,
+                      "the structure has %d free coordinates; paths are followed with up to %d",
+                      (int)s->n, STRUT_PATH_COORDINATES);
+  if (!make_walk(w)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_path_parameter_create(b->model, b->options, b->load, b->options->from, until, b->q,
+                                     &s->arena, &s->parameter, error);
+}
+
+static strut_status walk_from(beginning *b, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
   strut_path_walk w = {.path = path};
-  strut_status status = strut_path_system_create(model, base, load, until, &w.system, error);
-  if (status == STRUT_OK && w.system.n > STRUT_PATH_COORDINATES)
-    status = strut_fail(error, STRUT_USAGE,
-                        "the structure has %d free coordinates; paths are followed with up to %d",
-                        (int)w.system.n, STRUT_PATH_COORDINATES);
-  if (status == STRUT_OK && !make_walk(&w))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = create_walk(b, until, &w, error);
   if (status == STRUT_OK) {
-    strut_path_unplace(&w.system, q, w.y);
+    strut_path_unplace(&w.system, b->q, w.y);
     path->end = STRUT_PATH_STEPS;
     bool on = strut_path_walk_begin(&w);
     for (int32_t i = 0; i < steps && on; i++) on = strut_path_walk_step(&w);
     if (w.system.drifts && path->point_count == 0)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "nothing holds the structure against the load: it moves as a whole");
+                          "nothing holds the structure against %s: it moves as a whole",
+                          path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
     if (w.failed) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK && path->point_count == 0)
     status = strut_fail(error, STRUT_NOT_SETTLED,
-                        "the structure has no stiffness against the load at the start, so that no "
-                        "path begins there");
+                        "the structure has no stiffness against %s at the start, so that no "
+                        "path begins there",
+                        path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
   strut_path_system_free(&w.system);
   return status;
+}
+
+/* What the path is over, for people. */
+static strut_status name_parameter(const strut_model *model, const strut_path_options *o,
+                                   strut_path *path, strut_error *error) {
+  const strut_scene *scene = model->scene;
+  path->over = o->over;
+  path->load = o->load;
+  path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;
+  path->unit = o->over == STRUT_PATH_OVER_LOAD    ? ""
+               : o->over == STRUT_PATH_OVER_SCENE ? o->unit
+                                                  : "m";
+  if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? o->load : "all loads";
+  if (o->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[o->index].name;
+  if (o->over == STRUT_PATH_OVER_SCENE) path->name = o->name;
+  if (o->over == STRUT_PATH_OVER_COORDINATE)
+    path->name = strut_arena_format(&path->arena, "%s.%c", scene->nodes[o->index / 2].name,
+                                    o->index % 2 ? 'y' : 'x');
+  return path->name ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
 strut_status strut_path_follow(const strut_model *model, const strut_path_options *options,
                                strut_path *path, strut_error *error) {
   size_t length = (size_t)model->length;
-  double until = options->until != 0 ? options->until : 1.0;
+  bool over_load = options->over == STRUT_PATH_OVER_LOAD;
+  bool unsaid = over_load && options->until == 0 && options->from == 0;
+  double until = unsaid ? 1.0 : options->until;
   int32_t steps = options->steps > 0 ? options->steps : DEFAULT_STEPS;
-  *path = (strut_path){.load = options->load};
-  strut_arena scratch = {0};
-  double *base = strut_arena_allocate(&scratch, length, sizeof *base);
-  double *load = strut_arena_allocate(&scratch, length, sizeof *load);
-  double *q = strut_arena_allocate(&scratch, length, sizeof *q);
-  strut_status status = base && load && q ? STRUT_OK : STRUT_NO_MEMORY;
-  if (status) strut_fail(error, status, "out of memory");
-  if (status == STRUT_OK) {
-    if (model->constant_force) memcpy(base, model->constant_force, length * sizeof *base);
-    memcpy(q, model->start, length * sizeof *q);
-    status = choose_loads(model->scene, options->load, base, load, error);
-  }
-  if (status == STRUT_OK) status = begin_at(model, base, q, error);
-  if (status == STRUT_OK) status = walk_from(model, base, load, q, until, steps, path, error);
+  beginning b = {.options = options, .drawn = model};
+  *path = (strut_path){0};
+  if (!(fabs(until - options->from) > 0))
+    return strut_fail(error, STRUT_USAGE, "the path ends where it begins, at %.6g", until);
+  b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
+  b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
+  strut_status status = b.load && b.q ? name_parameter(model, options, path, error)
+                                      : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status == STRUT_OK && over_load)
+    status = choose_loads(model->scene, options->load, b.load, path, error);
+  if (status == STRUT_OK) status = make_model(&b, error);
+  if (status == STRUT_OK && b.model->length != model->length)
+    status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
+  if (status == STRUT_OK) status = find_beginning(&b, error);
+  if (status == STRUT_OK) status = walk_from(&b, until, steps, path, error);
   if (status == STRUT_OK && path->end == STRUT_PATH_STEPS)
-    snprintf(path->remark, sizeof path->remark,
-             "%d steps led to the factor %.6g; --steps allows more", (int)steps,
-             path->points[path->point_count - 1].factor);
-  strut_arena_free(&scratch);
+    snprintf(path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",
+             (int)steps, over_load ? "the factor" : path->name,
+             path->points[path->point_count - 1].factor, *path->unit ? " " : "", path->unit);
+  strut_model_free(b.model);
+  if (b.owned) strut_scene_free(&b.scene);
+  strut_arena_free(&b.arena);
   return status;
 }
 

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The path of equilibria that a load draws as its factor grows from 0, past limit points too.
+ * The path of equilibria that a parameter draws as it changes, past limit points too: a load's
+ * factor, an actuator's length, the displacement of a node, or anything that a scene depends on.
  *
  * Arc-length continuation: predictor along the tangent, Newton's method with one condition on the
  * length of the step. Between events what is taut and what touches stays fixed, so that the path is
- * smooth there; each event is located on it, what changes is changed, and the walk goes on from it.
+ * smooth there. Where that changes the path has a kink: the stiffness is another one on each side,
+ * and stability is judged on both. Positions carry twice a double's digits, so that stiff bars do
+ * not spoil the forces.
  */
 #ifndef STRUT_ENGINE_STATICS_PATH_PATH_H
 #define STRUT_ENGINE_STATICS_PATH_PATH_H
@@ -15,63 +18,104 @@
 enum { STRUT_PATH_COORDINATES = 600 };
 
 typedef enum strut_path_event_kind {
-  STRUT_PATH_LIMIT,       /* the factor turns back */
-  STRUT_PATH_BIFURCATION, /* an eigenvalue of the stiffness changes its sign, the factor goes on */
-  STRUT_PATH_SLACK,       /* a cable ceases to pull */
-  STRUT_PATH_TAUT,        /* a cable begins to pull */
-  STRUT_PATH_TOUCHDOWN,   /* a node meets the ground */
-  STRUT_PATH_LIFT_OFF     /* a node leaves it */
+  STRUT_PATH_LIMIT,           /* the parameter turns back */
+  STRUT_PATH_BIFURCATION,     /* an eigenvalue of the stiffness changes its sign, the parameter
+                                  goes on */
+  STRUT_PATH_SLACK,           /* a cable ceases to pull */
+  STRUT_PATH_TAUT,            /* a cable begins to pull */
+  STRUT_PATH_TOUCHDOWN,       /* a node meets the ground */
+  STRUT_PATH_LIFT_OFF,        /* a node leaves it */
+  STRUT_PATH_KINK_LIMIT,      /* the parameter turns back at a kink: no eigenvalue passes zero */
+  STRUT_PATH_KINK_BIFURCATION /* it goes on, but the number of negative eigenvalues jumps */
 } strut_path_event_kind;
 
-/** "limit point", "bifurcation", "slack", "taut", "touchdown", "lift-off". */
+/**
+ * "limit point", "bifurcation", "slack", "taut", "touchdown", "lift-off", "limit point at a kink",
+ * "bifurcation at a kink".
+ */
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
 
 typedef struct strut_path_point {
-  double factor;
-  double arc;       /* from the beginning; coordinates in units of the structure's size, the factor
-                       in units of `until` [1] */
-  int32_t negative; /* eigenvalues of the stiffness below zero: 0 is stable */
+  double factor;    /* the parameter: a load's factor [1], else in its SI unit */
+  double arc;       /* from the beginning; coordinates in units of the structure's size, the
+                        parameter in units of the range asked for [1] */
+  int32_t negative; /* eigenvalues of the stiffness below zero as the path goes on: 0 is stable */
   double *q;        /* (length) [m] */
+  double *force;    /* (members) tension [N] */
+  double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
+  double *contact;  /* (contacts) normal force of the ground [N] */
 } strut_path_point;
 
 typedef struct strut_path_event {
   strut_path_event_kind kind;
   double factor, arc;
-  int32_t index;      /* of the member or node that changes; of the node that moves most at a limit
+  int32_t index; /* of the member or node that changes; of the node that moves most at a limit
                          point or bifurcation */
-  const char *detail; /* in words */
-  double *q;          /* (length) [m] */
+  int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
+  const char *detail;    /* in words */
+  double *q, *force, *reaction, *contact; /* as of a point */
 } strut_path_event;
 
 typedef enum strut_path_end {
-  STRUT_PATH_UNTIL, /* the factor asked for */
-  STRUT_PATH_STEPS, /* as many steps as allowed */
-  STRUT_PATH_AWAY,  /* a node left all bounds, or the factor fell ten times below -until */
-  STRUT_PATH_LOST   /* no equilibrium near: the remark says where */
+  STRUT_PATH_UNTIL,  /* the value asked for */
+  STRUT_PATH_STEPS,  /* as many steps as allowed */
+  STRUT_PATH_AWAY,   /* a node left all bounds, or the parameter went ten ranges the other way */
+  STRUT_PATH_LOST,   /* no equilibrium near: the remark says where */
+  STRUT_PATH_INVALID /* beyond this value the scene means nothing: the remark says why */
 } strut_path_end;
 
+/** What is continued over. */
+typedef enum strut_path_over {
+  STRUT_PATH_OVER_LOAD,       /* a factor of loads */
+  STRUT_PATH_OVER_ACTUATOR,   /* what an actuator adds to its member's rest length [m] */
+  STRUT_PATH_OVER_COORDINATE, /* displacement of a node along x or y [m] */
+  STRUT_PATH_OVER_SCENE       /* a number that scenes are made of */
+} strut_path_over;
+
 typedef struct strut_path {
-  const char *load; /* the load's name, or NULL: all loads without a signal */
+  strut_path_over over;
+  const char *load;   /* the load's name, or NULL: all loads without a signal */
+  const char *name;   /* what is continued over, for people */
+  const char *unit;   /* its SI unit; "" for none */
+  double reference;   /* [N] that a load's factor 1 stands for where all loads are alike; else 0 */
+  bool several;       /* it is so for each of several loads */
+  int32_t coordinate; /* that is displaced, 2 node + 1 for y; else -1 */
   size_t point_count, event_count;
   strut_path_point *points;
   strut_path_event *events;
   strut_path_end end;
-  char remark[300]; /* why it ended before `until`; else empty */
+  char remark[1000]; /* why it ended before `until`; else empty */
   strut_arena arena;
 } strut_path;
 
+/** The scene where the parameter has a value; `scene` is freed by who asks. */
+typedef strut_status (*strut_path_scene_at)(void *context, double value, strut_scene *scene,
+                                            strut_error *error);
+
 typedef struct strut_path_options {
-  const char *load; /* NULL: all loads without a signal */
-  double until;     /* factor to end at, may be negative; 0: 1 */
-  int32_t steps;    /* most steps; 0: 400 */
+  strut_path_over over;
+  const char *load; /* over a load: its name; NULL: all loads without a signal */
+  int32_t index;    /* of the actuator; of the coordinate, 2 node + 1 for y */
+  const char *name; /* over a scene's number: its name, and its SI unit ("" for none) */
+  const char *unit;
+  strut_path_scene_at scene_at;
+  void *context;
+  const char *at; /* equilibrium to begin at, as strut_stand_find knows it; NULL: where the start
+                        comes to rest */
+  double from;    /* where the path begins: in SI, or the factor */
+  double until;   /* where it ends; a load's factor from 0 to 0 ends at 1 */
+  int32_t steps;  /* most steps; 0: 400 */
 } strut_path_options;
 
 /**
- * Begins at the equilibrium that the start comes to rest in without the load. Gravity and other loads
- * stay as they are. A named load with a signal counts with its force alone. Friction and drives are
- * left out. strut_path_free releases it, after a failure too; the model must outlive it. STRUT_USAGE
- * for a load that is not there or no load at all, STRUT_NOT_SETTLED where there is no equilibrium to
- * begin at, STRUT_NO_MEMORY.
+ * Begins at an equilibrium of the structure where the parameter is `from`: of loads, that without
+ * them unless from says more. Everything else stays as it is. A free coordinate that is displaced
+ * is held from the beginning: displacement counts from where the equilibrium has it. A named load
+ * with a signal counts with its force alone. Friction and drives are left out. strut_path_free
+ * releases it, after a failure too; model and options' texts must outlive it. STRUT_USAGE for a load that is
+ * not there or no load at all, a parameter that does nothing or changes what the structure is made
+ * of; STRUT_NOT_SETTLED where there is no equilibrium to begin at, STRUT_NO_MEMORY, and what
+ * scene_at fails with at `from`.
  */
 STRUT_API strut_status strut_path_follow(const strut_model *model,
                                          const strut_path_options *options, strut_path *path,

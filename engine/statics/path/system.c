@@ -1,69 +1,69 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
 #include "engine/statics/path/system.h"
+#include "engine/statics/lu.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_sort_vector.h>
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 14, MOTIONS = 3 };
+enum { MOST_ITERATIONS = 14 };
 
-static const double CONVERGED = 1e-14;  /* of a Newton step, in units of size and factor */
-static const double FAR = 2.0;          /* a step longer than this leads nowhere */
-static const double NEAR = 1e-8;        /* from here on a step that shrinks no more is rounding */
-static const double RIGID = 1e-10;      /* of the stiffness: what a rigid motion may meet */
-static const double ZERO_VALUE = 1e-13; /* of the largest eigenvalue: no sign below this */
+static const double CONVERGED = 1e-14; /* of a Newton step, in units of size and range */
+static const double BALANCED = 1e-15;  /* of the largest force: what equilibrium may leave */
+static const double FAR = 2.0;         /* a step longer than this leads nowhere */
+static const double NEAR = 1e-8;       /* from here on a step that shrinks no more is rounding */
+static const double RIGID = 1e-10;     /* of the stiffness: what a rigid motion may meet */
+static const double FRESH = 1e-3;      /* of the range: rates from so near by do for a correction */
 
 static bool make_matrices(strut_path_system *s) {
-  size_t n = (size_t)s->n;
+  size_t unknowns = (size_t)s->n + 1; /* all may be held: then the parameter alone is unknown */
+  size_t n = s->n > 0 ? (size_t)s->n : 1;
   s->hessian = gsl_matrix_alloc(n, n);
+  s->work = gsl_matrix_alloc(n, n);
   s->vectors = gsl_matrix_alloc(n, n);
   s->values = gsl_vector_alloc(n);
   s->eigen = gsl_eigen_symmv_alloc(n);
   s->values_only = gsl_eigen_symm_alloc(n);
-  s->bordered = gsl_matrix_alloc(n + 1, n + 1);
-  s->right = gsl_vector_alloc(n + 1);
-  s->solution = gsl_vector_alloc(n + 1);
-  s->order = gsl_permutation_alloc(n + 1);
-  return s->hessian && s->vectors && s->values && s->eigen && s->values_only && s->bordered &&
-         s->right && s->solution && s->order;
+  s->bordered = gsl_matrix_alloc(unknowns, unknowns);
+  s->right = gsl_vector_alloc(unknowns);
+  s->solution = gsl_vector_alloc(unknowns);
+  s->order = gsl_permutation_alloc(unknowns);
+  return s->hessian && s->work && s->vectors && s->values && s->eigen && s->values_only &&
+         s->bordered && s->right && s->solution && s->order;
 }
 
-static bool make_arrays(strut_path_system *s, const strut_model *model) {
-  size_t length = (size_t)model->length, slots = (size_t)model->members.slots;
-  s->base = strut_arena_allocate(&s->arena, length, sizeof(double));
-  s->load = strut_arena_allocate(&s->arena, length, sizeof(double));
-  s->q = strut_arena_allocate(&s->arena, length, sizeof(double));
-  s->g = strut_arena_allocate(&s->arena, length, sizeof(double));
-  s->row = strut_arena_allocate(&s->arena, length + 1, sizeof(double));
-  s->slack = strut_arena_allocate(&s->arena, slots, sizeof(double));
-  s->touching = strut_arena_allocate(&s->arena, (size_t)model->contacts.count, 1);
-  return s->base && s->load && s->q && s->g && s->row && s->slack && s->touching;
+static bool make_arrays(strut_path_system *s) {
+  size_t length = (size_t)s->model->length, members = (size_t)s->model->members.count;
+  double **arrays[] = {&s->q,   &s->q_low,   &s->g,       &s->slope,
+                       &s->row, &s->held[0], &s->held[1], &s->held[2]};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
+  s->pulling = strut_arena_allocate(&s->arena, members, 1);
+  s->touching = strut_arena_allocate(&s->arena, (size_t)s->model->contacts.count, 1);
+  s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
+  if (!s->pulling || !s->touching || !s->member) return false;
+  memset(s->pulling, 1, members);
+  return strut_path_terms_create(s->model, &s->arena, &s->terms) &&
+         strut_path_terms_create(s->model, &s->arena, &s->rates);
 }
 
-strut_status strut_path_system_create(const strut_model *model, const double *base,
-                                      const double *load, double unit, strut_path_system *s,
-                                      strut_error *error) {
-  *s = (strut_path_system){.model = *model, .unit = unit};
+strut_status strut_path_system_create(const strut_model *model, const uint8_t *held,
+                                      strut_path_system *s, strut_error *error) {
+  *s = (strut_path_system){.model = model};
   s->size = model->size > 0 ? model->size : 1.0;
-  if (!make_arrays(s, model)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  memcpy(s->slack, model->members.slack, (size_t)model->members.slots * sizeof *s->slack);
-  s->model.members.slack = s->slack;
-  strut_status status = strut_potential_create(&s->model, NULL, false, &s->potential, error);
+  if (!make_arrays(s)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = strut_potential_create(model, held, false, &s->potential, error);
   if (status) return status;
   s->n = s->potential->n;
-  memcpy(s->base, base, (size_t)model->length * sizeof *s->base);
-  memcpy(s->load, load, (size_t)model->length * sizeof *s->load);
-  memcpy(s->q, model->start, (size_t)model->length * sizeof *s->q);
-  if (s->n == 0) return STRUT_OK;
-  s->sparse = strut_potential_matrix(s->potential, &s->arena);
-  if (s->sparse && make_matrices(s)) return STRUT_OK;
+  if (s->n > STRUT_PATH_COORDINATES || make_matrices(s)) return STRUT_OK;
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
 void strut_path_system_free(strut_path_system *s) {
   gsl_matrix_free(s->hessian);
+  gsl_matrix_free(s->work);
   gsl_matrix_free(s->vectors);
   gsl_matrix_free(s->bordered);
   gsl_vector_free(s->values);
@@ -77,56 +77,166 @@ void strut_path_system_free(strut_path_system *s) {
   *s = (strut_path_system){0};
 }
 
-void strut_path_place(strut_path_system *s, const double *y, double *q) {
-  if (q != s->q) memcpy(q, s->model.start, (size_t)s->model.length * sizeof *q);
-  for (int32_t i = 0; i < s->n; i++) q[s->potential->coordinate[i]] = s->size * y[i];
+static strut_dd long_value(const strut_path_system *s, const double *y) {
+  const strut_dd share = {y[s->n], y[2 * s->n + 1]};
+  return dd_add(dd_of(s->parameter.from), dd_scale(share, s->parameter.range));
+}
+
+double strut_path_value(const strut_path_system *s, const double *y) {
+  return dd_double(long_value(s, y));
 }
 
 void strut_path_unplace(const strut_path_system *s, const double *q, double *y) {
-  for (int32_t i = 0; i < s->n; i++) y[i] = q[s->potential->coordinate[i]] / s->size;
+  for (int32_t i = 0; i < s->n; i++) {
+    strut_dd share = dd_div(dd_of(q[s->potential->coordinate[i]]), dd_of(s->size));
+    y[i] = share.hi, y[s->n + 1 + i] = share.lo;
+  }
+  y[s->n] = y[2 * s->n + 1] = 0;
 }
 
-static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
-  const double *at = q + c->at[i];
-  return at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
+/* Terms at y's value, and where everything is. */
+static bool place(strut_path_system *s, const double *y) {
+  strut_dd value = long_value(s, y);
+  if (!s->has_terms || value.hi != s->terms_at.hi || value.lo != s->terms_at.lo) {
+    s->has_terms = strut_path_parameter_terms(&s->parameter, value, &s->terms);
+    s->terms_at = value;
+    if (!s->has_terms) return false;
+  }
+  size_t bytes = (size_t)s->model->length * sizeof *s->q;
+  memcpy(s->q, s->terms.position, bytes);
+  memcpy(s->q_low, s->terms.position_low, bytes);
+  for (int32_t i = 0; i < s->n; i++) {
+    const strut_dd share = {y[i], y[s->n + 1 + i]};
+    strut_dd at = dd_scale(share, s->size);
+    s->q[s->potential->coordinate[i]] = at.hi;
+    s->q_low[s->potential->coordinate[i]] = at.lo;
+  }
+  return true;
+}
+
+static strut_dd coordinate(const strut_path_system *s, uint32_t at) {
+  return (strut_dd){s->q[at], s->q_low[at]};
+}
+
+/* Length of a member, and what it is longer than its rest length. */
+static double measure_member(const strut_path_system *s, int32_t j, strut_path_member *m) {
+  const strut_member_table *t = &s->model->members;
+  const strut_dd rest = {s->terms.rest[j], s->terms.rest_low[j]};
+  strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
+  strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
+  strut_dd length = dd_sqrt(dd_add(dd_mul(dx, dx), dd_mul(dy, dy)));
+  *m = (strut_path_member){.length = dd_double(length)};
+  if (m->length > 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
+  return dd_double(dd_sub(length, rest));
+}
+
+static double gap_of(const strut_path_system *s, int32_t i) {
+  uint32_t at = s->model->contacts.at[i];
+  strut_dd up = dd_sub(coordinate(s, at + 1), dd_of(s->terms.height));
+  return dd_double(
+      dd_add(dd_scale(coordinate(s, at), s->terms.normal[0]), dd_scale(up, s->terms.normal[1])));
+}
+
+static void add_stiffness(strut_path_system *s, const int32_t *row, int count, double (*block)[4]) {
+  for (int a = 0; a < count; a++)
+    for (int b = 0; b < count; b++)
+      if (row[a] >= 0 && row[b] >= 0)
+        *gsl_matrix_ptr(s->hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
+}
+
+static void member_rows(const strut_path_system *s, int32_t j, int32_t row[4]) {
+  uint32_t a = s->model->members.from[j], b = s->model->members.to[j];
+  row[0] = s->potential->row_of[a], row[1] = s->potential->row_of[a + 1];
+  row[2] = s->potential->row_of[b], row[3] = s->potential->row_of[b + 1];
+}
+
+/* How a member's force on its second node changes with the parameter, its free ends held. */
+static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
+  const strut_path_member *m = &s->member[j];
+  const uint32_t a = s->model->members.from[j], b = s->model->members.to[j];
+  double d[2], k = s->terms.stiffness[j];
+  for (uint32_t c = 0; c < 2; c++) {
+    double there = s->potential->row_of[b + c] < 0 ? s->rates.position[b + c] : 0;
+    double here = s->potential->row_of[a + c] < 0 ? s->rates.position[a + c] : 0;
+    d[c] = there - here;
+  }
+  double along = m->ux * d[0] + m->uy * d[1];
+  double tension = k * (along - s->rates.rest[j]);
+  if (k > 0) tension += s->rates.stiffness[j] * m->tension / k;
+  rate[0] = tension * m->ux + m->across * (d[0] - along * m->ux);
+  rate[1] = tension * m->uy + m->across * (d[1] - along * m->uy);
+}
+
+static void add_members(strut_path_system *s) {
+  for (int32_t j = 0; j < s->model->members.count; j++) {
+    strut_path_member *m = &s->member[j];
+    double stretch = measure_member(s, j, m), k = s->terms.stiffness[j], rate[2];
+    m->pulls = s->pulling[j];
+    if (!m->pulls) continue;
+    m->tension = k * stretch;
+    /* of zero length and zero rest length: a spring alike in all directions */
+    m->across = m->length > 0 ? m->tension / m->length : s->terms.rest[j] > 0 ? 0.0 : k;
+    s->forces = fmax(s->forces, fabs(m->tension));
+    int32_t row[4];
+    double block[4][4], along = k - m->across;
+    const double u[2] = {m->ux, m->uy}, force[2] = {m->tension * m->ux, m->tension * m->uy};
+    member_rows(s, j, row);
+    member_rate(s, j, rate);
+    for (int a = 0; a < 4; a++) {
+      double sign = a < 2 ? -1.0 : 1.0;
+      if (row[a] >= 0) s->g[row[a]] += sign * force[a % 2], s->slope[row[a]] += sign * rate[a % 2];
+      for (int b = 0; b < 4; b++) {
+        double entry = along * u[a % 2] * u[b % 2] + (a % 2 == b % 2 ? m->across : 0.0);
+        block[a][b] = a / 2 == b / 2 ? entry : -entry;
+      }
+    }
+    add_stiffness(s, row, 4, block);
+  }
 }
 
 /* The ground as a spring that is there or not, whatever the sign of the gap. */
 static void add_contacts(strut_path_system *s) {
-  const strut_contact_table *c = &s->model.contacts;
-  for (int32_t i = 0; i < c->count; i++) {
-    const int32_t *row = s->potential->row_of + c->at[i];
-    double gap = gap_of(c, i, s->q), stiffness = c->entry[i].stiffness;
+  const double *normal = s->terms.normal, *turn = s->rates.normal;
+  for (int32_t i = 0; i < s->model->contacts.count; i++) {
+    uint32_t at = s->model->contacts.at[i];
+    const int32_t *row = s->potential->row_of + at;
+    double gap = gap_of(s, i), k = s->terms.ground[i], block[4][4] = {{0}};
     if (!s->touching[i]) continue;
+    double rate = s->q[at] * turn[0] + (s->q[at + 1] - s->terms.height) * turn[1] -
+                  s->rates.height * normal[1];
+    for (int a = 0; a < 2; a++) { /* a support on the ground that is moved */
+      if (row[a] < 0) rate += normal[a] * s->rates.position[at + (uint32_t)a];
+      for (int b = 0; b < 2; b++) block[a][b] = k * normal[a] * normal[b];
+    }
+    s->forces = fmax(s->forces, fabs(k * gap));
     for (int a = 0; a < 2; a++) {
       if (row[a] < 0) continue;
-      s->g[row[a]] += stiffness * gap * c->normal[a];
-      for (int b = 0; b < 2; b++)
-        if (row[b] >= 0)
-          *gsl_matrix_ptr(s->hessian, (size_t)row[a], (size_t)row[b]) +=
-              stiffness * c->normal[a] * c->normal[b];
+      s->g[row[a]] += k * gap * normal[a];
+      s->slope[row[a]] += (s->rates.ground[i] * gap + k * rate) * normal[a] + k * gap * turn[a];
     }
+    add_stiffness(s, row, 2, block);
   }
 }
 
 /* A unit motion of the whole: along the ground, out of it, or a turn. False: supports forbid it. */
 static bool rigid_motion(const strut_path_system *s, int which, double *motion) {
   const double axis[2][2] = {{1, 0}, {0, 1}};
-  bool sloped = s->model.contacts.count > 0;
-  const double *along = sloped ? s->model.contacts.tangent : axis[0];
-  const double *out = sloped ? s->model.contacts.normal : axis[1];
+  bool sloped = s->model->contacts.count > 0;
+  const double *out = sloped ? s->terms.normal : axis[1];
+  const double tangent[2] = {out[1], -out[0]}, *along = sloped ? tangent : axis[0];
   double centre[2] = {0, 0}, sum = 0;
-  int32_t nodes = s->model.node_count, pins = 0;
+  int32_t nodes = s->model->node_count, pins = 0;
+  const int32_t *row_of = s->potential->row_of;
   for (int32_t i = 0; i < nodes; i++)
     for (int c = 0; c < 2; c++) centre[c] += s->q[2 * i + c] / nodes;
   for (int32_t i = 0; i < nodes; i++)
-    if (s->model.fixed[2 * i] && s->model.fixed[2 * i + 1] && pins++ == 0)
+    if (row_of[2 * i] < 0 && row_of[2 * i + 1] < 0 && pins++ == 0)
       centre[0] = s->q[2 * i], centre[1] = s->q[2 * i + 1];
   bool possible = true;
   for (int32_t at = 0; at < 2 * nodes; at++) {
     double turn = at % 2 == 0 ? -(s->q[at + 1] - centre[1]) : s->q[at - 1] - centre[0];
     double there = which == 0 ? along[at % 2] : which == 1 ? out[at % 2] : turn / s->size;
-    int32_t row = s->potential->row_of[at];
+    int32_t row = row_of[at];
     if (row < 0 && fabs(there) > RIGID) possible = false;
     if (row >= 0) motion[row] = there, sum += there * there;
   }
@@ -139,56 +249,86 @@ static void hold_rigid_motions(strut_path_system *s) {
   size_t n = (size_t)s->n;
   double low, high, work = 0, load = 0;
   s->drifts = false;
+  s->held_count = 0;
+  if (n == 0) return;
   gsl_matrix_minmax(s->hessian, &low, &high);
-  double stiff = fmax(-low, high), scale = stiff > 0 ? stiff : 1.0;
-  gsl_vector_view motion = gsl_vector_view_array(s->row, n);
+  double stiff = fmax(-low, high);
+  s->held_by = stiff > 0 ? stiff : 1.0;
   gsl_vector_view product = gsl_vector_subvector(s->solution, 0, n);
-  for (int k = 0; k < MOTIONS; k++) {
-    if (!rigid_motion(s, k, s->row)) continue;
+  for (int k = 0; k < STRUT_PATH_MOTIONS; k++) {
+    double *row = s->held[s->held_count];
+    gsl_vector_view motion = gsl_vector_view_array(row, n);
+    if (!rigid_motion(s, k, row)) continue;
     work = load = 0;
-    for (int32_t i = 0; i < s->n; i++) {
-      double p = s->load[s->potential->coordinate[i]];
-      work += p * s->row[i], load += p * p;
-    }
+    for (int32_t i = 0; i < s->n; i++)
+      work += s->slope[i] * row[i], load += s->slope[i] * s->slope[i];
     gsl_blas_dsymv(CblasLower, 1.0, s->hessian, &motion.vector, 0.0, &product.vector);
     if (gsl_blas_dnrm2(&product.vector) > RIGID * stiff) continue;
-    if (fabs(work) > RIGID * sqrt(load))
+    if (fabs(work) > RIGID * sqrt(load)) {
       s->drifts = true;
-    else
-      gsl_blas_dger(scale, &motion.vector, &motion.vector, s->hessian);
+      continue;
+    }
+    gsl_blas_dger(s->held_by, &motion.vector, &motion.vector, s->hessian);
+    s->held_count++;
   }
 }
 
-/* Residual g and stiffness at y. */
-static void evaluate(strut_path_system *s, const double *y) {
-  strut_potential *p = s->potential;
-  double factor = s->unit * y[s->n];
-  strut_path_place(s, y, s->q);
-  for (int32_t at = 0; at < s->model.length; at++)
-    p->force[at] = s->base[at] + factor * s->load[at];
-  strut_potential_gradient(p, s->q, s->g);
-  strut_potential_hessian(p, s->q, s->sparse);
-  gsl_matrix_set_zero(s->hessian);
-  for (int32_t j = 0; j < s->n; j++)
-    for (int32_t at = s->sparse->start[j]; at < s->sparse->start[j + 1]; at++) {
-      size_t row = (size_t)s->sparse->row[at], column = (size_t)j;
-      gsl_matrix_set(s->hessian, row, column, s->sparse->value[at]);
-      gsl_matrix_set(s->hessian, column, row, s->sparse->value[at]);
-    }
-  add_contacts(s);
-  hold_rigid_motions(s);
+/* Rates of about there, or of exactly there. */
+static bool update_rates(strut_path_system *s, bool exactly) {
+  double value = dd_double(s->terms_at);
+  double apart = fabs(value - s->rates_at) / fabs(s->parameter.range);
+  if (s->has_rates && (exactly ? apart == 0 : apart <= FRESH)) return true;
+  s->has_rates = strut_path_parameter_rates(&s->parameter, value, &s->rates);
+  s->rates_at = value;
+  return s->has_rates;
 }
 
-/* Solves [K -p; row] x = (top, bottom), rows brought to one size; false: singular. */
+static bool evaluate(strut_path_system *s, const double *y, bool exactly) {
+  if (!place(s, y) || !update_rates(s, exactly)) return false;
+  s->forces = 0;
+  for (int32_t i = 0; i < s->n; i++) {
+    int32_t at = s->potential->coordinate[i];
+    s->g[i] = -s->terms.force[at], s->slope[i] = -s->rates.force[at];
+    s->forces = fmax(s->forces, fabs(s->terms.force[at]));
+  }
+  gsl_matrix_set_zero(s->hessian);
+  add_members(s);
+  add_contacts(s);
+  for (int32_t i = 0; i < s->n; i++) s->slope[i] *= s->parameter.range;
+  hold_rigid_motions(s);
+  return true;
+}
+
+bool strut_path_evaluate(strut_path_system *s, const double *y) { return evaluate(s, y, true); }
+
+void strut_path_reactions(const strut_path_system *s, double *reaction, double *contact) {
+  const strut_member_table *t = &s->model->members;
+  for (int32_t at = 0; at < s->model->length; at++) reaction[at] = -s->terms.force[at];
+  for (int32_t j = 0; j < t->count; j++) {
+    const strut_path_member *m = &s->member[j];
+    double fx = m->tension * m->ux, fy = m->tension * m->uy;
+    reaction[t->from[j]] -= fx, reaction[t->from[j] + 1] -= fy;
+    reaction[t->to[j]] += fx, reaction[t->to[j] + 1] += fy;
+  }
+  for (int32_t i = 0; i < s->model->contacts.count; i++) {
+    contact[i] = s->touching[i] ? 0.0 - s->terms.ground[i] * gap_of(s, i) : 0.0;
+    for (uint32_t c = 0; c < 2; c++)
+      reaction[s->model->contacts.at[i] + c] -= contact[i] * s->terms.normal[c];
+  }
+  for (int32_t at = 0; at < s->model->length; at++)
+    reaction[at] =
+        at < 2 * s->model->node_count && s->potential->row_of[at] < 0 ? 0.0 + reaction[at] : 0.0;
+}
+
+/* Solves [K slope; row] x = (top, bottom), rows brought to one size; false: singular. */
 static bool solve(strut_path_system *s, const double *row, const double *top, double bottom) {
   size_t n = (size_t)s->n;
-  int sign;
   for (size_t i = 0; i <= n; i++) {
     double most = 0;
     for (size_t j = 0; j <= n; j++) {
       double entry = i == n  ? row[j]
                      : j < n ? s->size * gsl_matrix_get(s->hessian, i, j)
-                             : -s->unit * s->load[s->potential->coordinate[i]];
+                             : s->slope[i];
       gsl_matrix_set(s->bordered, i, j, entry);
       most = fmax(most, fabs(entry));
     }
@@ -196,7 +336,7 @@ static bool solve(strut_path_system *s, const double *row, const double *top, do
     gsl_vector_set(s->right, i, (i == n ? bottom : top ? top[i] : 0.0) / most);
     for (size_t j = 0; j <= n; j++) *gsl_matrix_ptr(s->bordered, i, j) /= most;
   }
-  if (gsl_linalg_LU_decomp(s->bordered, s->order, &sign)) return false;
+  strut_lu_factor(s->bordered, s->order);
   for (size_t i = 0; i <= n; i++)
     if (gsl_matrix_get(s->bordered, i, i) == 0.0) return false;
   return gsl_linalg_LU_solve(s->bordered, s->order, s->right, s->solution) == 0;
@@ -204,19 +344,28 @@ static bool solve(strut_path_system *s, const double *row, const double *top, do
 
 int strut_path_correct(strut_path_system *s, const double *row, double value, double *y) {
   double before = HUGE_VAL;
+  int32_t count = s->n + 1;
+  int used = 0;
   for (int k = 1; k <= MOST_ITERATIONS; k++) {
-    double bottom = value, change = 0;
-    evaluate(s, y);
-    for (int32_t i = 0; i <= s->n; i++) bottom -= row[i] * y[i];
-    for (int32_t i = 0; i < s->n; i++) s->g[i] = -s->g[i];
+    double bottom = value, change = 0, left = 0;
+    if (!evaluate(s, y, false)) return -1;
+    for (int32_t i = 0; i < count; i++) bottom -= row[i] * y[i];
+    for (int32_t i = 0; i < count; i++) bottom -= row[i] * y[count + i];
+    for (int32_t i = 0; i < s->n; i++) {
+      left = fmax(left, fabs(s->g[i]));
+      s->g[i] = -s->g[i];
+    }
     if (!solve(s, row, s->g, bottom)) return -1;
-    for (int32_t i = 0; i <= s->n; i++) {
+    for (int32_t i = 0; i < count; i++) {
       double step = gsl_vector_get(s->solution, (size_t)i);
       change = fmax(change, fabs(step));
-      y[i] += step;
+      strut_dd sum = dd_add((strut_dd){y[i], y[count + i]}, dd_of(step));
+      y[i] = sum.hi, y[count + i] = sum.lo;
     }
-    if (change <= CONVERGED || (before <= NEAR && change <= NEAR && change > 0.3 * before))
-      return k;
+    if (!used && change <= CONVERGED) used = k;
+    if ((change <= CONVERGED && left <= BALANCED * s->forces) ||
+        (before <= NEAR && change <= NEAR && change > 0.3 * before))
+      return used ? used : k;
     if (!isfinite(change) || change > FAR || (k > 2 && change > 4 * before)) return -1;
     before = change;
   }
@@ -225,8 +374,7 @@ int strut_path_correct(strut_path_system *s, const double *row, double value, do
 
 bool strut_path_tangent(strut_path_system *s, const double *y, const double *row, double *tangent) {
   double sum = 0;
-  evaluate(s, y);
-  if (!solve(s, row, NULL, 1.0)) return false;
+  if (!evaluate(s, y, true) || !solve(s, row, NULL, 1.0)) return false;
   for (int32_t i = 0; i <= s->n; i++) {
     tangent[i] = gsl_vector_get(s->solution, (size_t)i);
     sum += tangent[i] * tangent[i];
@@ -236,48 +384,27 @@ bool strut_path_tangent(strut_path_system *s, const double *y, const double *row
   return true;
 }
 
-void strut_path_spectrum(strut_path_system *s, const double *y, bool vectors) {
-  evaluate(s, y);
-  if (!vectors) {
-    gsl_eigen_symm(s->hessian, s->values, s->values_only);
-    gsl_sort_vector(s->values);
-    return;
-  }
-  gsl_eigen_symmv(s->hessian, s->values, s->vectors, s->eigen);
-  gsl_eigen_symmv_sort(s->values, s->vectors, GSL_EIGEN_SORT_VAL_ASC);
-}
-
-int32_t strut_path_negative(const strut_path_system *s) {
-  int32_t count = 0;
-  double largest = 0;
-  for (int32_t i = 0; i < s->n; i++)
-    largest = fmax(largest, fabs(gsl_vector_get(s->values, (size_t)i)));
-  for (int32_t i = 0; i < s->n; i++)
-    if (gsl_vector_get(s->values, (size_t)i) < -ZERO_VALUE * largest) count++;
-  return count;
-}
-
 int32_t strut_path_switch_count(const strut_path_system *s) {
-  return s->model.members.count + s->model.contacts.count;
+  return s->model->members.count + s->model->contacts.count;
 }
 
-double strut_path_switch_value(const strut_path_system *s, int32_t which, const double *q) {
-  const strut_member_table *t = &s->model.members;
-  if (which >= t->count) return -gap_of(&s->model.contacts, which - t->count, q);
-  if (s->model.scene->members[which].kind != STRUT_CABLE) return -HUGE_VAL;
-  const double *a = q + t->from[which], *b = q + t->to[which];
-  return hypot(b[0] - a[0], b[1] - a[1]) - t->rest[which];
+double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
+  const strut_member_table *t = &s->model->members;
+  strut_path_member m;
+  if (which < t->count && s->model->scene->members[which].kind != STRUT_CABLE) return -HUGE_VAL;
+  if (!place(s, y)) return (double)NAN;
+  return which < t->count ? measure_member(s, which, &m) : -gap_of(s, which - t->count);
 }
 
 bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
-  int32_t members = s->model.members.count;
-  return which < members ? s->slack[which] < 0 : s->touching[which - members] != 0;
+  int32_t members = s->model->members.count;
+  return which < members ? s->pulling[which] : s->touching[which - members] != 0;
 }
 
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
-  int32_t members = s->model.members.count;
+  int32_t members = s->model->members.count;
   if (which < members)
-    s->slack[which] = on ? -HUGE_VAL : HUGE_VAL;
+    s->pulling[which] = on;
   else
     s->touching[which - members] = on;
 }

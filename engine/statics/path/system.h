@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The equations of a path: equilibrium for a factor, with what is taut and touching held fixed.
+ * The equations of a path: equilibrium for a parameter, with what is taut and touching held fixed.
  *
- * Unknown is y (n + 1): the free coordinates in units of the structure's size, then the factor in
- * units of `unit`. For path.c and path_events.c.
+ * Unknown is y: the free coordinates in units of the structure's size, then the parameter from
+ * `from` in units of its range; n + 1 numbers, followed by n + 1 that are added to them for the
+ * digits that a double does not have. A bar of 1e11 N/m turns the last bit of a metre into 1e-5 N.
  */
 #ifndef STRUT_ENGINE_STATICS_PATH_SYSTEM_H
 #define STRUT_ENGINE_STATICS_PATH_SYSTEM_H
@@ -11,41 +12,65 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_permutation.h>
 
+#include "engine/statics/path/parameter.h"
 #include "engine/statics/potential.h"
 
+enum { STRUT_PATH_MOTIONS = 3 };
+
+/** A member as it lies, to all digits. */
+typedef struct strut_path_member {
+  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second */
+  double across;                  /* stiffness across its direction: tension / length [N/m] */
+  bool pulls;                     /* or pushes */
+} strut_path_member;
+
 typedef struct strut_path_system {
-  strut_model model;          /* the scene's, but for a slack table of its own: what is taut now */
-  strut_potential *potential; /* without the ground, and with `base` + factor `load` as its force */
+  const strut_model *model;
+  strut_potential *potential; /* for the numbers of its free coordinates */
   int32_t n;
-  bool drifts;         /* the load works on a motion of the whole that meets no stiffness */
-  double size, unit;   /* [m], [1] */
-  double *base, *load; /* (length) forces besides the load, and the load at factor 1 [N] */
-  double *slack;       /* (slots) of the model above: -INFINITY pulls, INFINITY does not */
-  uint8_t *touching;   /* (contacts) 1 where the ground pushes, and then pulls too */
-  double *q, *g, *row; /* (length), (n), (n + 1) scratch */
-  strut_sparse *sparse;
-  gsl_matrix *hessian;  /* (n, n); NULL without a free coordinate */
-  gsl_matrix *bordered; /* (n + 1, n + 1) */
+  bool drifts; /* the parameter works on a motion of the whole that meets no stiffness */
+  double size; /* [m] */
+  strut_path_parameter parameter;
+  strut_path_terms terms, rates; /* at terms_at; about rates_at */
+  strut_dd terms_at;
+  double rates_at;
+  bool has_terms, has_rates;
+  uint8_t *pulling, *touching; /* (members), (contacts) 1 where forces act, of whatever sign */
+  double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
+  strut_path_member *member;           /* (members) */
+  double forces;      /* the largest force at the last place: what g is compared with [N] */
+  int32_t held_count; /* motions of the whole that were given a stiffness `held_by` */
+  double held_by, *held[STRUT_PATH_MOTIONS]; /* (n) each */
+  gsl_matrix *hessian, *work;                /* (n, n) */
+  gsl_matrix *bordered;                      /* (n + 1, n + 1) */
   gsl_vector *right, *solution, *values;
   gsl_matrix *vectors;
   gsl_permutation *order;
   gsl_eigen_symm_workspace *values_only;
   gsl_eigen_symmv_workspace *eigen;
+  int32_t negative; /* eigenvalues below zero, after strut_path_spectrum */
+  double noise;     /* rounding of the stiffness's entries [N/m], likewise */
   strut_arena arena;
 } strut_path_system;
 
 /**
- * base and load (length): forces that stay, and the load at factor 1 [N]. Of the system in use the
- * address must not change. Free it after a failure too.
+ * `held` (length) or NULL: coordinates held besides the supports. The parameter is created in
+ * system->parameter by who asks, before anything else is asked of the system, whose address must not
+ * change. Free it after a failure too.
  */
-strut_status strut_path_system_create(const strut_model *model, const double *base,
-                                      const double *load, double unit, strut_path_system *system,
-                                      strut_error *error);
+strut_status strut_path_system_create(const strut_model *model, const uint8_t *held,
+                                      strut_path_system *system, strut_error *error);
 void strut_path_system_free(strut_path_system *system);
 
-/** y to positions (length), held ones as at the start; and back. */
-void strut_path_place(strut_path_system *system, const double *y, double *q);
+/** y (2 n + 2) from positions of the free coordinates, at the parameter's beginning. */
 void strut_path_unplace(const strut_path_system *system, const double *q, double *y);
+/** The parameter's value at y. */
+double strut_path_value(const strut_path_system *system, const double *y);
+
+/** Everything at y, which need be no equilibrium; false: no scene has this value. */
+bool strut_path_evaluate(strut_path_system *system, const double *y);
+/** After strut_path_evaluate: reactions (length) and normal forces of contacts. */
+void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact);
 
 /**
  * Newton's method to equilibrium on the plane row . y = value. Iterations used, or -1: it does not
@@ -57,15 +82,24 @@ int strut_path_correct(strut_path_system *system, const double *row, double valu
 bool strut_path_tangent(strut_path_system *system, const double *y, const double *row,
                         double *tangent);
 
-/** Eigenvalues of the stiffness, ascending, into system->values; `vectors`: system->vectors too. */
-void strut_path_spectrum(strut_path_system *system, const double *y, bool vectors);
-/** Those below zero, after strut_path_spectrum. */
-int32_t strut_path_negative(const strut_path_system *system);
+/** What is wanted of the stiffness: each costs several times what the one before it does. */
+typedef enum strut_path_wanted {
+  STRUT_PATH_SIGNS,  /* of eigenvalues: how many are negative */
+  STRUT_PATH_VALUES, /* with all digits near zero too, not only to those of the largest */
+  STRUT_PATH_VECTORS /* and eigenvectors */
+} strut_path_wanted;
+
+/**
+ * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
+ * number of negative ones into system->negative. False: no scene has this value.
+ */
+bool strut_path_spectrum(strut_path_system *system, const double *y, strut_path_wanted wanted);
 
 /** Cables first, then contacts: what may change along the path. */
 int32_t strut_path_switch_count(const strut_path_system *system);
-/** Above 0 where it ought to be on (pulls, touches) [m]; -INFINITY for members that are no cables. */
-double strut_path_switch_value(const strut_path_system *system, int32_t which, const double *q);
+/** Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value; -INFINITY
+ * for members that are no cables. */
+double strut_path_switch_value(strut_path_system *system, int32_t which, const double *y);
 bool strut_path_switch_is_on(const strut_path_system *system, int32_t which);
 void strut_path_switch_set(strut_path_system *system, int32_t which, bool on);
 

@@ -14,8 +14,11 @@
  * and by what share of that each part of a search must be over.
  */
 static const double MOST_WORK = 6e9;
-static const double KNOWN_BY = 0.2, RANDOM_BY = 0.4, FOLDS_BY = 0.5, CLIMBS_BY = 0.9;
+static const double KNOWN_BY = 0.2, RANDOM_BY = 0.4, FOLDS_BY = 0.5, CROSSES_BY = 0.55,
+                    CLIMBS_BY = 0.9;
 
+/* Crossings of each pair of minima, the part of the random starts they may number, and shakes. */
+enum { CROSSINGS = 2, PART_CROSSED = 8, SHAKES = 6 };
 enum { LEAST_RANDOM = 256, PER_MINIMUM = 32, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
 
 typedef struct search {
@@ -32,6 +35,7 @@ typedef struct search {
   double cost, spent, budget; /* of one Hessian, so far, and at most */
   size_t batch_size;          /* tasks before the work done is looked at again */
   size_t climbed, paired; /* points up to which modes and pairs were climbed */
+  size_t shaken;          /* points up to which rare minima were shaken */
   strut_error *error;
 } search;
 
@@ -173,6 +177,65 @@ static strut_status folded_minima(search *s) {
   return status ? status : run(s);
 }
 
+/*
+ * Part of one minimum and the rest of another, in all pairs: where a structure has several bistable
+ * parts, its rare states are made of those that its common ones have.
+ */
+static strut_status crossed_minima(search *s) {
+  int32_t n = s->potential->n;
+  int64_t left = s->random / PART_CROSSED, number = 0;
+  strut_status status = STRUT_OK;
+  size_t end = s->all.count;
+  if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
+  for (int turn = 0; turn < CROSSINGS; turn++)
+    for (size_t i = 1; i < end && !status; i++)
+      for (size_t k = 0; k < i && left > 0 && !status && !over(s, CROSSES_BY); k++, left--)
+        status = add(s, (strut_task){.kind = STRUT_TASK_CROSS,
+                                     .q = s->all.points[i].q,
+                                     .other = s->all.points[k].q,
+                                     .number = number++});
+  return status ? status : run(s);
+}
+
+/* Around minima that random starts have hardly met: where one basin is small, its neighbours may be. */
+static strut_status shake_rare_minima(search *s) {
+  strut_status status = STRUT_OK;
+  size_t end = s->all.count;
+  if (s->potential->n == 0 || s->potential->n > STRUT_DENSE_STATICS) return STRUT_OK;
+  for (; s->shaken < end && !status; s->shaken++) {
+    const double *q = s->all.points[s->shaken].q;
+    if (!is_minimum(&s->all.points[s->shaken]) || s->hits[s->shaken] > 1) continue;
+    for (int64_t k = 0; k < SHAKES && !status && !over(s, CLIMBS_BY); k++)
+      status = add(s, (strut_task){.kind = STRUT_TASK_SHAKE,
+                                   .q = q,
+                                   .number = SHAKES * (int64_t)s->shaken + k});
+  }
+  return status ? status : run(s);
+}
+
+/* Upper 95 % limit of what a count that is Poisson's may be the chance result of (Wilson, Hilferty). */
+static double upper_limit(int64_t count) {
+  double k = (double)count + 1.0;
+  return k * pow(1.0 - 1.0 / (9.0 * k) + 1.645 / (3.0 * sqrt(k)), 3.0);
+}
+
+/* What the random starts say about states that they have not met. */
+static void estimate_missed(search *s) {
+  strut_critical_set *set = s->set;
+  int64_t distinct, once = met_once(s, &distinct);
+  set->missed = set->missed_below = set->missed_one = 1.0;
+  if (s->random == 0) return;
+  double starts = (double)s->random;
+  set->missed = fmin(1.0, (double)(once + 1) / (starts + 1.0));
+  set->missed_below = fmin(1.0, upper_limit(once) / starts);
+  if (s->random > 3) set->missed_one = 3.0 / starts;
+}
+
+static void count_unmet(search *s) {
+  for (size_t i = 0; i < s->all.count && s->random > 0; i++)
+    s->set->unmet += is_minimum(&s->all.points[i]) && s->hits[i] == 0;
+}
+
 static strut_status climb_from(search *s, strut_task task) {
   if (s->climbs_left-- <= 0) s->set->cut_short = true;
   return s->climbs_left >= 0 && !over(s, CLIMBS_BY) ? add(s, task) : STRUT_OK;
@@ -283,7 +346,7 @@ static strut_status find_saddles(search *s) {
   if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   s->climbs_left = affordable(n, 4e6, 4, 2000);
   for (int turn = 0; turn < ROUNDS && !status; turn++) {
-    status = turn == 0 ? climb_hints(s) : STRUT_OK;
+    status = turn == 0 ? climb_hints(s) : shake_rare_minima(s);
     if (!status) status = climb_modes(s);
     if (!status) status = climb_pairs(s);
     if (!status && turn == 0) status = random_climbs(s);
@@ -338,7 +401,6 @@ strut_status strut_critical_search(const strut_potential *potential,
                                    strut_error *error) {
   search s = {.potential = potential, .effort = effort, .set = set, .error = error};
   bool climbs = effort->saddles && potential->n <= STRUT_DENSE_STATICS;
-  int64_t distinct;
   *set = (strut_critical_set){0};
   set_budget(&s);
   strut_gathering_start(&s.all, potential, &set->arena);
@@ -346,12 +408,11 @@ strut_status strut_critical_search(const strut_potential *potential,
   if (!status) status = known_starts(&s);
   if (!status) status = random_starts(&s);
   if (!status) status = folded_minima(&s);
-  if (!status && s.random > 0) {
-    set->missed = (double)met_once(&s, &distinct) / (double)s.random;
-    set->missed_one = s.random > 3 ? 3.0 / (double)s.random : 1.0;
-  }
-  if (!status && s.random == 0) set->missed = set->missed_one = 1.0;
+  if (!status) status = crossed_minima(&s);
+  if (!status) status = shake_rare_minima(&s);
+  if (!status) estimate_missed(&s);
   if (!status) status = find_saddles(&s);
+  if (!status) count_unmet(&s);
   if (!status) status = hand_over(&s);
   strut_descents_free(s.batch);
   strut_gathering_free(&s.all);

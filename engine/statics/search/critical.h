@@ -40,7 +40,10 @@ typedef struct strut_critical_set {
   int64_t starts;               /* tried for minima */
   int64_t saddle_starts;        /* tried for saddles */
   int64_t exhausted, runaway;   /* starts that ended nowhere */
-  double missed;      /* estimated chance that a further start would find a new minimum (Good-Turing) */
+  double missed;      /* estimated chance that a further random start would find a new minimum: Good and
+                         Turing's, one more counted than was met once, for few starts never tell 0 */
+  double missed_below; /* the same, its upper 95 % limit */
+  int64_t unmet;      /* minima found that no random start met: their basins are small */
   bool cut_short;     /* the structure is too large for as many starts and climbs as it asks for */
   double missed_one;  /* upper 95 % bound on the share of starts of a minimum never seen: 3/starts-like */
   strut_arena arena;
@@ -59,7 +62,9 @@ typedef struct strut_critical_effort {
 
 /**
  * Starts: the model's own, mirror images member by member, `extra`, then random ones, each from a
- * generator of its own, so that threads change no bit. Merged are points that a rigid motion of the
+ * generator of its own, so that threads change no bit; then what the minima found lead to, folded or
+ * with the nodes of two put together, and both sides of every saddle, by steps short enough for the
+ * smallest wells. Merged are points that a rigid motion of the
  * whole, mirrored or not, carries onto each other, if scene and supports fix at most three
  * coordinates (then only placements differ); else only equal points. Above STRUT_DENSE_STATICS
  * coordinates only the model's own start and `extra` are tried unless `starts` says otherwise. Below,

@@ -11,8 +11,8 @@
 #include "engine/statics/search/saddle.h"
 #include "engine/statics/search/starts.h"
 
-/* Climbs draw from numbers of their own. */
-static const uint64_t CLIMBS = 0x5ad1e5u;
+/* Climbs and crossings draw from numbers of their own. */
+static const uint64_t CLIMBS = 0x5ad1e5u, CROSSES = 0xc0551u;
 
 typedef struct worker {
   strut_minimiser *minimiser;
@@ -137,6 +137,14 @@ static strut_descent_end descend(const strut_descents *b, worker *w, const strut
   else
     memcpy(q, task->q, (size_t)p->model->length * sizeof *q);
   if (task->kind == STRUT_TASK_FOLD) strut_fold(p, task->number, q);
+  if (task->kind == STRUT_TASK_CROSS) {
+    strut_cross(p, b->seed ^ CROSSES, (uint64_t)task->number, task->other, q);
+    return strut_descend_gently(w->minimiser, q);
+  }
+  if (task->kind == STRUT_TASK_SHAKE) {
+    strut_shake(p, b->seed ^ CROSSES, (uint64_t)task->number, q);
+    return strut_descend_gently(w->minimiser, q);
+  }
   if (task->kind != STRUT_TASK_DOWN) return strut_minimise(w->minimiser, q, 0.0).end;
   return strut_descend_along(w->minimiser, task->other, task->side, q) ? STRUT_DESCENT_REACHED
                                                                        : STRUT_DESCENT_EXHAUSTED;

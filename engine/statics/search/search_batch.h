@@ -15,6 +15,8 @@ enum { STRUT_BATCH = 64 };
 typedef enum strut_task_kind {
   STRUT_TASK_SHAPE,       /* down from q */
   STRUT_TASK_FOLD,        /* down from fold `number` of q */
+  STRUT_TASK_CROSS,       /* down by short steps from q with some nodes where `other` has them */
+  STRUT_TASK_SHAKE,       /* down by short steps from q shaken, by `number` */
   STRUT_TASK_RANDOM,      /* down from random shape `number` */
   STRUT_TASK_CLIMB_MODE,  /* up from the minimum q along mode `number`, `side` +-1 */
   STRUT_TASK_CLIMB_SHAPE, /* up from q itself, which is close to a saddle */

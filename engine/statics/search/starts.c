@@ -139,3 +139,10 @@ void strut_shake(const strut_potential *p, uint64_t seed, uint64_t index, double
   double part = 0.375 + 0.125 * signed_unit(&s); /* a quarter to a half */
   shake(p, &s, size * part / (double)(1 << below(&s, 5)), q);
 }
+
+void strut_cross(const strut_potential *p, uint64_t seed, uint64_t index, const double *other,
+                 double *q) {
+  source s = {seed, index, 0};
+  for (int32_t i = 0; i < p->model->node_count; i++)
+    if (below(&s, 2)) set(p, q, i, other + 2 * i);
+}

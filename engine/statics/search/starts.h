@@ -17,6 +17,10 @@ void strut_fold(const strut_potential *potential, int64_t fold, double *q);
 void strut_random_shape(const strut_potential *potential, uint64_t seed, uint64_t index,
                         double *q);
 
+/** Every node of q goes, or not, to where it is in `other`, by the bits of number `index` of `seed`. */
+void strut_cross(const strut_potential *potential, uint64_t seed, uint64_t index,
+                 const double *other, double *q);
+
 /** q shaken by a random part of the structure's size, from a hundredth to a half. */
 void strut_shake(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
 

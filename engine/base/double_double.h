@@ -5,8 +5,8 @@
  * Sums and products after Dekker (1971) and Knuth, made of plain doubles, so that every compiler
  * gives the same bits as long as it neither contracts nor reorders.
  */
-#ifndef STRUT_ENGINE_STATICS_MODES_DOUBLE_DOUBLE_H
-#define STRUT_ENGINE_STATICS_MODES_DOUBLE_DOUBLE_H
+#ifndef STRUT_ENGINE_BASE_DOUBLE_DOUBLE_H
+#define STRUT_ENGINE_BASE_DOUBLE_DOUBLE_H
 
 #include <math.h>
 

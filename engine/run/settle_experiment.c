@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The settled start of an experiment: its step, unstable equilibria, and who else wants it. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/step_limit.h"
+#include "engine/run/settle.h"
+
+/* Of the largest stable step, where the scene gives none. Halvings of one that diverges. */
+static const double OF_LIMIT = 0.5;
+enum { HALVINGS = 6, MOST_PERTURBATIONS = 8 };
+/* How far the node that moves most is pushed, in model sizes. */
+static const double PUSH = 1e-4;
+
+static strut_status choose_step(strut_relaxation *r, strut_step_limits *limits,
+                                strut_error *error) {
+  const strut_settle *settle = &r->scene.settle;
+  double given = settle->step == 0.0 ? r->scene.experiment.step : settle->step, limit = 0.0;
+  if (!r->model->mass)
+    return strut_fail(error, STRUT_SINGULAR, "some node that can move has no mass");
+  strut_status status = limits ? strut_step_limit_recall(r->model, r->method, limits, &limit, error)
+                               : strut_step_limit_for(r->model, r->method, &limit, error);
+  if (status) return status;
+  if (given > 0.0 && given <= limit)
+    r->step = given;
+  else
+    r->step = isfinite(limit) ? OF_LIMIT * limit : 1e-4 * settle->limit;
+  return STRUT_OK;
+}
+
+/* From `from` (length), with a smaller step where it diverges. */
+static strut_status relax_from(strut_relaxation *r, const double *from, strut_error *error) {
+  strut_status status = STRUT_DIVERGED;
+  for (int i = 0; i <= HALVINGS && status == STRUT_DIVERGED; i++) {
+    if (i > 0) r->step *= 0.5;
+    strut_state_reset(r->model, r->state);
+    memcpy(r->state->q, from, (size_t)r->model->length * sizeof *from);
+    status = strut_relaxation_run(r, error);
+  }
+  return status;
+}
+
+static void push_off(const strut_relaxation *r, const strut_instability *unstable, double *q) {
+  for (int32_t i = 0; i < 2 * r->model->node_count; i++)
+    q[i] = r->state->q[i] + PUSH * r->model->size * unstable->direction[i];
+}
+
+/* Settles, and leaves unstable equilibria where that is wanted. q (length): from where, and to. */
+static strut_status settle(strut_relaxation *r, double *q, strut_settle_summary *how,
+                           strut_error *error) {
+  strut_instability unstable;
+  for (;;) {
+    strut_status status = relax_from(r, q, error);
+    if (!status)
+      status = strut_find_instability(r->model, r->state->q, &r->arena, &unstable, error);
+    if (status) return status;
+    if (unstable.node < 0 || !r->scene.settle.perturb || how->perturbations == MOST_PERTURBATIONS)
+      break;
+    push_off(r, &unstable, q);
+    how->perturbations++;
+  }
+  memcpy(q, r->state->q, (size_t)r->model->length * sizeof *q);
+  how->step = r->step;
+  how->evaluations = r->evaluations;
+  how->unstable = unstable.node >= 0;
+  if (!how->unstable) return STRUT_OK;
+  how->stiffness = unstable.stiffness;
+  how->growth_rate = unstable.growth_rate;
+  how->node = r->scene.nodes[unstable.node].name;
+  return STRUT_OK;
+}
+
+strut_status strut_settle_experiment(const strut_model *model, strut_step_limits *limits,
+                                     const volatile sig_atomic_t *interrupt, double *q,
+                                     double *time, strut_settle_summary *how, strut_error *error) {
+  strut_relaxation r;
+  strut_status status = strut_relaxation_create(model, &r, error);
+  *how = (strut_settle_summary){0};
+  r.interrupt = interrupt;
+  memcpy(q, model->start, (size_t)model->length * sizeof *q);
+  if (!status) status = choose_step(&r, limits, error);
+  if (!status) status = settle(&r, q, how, error);
+  *time = r.time;
+  strut_relaxation_free(&r);
+  return status;
+}
+
+/* Positions at rest become the start of the copied nodes. */
+static strut_status place_nodes(const strut_scene *scene, const double *q, strut_arena *arena,
+                                strut_scene *settled) {
+  settled->nodes = strut_arena_allocate(arena, scene->node_count, sizeof *settled->nodes);
+  if (!settled->nodes) return STRUT_NO_MEMORY;
+  memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (size_t c = 0; c < 2; c++) {
+      settled->nodes[i].start[c] = q[2 * i + c];
+      settled->nodes[i].velocity[c] = 0.0;
+    }
+  settled->settle.wanted = false;
+  return STRUT_OK;
+}
+
+strut_status strut_settle_scene(const strut_scene *scene, const volatile sig_atomic_t *interrupt,
+                                strut_arena *arena, strut_scene *settled, double *time,
+                                strut_settle_summary *how, strut_error *error) {
+  strut_model *model = NULL;
+  *settled = *scene;
+  *time = 0.0;
+  *how = (strut_settle_summary){0};
+  if (!scene->settle.wanted) return STRUT_OK;
+  strut_status status = strut_model_compile(scene, &model, error);
+  double *q = model ? strut_allocate((size_t)model->length, sizeof *q) : NULL;
+  if (!status && !q) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!status) status = strut_settle_experiment(model, NULL, interrupt, q, time, how, error);
+  if (!status && place_nodes(scene, q, arena, settled))
+    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_release(q);
+  strut_model_free(model);
+  return status;
+}

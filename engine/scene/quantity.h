@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Measured quantities: an expression of columns of the motion, and how the window reduces it to a
+ * number.
+ *
+ * An expression is a short program in postfix order, for a stack of numbers. The parser compiles it,
+ * with every name resolved and every dimension checked; the engine evaluates it after each step of
+ * the window.
+ */
+#ifndef STRUT_ENGINE_SCENE_QUANTITY_H
+#define STRUT_ENGINE_SCENE_QUANTITY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/** Whom a column is about: how it is written, and what its items index. */
+typedef enum strut_column_owner {
+  STRUT_COLUMN_OF_RUN,     /* the word alone: time */
+  STRUT_COLUMN_OF_NODE,    /* NODE.y */
+  STRUT_COLUMN_OF_CONTACT, /* NODE.normal, of a node that may touch the ground */
+  STRUT_COLUMN_OF_MEMBER,  /* MEMBER.force */
+  STRUT_COLUMN_OF_PAIR,    /* angle(NODE, NODE) */
+  STRUT_COLUMN_OF_CENTRE,  /* com.vx */
+  STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
+  STRUT_COLUMN_OF_WORK,    /* work.drives */
+  STRUT_COLUMN_OF_LOSSES   /* losses.friction */
+} strut_column_owner;
+
+/** X(id, owner, word, powers of kg, m, s, angle) */
+#define STRUT_COLUMN_TABLE(X)                                                                      \
+  X(TIME, RUN, "time", 0, 0, 1, 0)                                                                 \
+  X(NODE_X, NODE, "x", 0, 1, 0, 0)                                                                      \
+  X(NODE_Y, NODE, "y", 0, 1, 0, 0)                                                                      \
+  X(NODE_VX, NODE, "vx", 0, 1, -1, 0)                                                                   \
+  X(NODE_VY, NODE, "vy", 0, 1, -1, 0)                                                                   \
+  X(HEIGHT, NODE, "height", 0, 1, 0, 0) /* above the ground, along its normal */                   \
+  X(NORMAL, CONTACT, "normal", 1, 1, -2, 0)                                                        \
+  X(FRICTION, CONTACT, "friction", 1, 1, -2, 0)                                                    \
+  X(LENGTH, MEMBER, "length", 0, 1, 0, 0)                                                          \
+  X(STRETCH, MEMBER, "stretch", 0, 1, 0, 0) /* length - rest length as driven */                   \
+  X(RATE, MEMBER, "rate", 0, 1, -1, 0)      /* of the length */                                    \
+  X(FORCE, MEMBER, "force", 1, 1, -2, 0)                                                           \
+  X(TILT, MEMBER, "angle", 0, 0, 0, 1) /* of its direction, from +x, counted on beyond a turn */   \
+  X(ANGLE, PAIR, "angle", 0, 0, 0, 1)                                                              \
+  X(DISTANCE, PAIR, "distance", 0, 1, 0, 0)                                                        \
+  X(CENTRE_X, CENTRE, "x", 0, 1, 0, 0)                                                             \
+  X(CENTRE_Y, CENTRE, "y", 0, 1, 0, 0)                                                             \
+  X(CENTRE_VX, CENTRE, "vx", 0, 1, -1, 0)                                                          \
+  X(CENTRE_VY, CENTRE, "vy", 0, 1, -1, 0)                                                          \
+  X(KINETIC, ENERGY, "kinetic", 1, 2, -2, 0)                                                       \
+  X(ELASTIC, ENERGY, "elastic", 1, 2, -2, 0)                                                       \
+  X(GRAVITY, ENERGY, "gravity", 1, 2, -2, 0)                                                       \
+  X(GROUND, ENERGY, "contact", 1, 2, -2, 0) /* of the ground's springs */                          \
+  X(TOTAL, ENERGY, "total", 1, 2, -2, 0)                                                           \
+  X(DRIVES, WORK, "drives", 1, 2, -2, 0)                                                           \
+  X(LOADS, WORK, "loads", 1, 2, -2, 0)                                                             \
+  X(BELT, WORK, "belt", 1, 2, -2, 0)                                                               \
+  X(LOST_MEMBERS, LOSSES, "members", 1, 2, -2, 0)                                                  \
+  X(LOST_CONTACT, LOSSES, "contact", 1, 2, -2, 0)                                                  \
+  X(LOST_FRICTION, LOSSES, "friction", 1, 2, -2, 0)                                                \
+  X(LOST, LOSSES, "total", 1, 2, -2, 0)
+
+typedef enum strut_column_kind {
+#define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,
+  STRUT_COLUMN_TABLE(STRUT_COLUMN_ENUM)
+#undef STRUT_COLUMN_ENUM
+      STRUT_COLUMN_COUNT
+} strut_column_kind;
+
+/** A column of the motion: a number at every step. */
+typedef struct strut_column {
+  strut_column_kind kind;
+  int32_t item, other; /* node, contact or member; the second node of a pair; else -1 */
+} strut_column;
+
+/** X(id, operands, word); the functions are those of the language. */
+#define STRUT_OPERATION_TABLE(X)                                                                   \
+  X(NUMBER, 0, "")                                                                                 \
+  X(COLUMN, 0, "")                                                                                 \
+  X(ADD, 2, "+")                                                                                   \
+  X(SUBTRACT, 2, "-")                                                                              \
+  X(MULTIPLY, 2, "*")                                                                              \
+  X(DIVIDE, 2, "/")                                                                                \
+  X(POWER, 2, "^")                                                                                 \
+  X(NEGATE, 1, "-")                                                                                \
+  X(SIN, 1, "sin")                                                                                 \
+  X(COS, 1, "cos")                                                                                 \
+  X(TAN, 1, "tan")                                                                                 \
+  X(ASIN, 1, "asin")                                                                               \
+  X(ACOS, 1, "acos")                                                                               \
+  X(ATAN, 1, "atan")                                                                               \
+  X(ATAN2, 2, "atan2")                                                                             \
+  X(SQRT, 1, "sqrt")                                                                               \
+  X(EXP, 1, "exp")                                                                                 \
+  X(LOG, 1, "log")                                                                                 \
+  X(LOG10, 1, "log10")                                                                             \
+  X(ABS, 1, "abs")                                                                                 \
+  X(MIN, 2, "min")                                                                                 \
+  X(MAX, 2, "max")                                                                                 \
+  X(FLOOR, 1, "floor")                                                                             \
+  X(CEIL, 1, "ceil")                                                                               \
+  X(ROUND, 1, "round")                                                                             \
+  X(HYPOT, 2, "hypot")
+
+typedef enum strut_operation {
+#define STRUT_OPERATION_ENUM(id, ...) STRUT_OPERATION_##id,
+  STRUT_OPERATION_TABLE(STRUT_OPERATION_ENUM)
+#undef STRUT_OPERATION_ENUM
+      STRUT_OPERATION_COUNT
+} strut_operation;
+
+/** One operation: pushes a number or a column, or replaces its operands by their result. */
+typedef struct strut_instruction {
+  strut_operation operation;
+  strut_column column; /* of COLUMN */
+  double number;       /* of NUMBER, SI */
+  const char *unit;    /* of NUMBER: what is written behind it, such as "kg m s^-2"; or NULL */
+} strut_instruction;
+
+/** How the window makes one number of a quantity's values. */
+typedef enum strut_reduction {
+  STRUT_TAKE_MEAN,
+  STRUT_TAKE_MIN,
+  STRUT_TAKE_MAX,
+  STRUT_TAKE_RANGE,  /* max - min */
+  STRUT_TAKE_RMS,
+  STRUT_TAKE_FINAL,  /* at the window's end */
+  STRUT_TAKE_CHANGE, /* end - begin */
+  STRUT_TAKE_RATE    /* change per second */
+} strut_reduction;
+
+typedef struct strut_quantity_definition {
+  const char *name, *unit; /* unit of the value; "1": none */
+  size_t length, depth;    /* instructions; the most numbers on the stack */
+  strut_instruction *program; /* (length) */
+  strut_reduction take;
+  double accuracy;          /* wanted, relative [1]; 0: that of the run */
+  double accuracy_absolute; /* wanted, in `unit`; 0: none */
+} strut_quantity_definition;
+
+#endif

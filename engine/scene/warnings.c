@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is valid, yet hardly meant: each cause once, with the first names. See check.h. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/scene/check_rules.h"
+
+enum { NAMED = 3, SAMPLES = 1000, MOST_TIMES = 256 };
+
+/* Nodes lie this many times deeper than all weight on one of them would press it, or this part of
+   the structure's size: then it is no depth at which they rest. */
+static const double DEEPER = 10.0, DEEP = 1e-6;
+
+/* The things that one warning is about. */
+typedef struct named {
+  size_t count, first; /* index of the first */
+  char names[600];
+} named;
+
+static void name(named *all, size_t index, const char *text) {
+  size_t used = strlen(all->names);
+  if (!all->count) all->first = index;
+  if (all->count < NAMED)
+    snprintf(all->names + used, sizeof all->names - used, "%s%.150s", all->count ? ", " : "", text);
+  all->count++;
+}
+
+/* "a, b, c and 2 more" */
+static const char *names_of(named *all) {
+  size_t used = strlen(all->names);
+  if (all->count > NAMED)
+    snprintf(all->names + used, sizeof all->names - used, " and %zu more", all->count - NAMED);
+  all->count = all->count > NAMED ? NAMED : all->count;
+  return all->names;
+}
+
+/* A member's rest length at time t, drives included. */
+static double rest_at(const strut_scene *scene, size_t member, double rest, double t) {
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    double value, rate;
+    if ((size_t)scene->actuators[i].member != member) continue;
+    strut_signal_evaluate(scene->signals, scene->actuators[i].signal, t, &value, &rate);
+    rest += value;
+  }
+  return rest;
+}
+
+/* The shortest rest length that is met over the run, and when. */
+static double shortest(const strut_scene *scene, size_t member, double rest, double *when) {
+  double last = strut_scene_span(scene).duration, least = (double)INFINITY, time[MOST_TIMES];
+  for (int k = 0; k <= SAMPLES; k++) {
+    double t = last * k / SAMPLES, length = rest_at(scene, member, rest, t);
+    if (length < least) least = length, *when = t;
+  }
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    if ((size_t)scene->actuators[i].member != member) continue;
+    size_t count =
+        strut_signal_times(scene->signals, scene->actuators[i].signal, 0.0, last, time, MOST_TIMES);
+    for (size_t k = 0; k < count; k++) {
+      double length = rest_at(scene, member, rest, time[k]);
+      if (length < least) least = length, *when = time[k];
+    }
+  }
+  return least;
+}
+
+static void warn_of_rest_lengths(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  named below = {0};
+  double worst = 0.0, when = 0.0;
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    size_t member = (size_t)scene->actuators[i].member, earlier = 0;
+    while ((size_t)scene->actuators[earlier].member != member) earlier++;
+    strut_rest rest;
+    double t = 0.0;
+    if (earlier < i || !strut_member_rest(scene, member, &rest)) continue;
+    double least = shortest(scene, member, rest.length, &t);
+    if (!(least < -1e-9 * rest.length)) continue;
+    if (!below.count) worst = least, when = t;
+    name(&below, member, scene->members[member].name);
+  }
+  if (!below.count) return;
+  strut_find(checker, STRUT_ON_MEMBER, below.first, "rest_length_below_zero",
+             "the drive takes the rest length of '%s' to %.4g m at t = %.4g s, below zero, where a "
+             "member has no meaning; give it a smaller amplitude or a longer member%s%s",
+             scene->members[below.first].name, worst, when, below.count > 1 ? "; the same of " : "",
+             below.count > 1 ? names_of(&below) : "");
+}
+
+/* Deeper in the ground than where anything would rest. */
+static void warn_of_depths(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const strut_ground *g = &scene->ground;
+  double s = sin(g->slope), c = cos(g->slope), weight = 0.0, low[2], high[2];
+  named below = {0};
+  double depth_of_first = 0.0;
+  for (size_t i = 0; i < scene->node_count; i++) {
+    weight += scene->nodes[i].mass;
+    for (int d = 0; d < 2; d++) {
+      double x = scene->nodes[i].start[d];
+      low[d] = i && low[d] < x ? low[d] : x, high[d] = i && high[d] > x ? high[d] : x;
+    }
+  }
+  for (size_t i = 0; i < scene->member_count; i++) weight += scene->members[i].mass;
+  weight *= fmax(0.0, s * scene->gravity[0] - c * scene->gravity[1]);
+  double size = scene->node_count ? hypot(high[0] - low[0], high[1] - low[1]) : 0.0;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *contact = &scene->contacts[i];
+    const strut_node *node = &scene->nodes[contact->node];
+    double depth = s * node->start[0] - c * (node->start[1] - g->height);
+    if (node->fixed[0] && node->fixed[1]) continue;
+    if (!(depth > DEEPER * weight / contact->stiffness && depth > DEEP * size)) continue;
+    if (!below.count) depth_of_first = depth;
+    name(&below, (size_t)contact->node, node->name);
+  }
+  if (below.count)
+    strut_find(
+        checker, STRUT_ON_NODE, below.first, "inside_ground",
+        "node%s %s begin%s inside the ground, '%s' %.3g m deep, and will be thrown out of it; "
+        "raise the structure, or lower ground.height",
+        below.count > 1 ? "s" : "", names_of(&below), below.count > 1 ? "" : "s",
+        scene->nodes[below.first].name, depth_of_first);
+}
+
+typedef struct pair {
+  int32_t low, high;
+  size_t member;
+} pair;
+
+static int compare_pairs(const void *a, const void *b) {
+  const pair *x = a, *y = b;
+  if (x->low != y->low) return x->low < y->low ? -1 : 1;
+  if (x->high != y->high) return x->high < y->high ? -1 : 1;
+  return x->member < y->member ? -1 : x->member > y->member;
+}
+
+static bool only_damps(const strut_member *m) {
+  return !(m->stiffness > 0.0) && !(m->axial_stiffness > 0.0);
+}
+
+static void warn_of_pairs(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  pair *pairs = strut_allocate(scene->member_count, sizeof *pairs);
+  named twice = {0};
+  if (!pairs) {
+    checker->out_of_memory = true;
+    return;
+  }
+  for (size_t i = 0; i < scene->member_count; i++) {
+    int32_t a = scene->members[i].node[0], b = scene->members[i].node[1];
+    pairs[i] = (pair){a < b ? a : b, a < b ? b : a, i};
+  }
+  if (scene->member_count) qsort(pairs, scene->member_count, sizeof *pairs, compare_pairs);
+  for (size_t i = 1; i < scene->member_count; i++) {
+    const strut_member *m = &scene->members[pairs[i - 1].member],
+                       *n = &scene->members[pairs[i].member];
+    char text[200];
+    if (pairs[i].low != pairs[i - 1].low || pairs[i].high != pairs[i - 1].high) continue;
+    if (only_damps(m) != only_damps(n)) continue; /* a spring and its damper */
+    snprintf(text, sizeof text, "'%.80s' and '%.80s'", m->name, n->name);
+    name(&twice, pairs[i].member, text);
+  }
+  strut_release(pairs);
+  if (twice.count)
+    strut_find(checker, STRUT_ON_MEMBER, twice.first, "same_nodes",
+               "members %s join the same two nodes, so that both act there; leave one out if that "
+               "is not meant",
+               names_of(&twice));
+}
+
+/* Where other nodes have members. */
+static void warn_of_loose_masses(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  bool *used = strut_allocate(scene->node_count, sizeof *used);
+  named loose = {0};
+  if (!used) {
+    checker->out_of_memory = true;
+    return;
+  }
+  for (size_t i = 0; i < scene->member_count; i++)
+    used[scene->members[i].node[0]] = used[scene->members[i].node[1]] = true;
+  for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
+    const strut_node *node = &scene->nodes[i];
+    if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))
+      name(&loose, i, node->name);
+  }
+  strut_release(used);
+  if (loose.count)
+    strut_find(checker, STRUT_ON_NODE, loose.first, "loose_mass",
+               "node%s %s %s mass and can move, but no member holds %s", loose.count > 1 ? "s" : "",
+               names_of(&loose), loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
+}
+
+strut_status strut_scene_warn(const strut_scene *scene, strut_findings *warnings) {
+  strut_checker checker = {.scene = scene, .findings = warnings};
+  strut_c_locale locale = strut_c_locale_enter();
+  if (strut_scene_span(scene).duration > 0.0) warn_of_rest_lengths(&checker);
+  if (scene->ground.present) warn_of_depths(&checker);
+  warn_of_pairs(&checker);
+  warn_of_loose_masses(&checker);
+  strut_c_locale_leave(locale);
+  return checker.out_of_memory ? STRUT_NO_MEMORY : STRUT_OK;
+}

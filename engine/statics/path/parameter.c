@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared. */
+#include "engine/statics/path/parameter.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double APART = 1e-5; /* of the range: values whose difference gives a derivative */
+
+bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut_path_terms *t) {
+  size_t length = (size_t)model->length, slots = (size_t)model->members.slots;
+  t->stiffness = strut_arena_allocate(arena, slots, sizeof(double));
+  t->rest = strut_arena_allocate(arena, slots, sizeof(double));
+  t->rest_low = strut_arena_allocate(arena, slots, sizeof(double));
+  t->position = strut_arena_allocate(arena, length, sizeof(double));
+  t->position_low = strut_arena_allocate(arena, length, sizeof(double));
+  t->force = strut_arena_allocate(arena, length, sizeof(double));
+  t->ground = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof(double));
+  return t->stiffness && t->rest && t->rest_low && t->position && t->position_low && t->force &&
+         t->ground;
+}
+
+static void copy_terms(const strut_model *model, const strut_path_terms *from,
+                       strut_path_terms *to) {
+  size_t length = (size_t)model->length * sizeof(double);
+  size_t slots = (size_t)model->members.slots * sizeof(double);
+  memcpy(to->stiffness, from->stiffness, slots);
+  memcpy(to->rest, from->rest, slots);
+  memcpy(to->rest_low, from->rest_low, slots);
+  memcpy(to->position, from->position, length);
+  memcpy(to->position_low, from->position_low, length);
+  memcpy(to->force, from->force, length);
+  memcpy(to->ground, from->ground, (size_t)model->contacts.count * sizeof(double));
+  memcpy(to->normal, from->normal, sizeof to->normal);
+  to->height = from->height;
+}
+
+static void read_terms(const strut_model *model, strut_path_terms *t) {
+  const strut_contact_table *c = &model->contacts;
+  size_t length = (size_t)model->length * sizeof(double);
+  size_t slots = (size_t)model->members.slots * sizeof(double);
+  memcpy(t->stiffness, model->members.stiffness, slots);
+  memcpy(t->rest, model->members.rest, slots);
+  memset(t->rest_low, 0, slots);
+  memcpy(t->position, model->start, length);
+  memset(t->position_low, 0, length);
+  if (model->constant_force)
+    memcpy(t->force, model->constant_force, length);
+  else
+    memset(t->force, 0, length);
+  for (int32_t i = 0; i < c->count; i++) t->ground[i] = c->entry[i].stiffness;
+  memcpy(t->normal, c->normal, sizeof t->normal);
+  t->height = c->height;
+}
+
+/* Two models of one structure: the same members, supports and contacts. */
+static bool is_same_structure(const strut_model *a, const strut_model *b) {
+  const strut_member_table *s = &a->members, *t = &b->members;
+  if (a->node_count != b->node_count || a->length != b->length || s->count != t->count ||
+      s->slots != t->slots || a->contacts.count != b->contacts.count)
+    return false;
+  for (int32_t j = 0; j < s->count; j++)
+    if (s->from[j] != t->from[j] || s->to[j] != t->to[j] || s->slack[j] != t->slack[j])
+      return false;
+  for (int32_t i = 0; i < a->contacts.count; i++)
+    if (a->contacts.at[i] != b->contacts.at[i]) return false;
+  return memcmp(a->fixed, b->fixed, (size_t)a->length * sizeof *a->fixed) == 0;
+}
+
+/* Remembers that there is no equilibrium to ask for at a value, and why. */
+static bool refuse(strut_path_parameter *p, double value, const strut_error *why) {
+  p->refused_at = value;
+  p->refusal = *why;
+  return false;
+}
+
+static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_terms *terms) {
+  strut_scene scene;
+  strut_model *model = NULL;
+  strut_error error = {0};
+  strut_status status = p->options->scene_at(p->options->context, value, &scene, &error);
+  if (status != STRUT_OK) return refuse(p, value, &error);
+  status = strut_model_compile(&scene, &model, &error);
+  if (status == STRUT_OK && !is_same_structure(p->model, model))
+    status = strut_fail(&error, STRUT_USAGE,
+                        "%s changes what the structure is made of (nodes, members, supports or "
+                        "contacts); a path needs the same structure all along",
+                        p->options->name);
+  if (status == STRUT_OK) read_terms(model, terms);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+  return status == STRUT_OK || refuse(p, value, &error);
+}
+
+bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_path_terms *t) {
+  strut_dd change = dd_sub(value, dd_of(p->from));
+  int32_t at = p->options->index;
+  strut_error error = {0};
+  if (p->options->over == STRUT_PATH_OVER_SCENE) return read_scene_terms(p, dd_double(value), t);
+  copy_terms(p->model, &p->base, t);
+  if (p->options->over == STRUT_PATH_OVER_LOAD) {
+    for (int32_t i = 0; i < p->model->length; i++) t->force[i] += dd_double(change) * p->load[i];
+  } else if (p->options->over == STRUT_PATH_OVER_ACTUATOR) {
+    int32_t member = p->model->scene->actuators[at].member;
+    strut_dd rest = dd_add(dd_of(p->base.rest[member]), change);
+    t->rest[member] = rest.hi, t->rest_low[member] = rest.lo;
+    if (rest.hi < 0) {
+      strut_fail(&error, STRUT_BAD_SCENE, "the rest length of %s would be negative",
+                 p->model->scene->members[member].name);
+      return refuse(p, dd_double(value), &error);
+    }
+  } else {
+    strut_dd place = dd_add(dd_of(p->base.position[at]), change);
+    t->position[at] = place.hi, t->position_low[at] = place.lo;
+  }
+  return true;
+}
+
+static void divide_difference(const double *low, const double *high, double apart, size_t count,
+                              double *rate) {
+  for (size_t i = 0; i < count; i++) rate[i] = (high[i] - low[i]) / apart;
+}
+
+static bool difference_scenes(strut_path_parameter *p, double value, strut_path_terms *rates) {
+  size_t length = (size_t)p->model->length, slots = (size_t)p->model->members.slots;
+  double h = APART * fabs(p->range), low = value - h, high = value + h;
+  strut_path_terms *a = &p->low, *b = &p->high;
+  double refused_at = p->refused_at; /* what is refused beside a value does not refuse the value */
+  strut_error refusal = p->refusal;
+  if (!read_scene_terms(p, low, a)) {
+    low = value;
+    if (!read_scene_terms(p, low, a)) return false;
+  }
+  if (!read_scene_terms(p, high, b)) {
+    high = value;
+    if (low == high || !read_scene_terms(p, high, b)) return false;
+  }
+  p->refused_at = refused_at, p->refusal = refusal;
+  double apart = high - low;
+  divide_difference(a->stiffness, b->stiffness, apart, slots, rates->stiffness);
+  divide_difference(a->rest, b->rest, apart, slots, rates->rest);
+  divide_difference(a->position, b->position, apart, length, rates->position);
+  divide_difference(a->force, b->force, apart, length, rates->force);
+  divide_difference(a->ground, b->ground, apart, (size_t)p->model->contacts.count, rates->ground);
+  divide_difference(a->normal, b->normal, apart, 2, rates->normal);
+  divide_difference(&a->height, &b->height, apart, 1, &rates->height);
+  return true;
+}
+
+/* Of a built-in parameter the rates never change: `rates` holds zeros elsewhere from the start. */
+bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_path_terms *rates) {
+  int32_t at = p->options->index;
+  switch (p->options->over) {
+    case STRUT_PATH_OVER_SCENE:
+      return difference_scenes(p, value, rates);
+    case STRUT_PATH_OVER_LOAD:
+      memcpy(rates->force, p->load, (size_t)p->model->length * sizeof(double));
+      return true;
+    case STRUT_PATH_OVER_ACTUATOR:
+      rates->rest[p->model->scene->actuators[at].member] = 1;
+      return true;
+    case STRUT_PATH_OVER_COORDINATE:
+      rates->position[at] = 1;
+      return true;
+  }
+  return false;
+}
+
+static bool is_same(const double *a, const double *b, size_t count) {
+  return memcmp(a, b, count * sizeof *a) == 0;
+}
+
+/* Whether anything that matters at rest differs: positions do where they are held. */
+static bool is_different(const strut_model *model, const strut_path_terms *a,
+                         const strut_path_terms *b) {
+  size_t slots = (size_t)model->members.slots;
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    if (model->fixed[i] ? a->position[i] != b->position[i] : a->force[i] != b->force[i])
+      return true;
+  return !is_same(a->stiffness, b->stiffness, slots) || !is_same(a->rest, b->rest, slots) ||
+         !is_same(a->ground, b->ground, (size_t)model->contacts.count) ||
+         !is_same(a->normal, b->normal, 2) || a->height != b->height;
+}
+
+/* That a scene's number does something, and leaves the structure as it is. */
+static strut_status check_effect(strut_path_parameter *p, strut_error *error) {
+  static const double places[] = {1e-3, 0.37, 1.0};
+  if (p->options->over != STRUT_PATH_OVER_SCENE) return STRUT_OK;
+  if (!read_scene_terms(p, p->from, &p->base))
+    return strut_fail(error, p->refusal.status, "%s", p->refusal.message);
+  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    bool valid = read_scene_terms(p, p->from + places[i] * p->range, &p->low);
+    strut_error why = p->refusal;
+    p->refusal = (strut_error){0};
+    if (!valid && (why.status == STRUT_USAGE || why.status == STRUT_NO_MEMORY))
+      return strut_fail(error, why.status, "%s", why.message);
+    if (!valid || is_different(p->model, &p->base, &p->low)) return STRUT_OK;
+  }
+  return strut_fail(error, STRUT_USAGE,
+                    "%s changes nothing that matters at rest: no stiffness, rest length, support, "
+                    "load or ground; there is no path to follow",
+                    p->options->name);
+}
+
+strut_status strut_path_parameter_create(const strut_model *model,
+                                         const strut_path_options *options, const double *load,
+                                         double from, double until, const double *position,
+                                         strut_arena *arena, strut_path_parameter *p,
+                                         strut_error *error) {
+  *p = (strut_path_parameter){
+      .options = options, .model = model, .load = load, .from = from, .range = until - from};
+  if (!strut_path_terms_create(model, arena, &p->base) ||
+      !strut_path_terms_create(model, arena, &p->low) ||
+      !strut_path_terms_create(model, arena, &p->high))
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  read_terms(model, &p->base);
+  memcpy(p->base.position, position, (size_t)model->length * sizeof *position);
+  return check_effect(p, error);
+}

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The n-th allocation of the whole program fails, those of libraries included: an error, or none, but
+never a signal; and so it is under limits of memory (ulimit -v) that grow in small steps.
+
+Left out are allocations that HDF5, GLib, Pango and Fontconfig make themselves, and with HDF5 the C
+library's, which it calls: these end the process from inside, whatever their caller does. docs/testing.md
+says what guards against that.
+
+  python3 library_memory_test.py STRUT FAILING_MALLOC COUNT
+
+COUNT allocations of each command, spread evenly; 0 is each of them.
+"""
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+STRUT, PRELOAD, COUNT = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
+HERE = os.path.dirname(os.path.abspath(__file__))
+MODELS = os.path.abspath("models")
+HOPPER, PENTAGON = f"{HERE}/hopper.yaml", f"{HERE}/pentagon.yaml"
+ABORTING = "libglib:libpango:libfontconfig"
+WITH_HDF5 = ABORTING + ":libhdf5:libc.so"
+COMMANDS = {  # name: (words, folders and files to remove before, libraries that are spared)
+    "run": (["run", HOPPER, "--set", "seconds=0.1", "-o", "out", "--quiet"], WITH_HDF5),
+    "sweep": (["sweep", "study.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
+    "export": (["export", "kept", "--format", "vtk", "-o", "out"], WITH_HDF5),
+    "view": (["view", "kept", "-o", "out.html", "--quiet"], WITH_HDF5),
+    "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"],
+             ABORTING),
+    "matrices": (["export", PENTAGON, "--matrices", "out"], ABORTING),
+    "modes": (["modes", PENTAGON, "-o", "out"], ABORTING),
+    "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING),
+    "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
+    "check": (["check", HOPPER], ABORTING),
+}
+
+
+def call(words, limit=None, **environment):
+    shutil.rmtree("out", ignore_errors=True)
+    if os.path.exists("out.html"):
+        os.remove("out.html")
+    return subprocess.run(
+        [STRUT, *words], capture_output=True, text=True, errors="replace",
+        env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **environment),
+        preexec_fn=limit and (lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit))))
+
+
+def fails_everywhere(name, words, spared):
+    """Every n-th allocation of the command fails once."""
+    done = call(words, LD_PRELOAD=PRELOAD, STRUT_SPARE=spared, STRUT_COUNT_FILE="count")
+    check(done.returncode == 0, f"{name}: exit code {done.returncode}: {done.stderr}")
+    with open("count", encoding="utf-8") as file:
+        total = int(file.read())
+    step = max(1, total // COUNT) if COUNT else 1
+    codes = {}
+    for n in range(1 + step // 2, total + 1, step):
+        done = call(words, LD_PRELOAD=PRELOAD, STRUT_SPARE=spared, STRUT_FAIL_AT=str(n))
+        codes[done.returncode] = codes.get(done.returncode, 0) + 1
+        check(done.returncode >= 0, f"{name}: allocation {n} of {total}: signal {-done.returncode}")
+        check(done.returncode == 0 or done.stderr or name == "form",
+              f"{name}: allocation {n} of {total}: not a word")
+    print(f"{name}: {total} allocations, exit codes {codes}", flush=True)
+    check(codes.get(4, 0) > 0, f"{name}: nothing failed")
+
+
+def limited(name, words):
+    """From the limit on at which the program starts at all, in steps of a megabyte."""
+    begin = 40 << 20
+    while call(["--version"], begin).returncode != 0:
+        begin += 1 << 20
+    step = (1 << 20) if not COUNT else (3 << 20)
+    codes = {}
+    for limit in range(begin, begin + (60 << 20), step):
+        done = call(words, limit)
+        codes[done.returncode] = codes.get(done.returncode, 0) + 1
+        check(done.returncode >= 0, f"{name}: with {limit >> 20} MB: signal {-done.returncode}")
+    print(f"{name}: from {begin >> 20} MB on, exit codes {codes}", flush=True)
+
+
+os.chdir(tempfile.mkdtemp())
+with open("study.yaml", "w", encoding="utf-8") as study:
+    study.write(f"strut: 1\nstudy: s\nmodel: {HOPPER}\naxes:\n  - seconds: [0.1, 0.2]\n"
+                "trajectories: yes\n")
+subprocess.run([STRUT, "run", HOPPER, "--set", "seconds=0.1", "-o", "kept", "--quiet"], check=True)
+wanted = sys.argv[4:] or COMMANDS
+for command in wanted:
+    fails_everywhere(command, *COMMANDS[command])
+for command in ("run", "sweep", "export", "view", "path"):
+    if command in wanted:
+        limited(command, COMMANDS[command][0])
+shutil.rmtree(os.getcwd())
+finish()

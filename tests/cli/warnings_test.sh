@@ -1,0 +1,133 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What is valid but hardly meant is told: in check, in run and in check --json, once per cause.
+. "$(dirname "$0")/lib.sh"
+models=$2
+
+# once WORDS: one line of stderr has them.
+once() {
+  [ "$(grep -cF -- "$1" err)" -eq 1 ] || fail "not once: $1"
+}
+
+write() { # MEMBERS-and-more on stdin
+  { printf 'strut: 1\ngravity: [0, -9.81]\n'; cat; printf 'solver: {step: 0.1 ms}\nrun: {duration: 1 s}\n'; } >"$1"
+}
+
+# check and run say the same, once; check --json lists it
+told() { # FILE CODE WORDS
+  expect 0 check "$1"
+  once "$3"
+  [ "$(grep -c warning err)" -eq 1 ] || fail "more than one warning"
+  expect 0 run "$1" --quiet --force
+  once "$3"
+  expect 0 check "$1" --json
+  out_has "\"code\":	\"$2\""
+}
+
+untold() { # FILE
+  for command in check "run --force"; do
+    # shellcheck disable=SC2086
+    expect 0 $command "$1"
+    [ ! -s err ] || fail "$command has nothing to warn of"
+  done
+  expect 0 check "$1" --json
+  out_has '"warnings":	[]'
+}
+
+# a drive that takes its member through nothing, at its lowest, which is no multiple of anything
+for amplitude in 60 40; do
+  write "drive$amplitude.yaml" <<EOF
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -50 mm], mass: 0.1}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100, damping: 1, rest_length: 50 mm}}
+actuators: {d: {member: m, signal: {sine: {amplitude: $amplitude mm, frequency: 1.7}}}}
+EOF
+done
+told drive60.yaml rest_length_below_zero "the rest length of 'm' to -0.01 m at t = 0.4412 s"
+untold drive40.yaml
+
+# two drives on one member together; four members, one line
+write four.yaml <<'EOF'
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -50 mm], mass: 0.1}, c: {position: [0.2, 0], fixed: both}, d: {position: [0.3, 0], fixed: both}, e: {position: [0.4, 0], fixed: both}}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 100, damping: 1, rest_length: 50 mm}
+  n: {kind: spring, nodes: [c, b], stiffness: 100, damping: 1, rest_length: 50 mm}
+  o: {kind: spring, nodes: [d, b], stiffness: 100, damping: 1, rest_length: 50 mm}
+  p: {kind: spring, nodes: [e, b], stiffness: 100, damping: 1, rest_length: 50 mm}
+signals: {half: {ramp: {amplitude: -30 mm, start: 0.2, stop: 0.4}}}
+actuators:
+  d1: {member: m, signal: half}
+  d2: {member: m, signal: half}
+  d3: {member: n, signal: half}
+  d4: {member: n, signal: half}
+  d5: {member: o, signal: half}
+  d6: {member: o, signal: half}
+  d7: {member: p, signal: half}
+  d8: {member: p, signal: half}
+EOF
+told four.yaml rest_length_below_zero "the same of m, n, o and 1 more"
+
+# a block at the depth where it rests, and one that is ten centimetres deep
+for depth in 100 0.0981; do
+  write "block$depth.yaml" <<EOF
+nodes: {block: {position: [0, -$depth mm], mass: 1}}
+ground: {stiffness: 1e5, damping: 100, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
+EOF
+done
+told block100.yaml inside_ground "node block begins inside the ground, 'block' 0.1 m deep"
+untold block0.0981.yaml
+
+# a member twice; a spring beside its damper
+write twice.yaml <<'EOF'
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 100}
+  again: {kind: cable, nodes: [b, a], stiffness: 100}
+EOF
+told twice.yaml same_nodes "members 'm' and 'again' join the same two nodes"
+write damped.yaml <<'EOF'
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 100}
+  damper: {kind: spring, nodes: [b, a], stiffness: 0, damping: 1}
+EOF
+untold damped.yaml
+
+# a mass that was forgotten; one on its own is a scene
+write forgotten.yaml <<'EOF'
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}, c: {position: [1, 0], mass: 1}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100}}
+EOF
+told forgotten.yaml loose_mass "node c has mass and can move, but no member holds it"
+write alone.yaml <<'EOF'
+nodes: {c: {position: [1, 0], mass: 1}}
+EOF
+untold alone.yaml
+
+# A plain number is in SI units: a note where that changes what the file has by more than 100 times.
+write scale.yaml <<'EOF'
+parameters: {A: 2 mm, mass: 1 kg, product: 2*3 mm}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1 - product], mass: mass}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 1e3, damping: 1}}
+actuators: {d: {member: m, signal: {sine: {amplitude: A, frequency: 3}}}}
+EOF
+expect 0 check scale.yaml --set A=0.3
+err_has 'scale.yaml:3:17: note: --set A=0.3 is taken as 0.3 in SI units, 150 times the 2 mm here'
+err_has 'write --set A="0.3 mm" if that is meant'
+err_has '3 | parameters: {A: 2 mm'
+[ "$(grep -c note err)" -eq 1 ] || fail "a note twice"
+expect 0 check scale.yaml --set mass=2e-3
+err_has 'write --set mass="2e-3 kg"'
+expect 0 check scale.yaml --set product=6
+err_has 'write --set product="6 UNIT"'
+for set in A=0.2 A=2e-5 "A=500 mm" mass=99 A=0; do
+  expect 0 check scale.yaml --set "$set"
+  [ ! -s err ] || fail "--set $set is no case for a note"
+done
+
+# The models that come with strut say nothing of the kind.
+for model in "$models"/*/*.yaml; do
+  grep -q '^strut:' "$model" && ! grep -q '^sweep:' "$model" || continue
+  "$strut" check "$model" --json >out 2>err || continue
+  out_has '"warnings":	[]'
+done
+done_testing

@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Paths with kinks, and with stiff bars: stability on each side and every digit, by closed forms. */
+#include <gsl/gsl_eigen.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/path/path.h"
+#include "engine/statics/potential.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+typedef struct walk {
+  strut_model *model;
+  strut_path path;
+} walk;
+
+static walk follow(const strut_scene *scene, double until) {
+  walk w = {.model = motion_compile(scene)};
+  strut_path_options options = {.until = until};
+  strut_error error = {0};
+  strut_status status = strut_path_follow(w.model, &options, &w.path, &error);
+  if (status) print_error("%s\n", error.message);
+  assert_int_equal(status, STRUT_OK);
+  return w;
+}
+
+static void finish(walk *w) {
+  strut_path_free(&w->path);
+  strut_model_free(w->model);
+}
+
+static void check_event(const strut_path_event *e, strut_path_event_kind kind, double factor,
+                        int32_t before, int32_t after) {
+  assert_string_equal(strut_path_event_name(e->kind), strut_path_event_name(kind));
+  assert_relative(e->factor, factor, 1e-12);
+  assert_int_equal(e->before, before);
+  assert_int_equal(e->after, after);
+}
+
+enum { TIP = 3 };
+static const double STOP = 0.1, ANCHOR = 0.5, REST = 0.7, SPRING = 500, STOP_SPRING = 2000;
+
+/*
+ * A slider at (x, 0) under a compressed spring from (0, ANCHOR), which drives it from the middle;
+ * cables stop it beyond -STOP and STOP. It begins at the left and is pushed to the right by 1 N.
+ */
+static void toggle(strut_scene *scene) {
+  strut_scene_init(scene);
+  int32_t anchor = build_support(scene, 0, ANCHOR);
+  int32_t left = build_support(scene, -1, 0), right = build_support(scene, 1, 0);
+  int32_t tip = build_node(scene, -0.12, 0);
+  assert_int_equal(tip, TIP);
+  scene->nodes[tip].fixed[1] = true;
+  build_sized(scene, STRUT_SPRING, anchor, tip, SPRING, 0, 0, REST);
+  build_sized(scene, STRUT_CABLE, left, tip, STOP_SPRING, 0, 0, 1 + STOP);
+  build_sized(scene, STRUT_CABLE, right, tip, STOP_SPRING, 0, 0, 1 + STOP);
+  build_load(scene, tip, 1, 0, -1);
+}
+
+static double toggle_load(double x) {
+  double load = SPRING * (1 - REST / hypot(x, ANCHOR)) * x;
+  if (x > STOP) load += STOP_SPRING * (x - STOP);
+  if (x < -STOP) load += STOP_SPRING * (x + STOP);
+  return load;
+}
+
+/* The load turns at both kinks, where the stiffness jumps from one sign to the other. */
+static void test_limit_points_at_kinks(void **state) {
+  (void)state;
+  strut_scene scene;
+  toggle(&scene);
+  double turn = toggle_load(-STOP),
+         hard = SPRING * (1 - REST * ANCHOR * ANCHOR / pow(hypot(STOP, ANCHOR), 3));
+  assert_true(hard < 0 && hard + STOP_SPRING > 0); /* the tangents on the two sides */
+  walk w = follow(&scene, 2 * turn);
+  assert_int_equal(w.path.event_count, 4);
+  const strut_path_event *e = w.path.events;
+  check_event(&e[0], STRUT_PATH_SLACK, turn, 0, 1);
+  check_event(&e[1], STRUT_PATH_KINK_LIMIT, turn, 0, 1);
+  check_event(&e[2], STRUT_PATH_TAUT, -turn, 1, 0);
+  check_event(&e[3], STRUT_PATH_KINK_LIMIT, -turn, 1, 0);
+  assert_int_equal(e[0].index, 2);
+  assert_int_equal(e[2].index, 1);
+  size_t unstable = 0;
+  for (size_t i = 0; i < w.path.point_count; i++) {
+    const strut_path_point *p = &w.path.points[i];
+    double x = p->q[2 * TIP];
+    assert_near(p->factor, toggle_load(x), 1e-11 * turn);
+    /* the kink at -STOP is judged as the path goes on, and so is that at STOP */
+    bool middle = x > -STOP - 1e-9 && x < STOP - 1e-9;
+    assert_int_equal(p->negative, middle ? 1 : 0);
+    unstable += middle;
+  }
+  assert_true(unstable > 3);
+  assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+/* The other way along it: the same points, each side judged as before. */
+static void test_kinks_backwards(void **state) {
+  (void)state;
+  strut_scene scene;
+  toggle(&scene);
+  scene.nodes[TIP].start[0] = 0.12;
+  double turn = toggle_load(-STOP);
+  walk w = follow(&scene, -2 * turn);
+  assert_int_equal(w.path.event_count, 4);
+  check_event(&w.path.events[1], STRUT_PATH_KINK_LIMIT, -turn, 0, 1);
+  check_event(&w.path.events[3], STRUT_PATH_KINK_LIMIT, turn, 1, 0);
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+/*
+ * A mast of stiffness K between two guys, loaded from above: it is straight and stable as long as
+ * the guys pull, and straight but unstable as soon as they do not.
+ */
+static void test_bifurcation_at_kink(void **state) {
+  (void)state;
+  const double mast = 5e3, top = 0.9;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t base = build_support(&scene, 0, 0);
+  int32_t left = build_support(&scene, -1, 0), right = build_support(&scene, 1, 0);
+  int32_t tip = build_node(&scene, 0, 1);
+  build_sized(&scene, STRUT_BAR, base, tip, mast, 0, 0, 1);
+  build_sized(&scene, STRUT_CABLE, left, tip, 1000, 0, 0, hypot(1, top));
+  build_sized(&scene, STRUT_CABLE, right, tip, 1000, 0, 0, hypot(1, top));
+  build_load(&scene, tip, 0, -1, -1);
+  walk w = follow(&scene, 1.5 * mast * (1 - top));
+  double load = mast * (1 - top);
+  assert_int_equal(w.path.event_count, 3);
+  check_event(&w.path.events[0], STRUT_PATH_SLACK, load, 0, 0);
+  check_event(&w.path.events[1], STRUT_PATH_SLACK, load, 0, 1);
+  check_event(&w.path.events[2], STRUT_PATH_KINK_BIFURCATION, load, 0, 1);
+  for (size_t i = 0; i < w.path.point_count; i++) {
+    const strut_path_point *p = &w.path.points[i];
+    assert_int_equal(p->negative, p->factor < load * (1 - 1e-9) ? 0 : 1);
+    assert_near(p->q[2 * tip], 0, 1e-12);
+  }
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+/* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
+static void test_touchdown_restores_stability(void **state) {
+  (void)state;
+  const double a = 1, h = 0.3, k = 1000, floor = 0.05;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t left = build_support(&scene, -a, 0), right = build_support(&scene, a, 0);
+  int32_t apex = build_node(&scene, 0, h);
+  build_member(&scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(&scene, STRUT_BAR, apex, right, k, 0, 0);
+  build_contact(&scene, apex, 1e4, 0);
+  scene.ground.height = floor;
+  build_load(&scene, apex, 0, -1, -1);
+  walk w = follow(&scene, 15);
+  double there = 2 * k * floor * (hypot(a, h) / hypot(a, floor) - 1);
+  assert_int_equal(w.path.event_count, 3);
+  assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
+  assert_int_equal(w.path.events[0].after, 1);
+  check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
+  check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
+  const strut_path_point *end = &w.path.points[w.path.point_count - 1];
+  double y = end->q[2 * apex + 1], push = 2 * k * y * (hypot(a, h) / hypot(a, y) - 1);
+  assert_near(end->contact[0], 1e4 * (floor - y), 1e-9);
+  assert_near(end->contact[0] + push, 15, 1e-9);
+  finish(&w);
+  strut_scene_free(&scene);
+}
+
+/*
+ * A bar of stiffness K and length l on two springs c across it, loaded along it. Shortened by d it is
+ * neutral across where K d / (l - d) = 2 c (1 / s^2 + (1 - 1 / s) d^2 / s^2), s^2 = 1 + (d / l)^2; all
+ * springs are as long as the bar.
+ */
+static double buckling_load(double bar, double spring, double length) {
+  long double low = 0, high = (long double)length / 2;
+  for (int i = 0; i < 300; i++) {
+    long double d = (low + high) / 2, t = d / (long double)length, s = sqrtl(1 + t * t);
+    long double across = 2 * (long double)spring * (1 / (s * s) + (1 - 1 / s) * t * t / (s * s));
+    if ((long double)bar * d / ((long double)length - d) < across)
+      low = d;
+    else
+      high = d;
+  }
+  long double t = low / (long double)length, s = sqrtl(1 + t * t);
+  return (double)((long double)bar * low + 2 * (long double)spring * (1 - 1 / s) * low);
+}
+
+/* Along (x, y), a Pythagorean pair of length l: nothing is rounded as drawn. */
+static double found_buckling_load(double bar, double spring, double x, double y) {
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t base = build_support(&scene, 0, 0), tip = build_node(&scene, x, y);
+  int32_t one = build_support(&scene, x - y, y + x), other = build_support(&scene, x + y, y - x);
+  build_member(&scene, STRUT_BAR, base, tip, bar, 0, 0);
+  build_member(&scene, STRUT_SPRING, tip, one, spring, 0, 0);
+  build_member(&scene, STRUT_SPRING, tip, other, spring, 0, 0);
+  build_load(&scene, tip, -x, -y, -1); /* of length l, exactly along the bar */
+  double length = hypot(x, y);
+  walk w = follow(&scene, 3 * spring);
+  double load = 0;
+  for (size_t i = 0; i < w.path.event_count && load == 0; i++)
+    if (w.path.events[i].kind == STRUT_PATH_BIFURCATION) {
+      load = length * w.path.events[i].factor;
+      assert_int_equal(w.path.events[i].before, 0);
+      assert_int_equal(w.path.events[i].after, 1);
+    }
+  finish(&w);
+  strut_scene_free(&scene);
+  return load;
+}
+
+/* The load of a stiff bar is known to as many digits as that of a soft one. */
+static void test_stiff_bars(void **state) {
+  (void)state;
+  static const double stiff[] = {1e4, 1e6, 1e8, 1e9, 1e10, 1e11};
+  static const double along[][2] = {{0, 1}, {3, 4}, {-5, 12}};
+  for (size_t i = 0; i < sizeof stiff / sizeof *stiff; i++)
+    for (size_t k = 0; k < sizeof along / sizeof *along; k++) {
+      double length = hypot(along[k][0], along[k][1]);
+      double load = buckling_load(stiff[i], 50, length);
+      double found = found_buckling_load(stiff[i], 50, along[k][0], along[k][1]);
+      assert_relative(found, load, 1e-10);
+    }
+}
+
+/* A number from 0 to 1, the next of a sequence. */
+static double draw(uint64_t *seed) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*seed >> 11) * 0x1p-53;
+}
+
+/* Five nodes, two of them supports, each pair joined by a bar, a cable or nothing, loaded anyhow. */
+static void random_net(strut_scene *scene, uint64_t seed) {
+  strut_scene_init(scene);
+  build_support(scene, 0, 0);
+  build_support(scene, 1 + draw(&seed), 0);
+  for (int i = 0; i < 3; i++) build_node(scene, 2 * draw(&seed), 0.3 + draw(&seed));
+  for (int32_t i = 0; i < 5; i++)
+    for (int32_t k = i > 1 ? i + 1 : 2; k < 5; k++) {
+      double kind = draw(&seed), slack = 0.9 + 0.2 * draw(&seed);
+      if (kind > 0.9) continue;
+      const double *a = scene->nodes[i].position, *b = scene->nodes[k].position;
+      build_sized(scene, kind < 0.5 ? STRUT_BAR : STRUT_CABLE, i, k, 100 * (1 + draw(&seed)), 0, 0,
+                  slack * hypot(b[0] - a[0], b[1] - a[1]));
+    }
+  build_load(scene, 2 + (int32_t)(3 * draw(&seed)), draw(&seed) - 0.5, -draw(&seed), -1);
+}
+
+/* Negative eigenvalues of the potential's own second derivatives; -1 where one is about zero. */
+static int32_t count_negative(const strut_potential *potential, const double *q,
+                              strut_arena *arena) {
+  size_t n = (size_t)potential->n;
+  strut_sparse *hessian = strut_potential_matrix(potential, arena);
+  gsl_matrix *dense = gsl_matrix_calloc(n, n);
+  gsl_vector *values = gsl_vector_alloc(n);
+  gsl_eigen_symm_workspace *eigen = gsl_eigen_symm_alloc(n);
+  int32_t count = 0;
+  assert_true(hessian && dense && values && eigen);
+  strut_potential_hessian(potential, q, hessian);
+  for (size_t j = 0; j < n; j++)
+    for (int32_t at = hessian->start[j]; at < hessian->start[j + 1]; at++) {
+      gsl_matrix_set(dense, (size_t)hessian->row[at], j, hessian->value[at]);
+      gsl_matrix_set(dense, j, (size_t)hessian->row[at], hessian->value[at]);
+    }
+  gsl_eigen_symm(dense, values, eigen);
+  for (size_t i = 0; i < n && count >= 0; i++) {
+    double value = gsl_vector_get(values, i);
+    if (fabs(value) < 1e-7)
+      count = -1;
+    else if (value < 0)
+      count++;
+  }
+  gsl_matrix_free(dense);
+  gsl_vector_free(values);
+  gsl_eigen_symm_free(eigen);
+  return count;
+}
+
+/* Whether a cable hangs by a hair there. */
+static bool is_at_kink(const strut_model *model, const double *q) {
+  for (int32_t j = 0; j < model->members.count; j++) {
+    const double *a = q + model->members.from[j], *b = q + model->members.to[j];
+    double stretch = hypot(b[0] - a[0], b[1] - a[1]) - model->members.rest[j];
+    if (model->scene->members[j].kind == STRUT_CABLE && fabs(stretch) < 1e-9) return true;
+  }
+  return false;
+}
+
+/* The largest force over length: how much a force turns with a node. */
+static double find_steepest(const strut_model *model, const strut_path_point *p) {
+  double most = 0;
+  for (int32_t j = 0; j < model->members.count; j++) {
+    const double *a = p->q + model->members.from[j], *b = p->q + model->members.to[j];
+    most = fmax(most, fabs(p->force[j]) / hypot(b[0] - a[0], b[1] - a[1]));
+  }
+  return most;
+}
+
+/*
+ * Points are in equilibrium, and as stable as the second derivatives of the energy say there; events
+ * account for every change of it. Up to where a part hangs loose: neutral, with no sign.
+ */
+static void check_points(const strut_model *model, const strut_path *path, size_t *kinks) {
+  strut_potential *potential;
+  strut_arena arena = {0};
+  int32_t before = path->points[0].negative;
+  size_t at = 0;
+  assert_int_equal(strut_potential_create(model, NULL, true, &potential, NULL), STRUT_OK);
+  assert_int_equal(potential->n, 6);
+  for (size_t i = 0; i < path->point_count; i++) {
+    const strut_path_point *p = &path->points[i];
+    bool kink = is_at_kink(model, p->q);
+    int32_t count = kink ? -1 : count_negative(potential, p->q, &arena);
+    double g[6];
+    if (count < 0 && (i == 0 || !kink)) break;
+    if (count >= 0) assert_int_equal(p->negative, count);
+    for (int32_t k = 0; k < model->length; k++)
+      potential->force[k] = p->factor * model->constant_force[k];
+    strut_potential_gradient(potential, p->q, g);
+    double bit = find_steepest(model, p) * 1e-14; /* what rounded positions leave */
+    for (int k = 0; k < 6; k++) assert_near(g[k], 0, 1e-11 * (1 + fabs(p->factor)) + bit);
+    for (; at < path->event_count && path->events[at].arc <= p->arc; at++) {
+      const strut_path_event *e = &path->events[at];
+      bool exchange = e->kind >= STRUT_PATH_KINK_LIMIT;
+      *kinks += exchange;
+      assert_int_equal(exchange ? e->after : e->before, before);
+      before = e->after;
+    }
+    assert_int_equal(p->negative, before);
+  }
+  strut_arena_free(&arena);
+  strut_potential_free(potential);
+}
+
+static void test_random_nets(void **state) {
+  (void)state;
+  size_t kinks = 0, followed = 0;
+  for (uint64_t seed = 1; seed <= 200; seed++) {
+    strut_scene scene;
+    random_net(&scene, seed * 0x9e3779b97f4a7c15u);
+    strut_model *model;
+    assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+    strut_path path;
+    strut_path_options options = {.until = 60, .steps = 150};
+    if (strut_path_follow(model, &options, &path, NULL) == STRUT_OK) {
+      check_points(model, &path, &kinks);
+      followed++;
+    }
+    strut_path_free(&path);
+    strut_model_free(model);
+    strut_scene_free(&scene);
+  }
+  assert_true(followed > 100 && kinks > 5);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_limit_points_at_kinks),
+      cmocka_unit_test(test_kinks_backwards),
+      cmocka_unit_test(test_bifurcation_at_kink),
+      cmocka_unit_test(test_touchdown_restores_stability),
+      cmocka_unit_test(test_stiff_bars),
+      cmocka_unit_test(test_random_nets),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

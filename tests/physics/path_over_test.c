@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Paths over displacements, actuators and numbers of a scene, against closed forms. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/statics/path/path.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double SPAN = 1, HEIGHT = 0.3; /* of von Mises' truss: half its width, its height */
+enum { APEX = 2 };
+
+/* Supports at (-+SPAN, 0), apex at (0, HEIGHT), without a load. */
+static void arch(strut_scene *scene, double k) {
+  strut_scene_init(scene);
+  int32_t left = build_support(scene, -SPAN, 0), right = build_support(scene, SPAN, 0);
+  int32_t apex = build_node(scene, 0, HEIGHT);
+  build_member(scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(scene, STRUT_BAR, apex, right, k, 0, 0);
+}
+
+/* What holds the apex at y, downwards, and its derivative. */
+static double arch_load(double k, double y) {
+  return 2 * k * y * (hypot(SPAN, HEIGHT) / hypot(SPAN, y) - 1);
+}
+
+static double arch_stiffness(double k, double y) {
+  double l = hypot(SPAN, y);
+  return 2 * k * (hypot(SPAN, HEIGHT) * SPAN * SPAN / (l * l * l) - 1);
+}
+
+/* Where the truss has its limit point. */
+static double limit_height(void) {
+  double l = cbrt(hypot(SPAN, HEIGHT) * SPAN * SPAN);
+  return sqrt(l * l - SPAN * SPAN);
+}
+
+static strut_path follow(strut_model *model, const strut_path_options *options) {
+  strut_path path;
+  strut_error error = {0};
+  strut_status status = strut_path_follow(model, options, &path, &error);
+  if (status) print_error("%s\n", error.message);
+  assert_int_equal(status, STRUT_OK);
+  return path;
+}
+
+static size_t count(const strut_path *path, strut_path_event_kind kind) {
+  size_t sum = 0;
+  for (size_t i = 0; i < path->event_count; i++) sum += path->events[i].kind == kind;
+  return sum;
+}
+
+/* The apex is pushed through: its reaction draws the curve past both limit points, which are none. */
+static void check_displaced_apex(bool supported, double from) {
+  const double k = 1000, until = -0.6;
+  strut_scene scene;
+  arch(&scene, k);
+  scene.nodes[APEX].fixed[1] = supported;
+  strut_model *model = motion_compile(&scene);
+  strut_path path = follow(
+      model,
+      &(strut_path_options){
+          .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .from = from, .until = until});
+  assert_int_equal(path.end, STRUT_PATH_UNTIL);
+  assert_string_equal(path.unit, "m");
+  assert_int_equal(path.event_count, 0);
+  assert_true(path.points[0].factor == from);
+  assert_true(path.points[path.point_count - 1].factor == until);
+  double most = 0, least = 0;
+  for (size_t i = 0; i < path.point_count; i++) {
+    const strut_path_point *p = &path.points[i];
+    double y = HEIGHT + p->factor, l = hypot(SPAN, y);
+    assert_near(p->q[2 * APEX + 1], y, 1e-15);
+    assert_near(p->reaction[2 * APEX + 1], -arch_load(k, y), 1e-11);
+    assert_near(p->force[0], k * (l - hypot(SPAN, HEIGHT)), 1e-11);
+    assert_near(p->reaction[0], -k * (l - hypot(SPAN, HEIGHT)) * SPAN / l, 1e-11);
+    assert_near(p->reaction[1] + p->reaction[3] + p->reaction[5], 0, 1e-11);
+    assert_int_equal(p->negative, 0);
+    most = fmax(most, p->reaction[2 * APEX + 1]);
+    least = fmin(least, p->reaction[2 * APEX + 1]);
+  }
+  double limit = arch_load(k, limit_height());
+  assert_near(most, limit, 0.01 * limit);
+  assert_near(least, -limit, 0.01 * limit);
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_displacement_of_a_node(void **state) {
+  (void)state;
+  check_displaced_apex(true, 0);
+  check_displaced_apex(false, 0);
+  check_displaced_apex(false, -0.05);
+  check_displaced_apex(true, -0.05);
+}
+
+/* A free node that carries a load: displaced from where that holds it. */
+static void test_displacement_under_load(void **state) {
+  (void)state;
+  const double k = 1000, load = 5;
+  strut_scene scene;
+  arch(&scene, k);
+  build_load(&scene, APEX, 0, -load, -1);
+  strut_model *model = motion_compile(&scene);
+  strut_path path =
+      follow(model, &(strut_path_options){
+                        .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
+  double start = path.points[0].q[2 * APEX + 1];
+  assert_relative(arch_load(k, start), load, 1e-11);
+  for (size_t i = 0; i < path.point_count; i++) {
+    const strut_path_point *p = &path.points[i];
+    assert_near(p->reaction[2 * APEX + 1], load - arch_load(k, start + p->factor), 1e-10);
+  }
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* A support pulls a slack cable taut, and then a spring behind it. */
+static void test_displacement_of_a_support(void **state) {
+  (void)state;
+  const double spring = 300, cable = 600, slack = 0.1;
+  strut_scene scene;
+  strut_scene_init(&scene);
+  int32_t wall = build_support(&scene, 0, 0), node = build_node(&scene, 1, 0);
+  int32_t hand = build_support(&scene, 2, 0);
+  scene.nodes[node].fixed[1] = true;
+  build_member(&scene, STRUT_SPRING, wall, node, spring, 0, 0);
+  build_sized(&scene, STRUT_CABLE, node, hand, cable, 0, 0, 1 + slack);
+  strut_model *model = motion_compile(&scene);
+  strut_path path = follow(
+      model,
+      &(strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
+  assert_int_equal(path.event_count, 1);
+  assert_int_equal(path.events[0].kind, STRUT_PATH_TAUT);
+  assert_near(path.events[0].factor, slack, 1e-14);
+  for (size_t i = 0; i < path.point_count; i++) {
+    const strut_path_point *p = &path.points[i];
+    double pull = spring * cable / (spring + cable) * fmax(0, p->factor - slack);
+    assert_near(p->reaction[2 * hand], pull, 1e-11);
+    assert_near(p->reaction[2 * wall], -pull, 1e-11);
+    assert_near(p->force[1], pull, 1e-11);
+  }
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* The lever that presses the apex down through a spring: how long it is where the truss is at y. */
+static const double LEVER_SPRING = 30, LEVER = 1;
+
+/* What is added to the lever where the truss is at y: the lever pushes with what holds the apex. */
+static double lever_length(double k, double y) {
+  return arch_load(k, y) / LEVER_SPRING - (y - HEIGHT);
+}
+
+/* Where the lever turns back: its stiffness and the truss's cancel, for which |y| is unique. */
+static double turning_height(double k) {
+  double low = 0, high = HEIGHT;
+  for (int i = 0; i < 200; i++) {
+    double middle = 0.5 * (low + high);
+    if (arch_stiffness(k, middle) > LEVER_SPRING)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* An actuator of a bistable truss: it snaps where length over height has its limit points. */
+static void test_actuator_snaps(void **state) {
+  (void)state;
+  const double k = 1000;
+  strut_scene scene;
+  arch(&scene, k);
+  scene.nodes[APEX].fixed[0] = true;
+  int32_t above = build_support(&scene, 0, HEIGHT + LEVER);
+  int32_t member = build_sized(&scene, STRUT_SPRING, above, APEX, LEVER_SPRING, 0, 0, LEVER);
+  build_actuator(&scene, member, build_sine(&scene, 0.1, 1));
+  strut_model *model = motion_compile(&scene);
+  strut_path path = follow(
+      model, &(strut_path_options){.over = STRUT_PATH_OVER_ACTUATOR, .index = 0, .until = 1.2});
+  double turn = turning_height(k);
+  assert_int_equal(count(&path, STRUT_PATH_LIMIT), 2);
+  assert_int_equal(path.event_count, 2);
+  for (int i = 0; i < 2; i++) {
+    const strut_path_event *e = &path.events[i];
+    double y = i ? -turn : turn;
+    assert_relative(e->factor, lever_length(k, y), 1e-11);
+    assert_near(e->q[2 * APEX + 1], y, 1e-8);
+    assert_int_equal(e->before, i);
+    assert_int_equal(e->after, 1 - i);
+  }
+  for (size_t i = 0; i < path.point_count; i++) {
+    const strut_path_point *p = &path.points[i];
+    double y = p->q[2 * APEX + 1];
+    assert_near(p->factor, lever_length(k, y), 1e-12);
+    assert_near(p->force[2], -arch_load(k, y), 1e-10);
+    assert_int_equal(p->negative, LEVER_SPRING - arch_stiffness(k, y) < 0 ? 1 : 0);
+  }
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* Scenes of a number: the truss's stiffness, with a load of 1 N; what is not positive is refused. */
+typedef struct family {
+  int calls, more_nodes; /* one more node from this value on */
+  bool idle, unloaded;
+} family;
+
+static strut_status scene_of_stiffness(void *context, double value, strut_scene *scene,
+                                       strut_error *error) {
+  family *f = context;
+  f->calls++;
+  if (value < 50) return strut_fail(error, STRUT_BAD_SCENE, "k must be 50 N/m at least");
+  arch(scene, f->idle ? 1000 : value);
+  if (f->more_nodes && value > f->more_nodes) build_support(scene, 5, 5);
+  build_load(scene, APEX, 0, f->unloaded ? 0 : -1, -1);
+  return STRUT_OK;
+}
+
+static strut_path_options over_stiffness(family *f, double from, double until) {
+  return (strut_path_options){.over = STRUT_PATH_OVER_SCENE,
+                              .name = "k",
+                              .unit = "N/m",
+                              .scene_at = scene_of_stiffness,
+                              .context = f,
+                              .from = from,
+                              .until = until};
+}
+
+/* Softer and softer: the truss gives way where its limit load is the load that it carries. */
+static void test_stiffness_of_a_scene(void **state) {
+  (void)state;
+  family f = {0};
+  strut_scene scene;
+  assert_int_equal(scene_of_stiffness(&f, 1000, &scene, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&scene);
+  strut_path_options options = over_stiffness(&f, 1000, 60);
+  options.steps = 60;
+  strut_path path = follow(model, &options);
+  assert_int_equal(path.events[0].kind, STRUT_PATH_LIMIT);
+  double soft = 1 / arch_load(1, limit_height());
+  assert_relative(path.events[0].factor, soft, 1e-11);
+  assert_near(path.events[0].q[2 * APEX + 1], limit_height(), 1e-8);
+  assert_non_null(strstr(path.events[0].detail, "k can fall no further"));
+  for (size_t i = 0; i < path.point_count; i++) {
+    const strut_path_point *p = &path.points[i];
+    double y = p->q[2 * APEX + 1];
+    assert_near(arch_load(p->factor, y), 1, 1e-11);
+    assert_int_equal(p->negative, y < limit_height() ? 1 : 0);
+  }
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* It ends where the scene means nothing any more, with what the scene says. */
+static void test_end_of_validity(void **state) {
+  (void)state;
+  family f = {.unloaded = true};
+  strut_scene scene;
+  assert_int_equal(scene_of_stiffness(&f, 1000, &scene, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&scene);
+  strut_path_options options = over_stiffness(&f, 1000, -10);
+  strut_path path = follow(model, &options);
+  assert_int_equal(path.end, STRUT_PATH_INVALID);
+  assert_near(path.points[path.point_count - 1].factor, 50, 1e-3);
+  assert_non_null(strstr(path.remark, "k must be 50 N/m at least"));
+  assert_non_null(strstr(path.remark, "the path ends at k 50"));
+  strut_path_free(&path);
+  options = over_stiffness(&f, 10, 1000);
+  strut_error error = {0};
+  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_BAD_SCENE);
+  assert_string_equal(error.message, "k must be 50 N/m at least");
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* A ground that is raised under a node on an upright spring: a scene's number again. */
+static strut_status scene_of_ground(void *context, double value, strut_scene *scene,
+                                    strut_error *error) {
+  (void)context;
+  (void)error;
+  strut_scene_init(scene);
+  int32_t top = build_support(scene, 0, 1), node = build_node(scene, 0, 0);
+  scene->nodes[node].fixed[0] = true;
+  build_member(scene, STRUT_SPRING, top, node, 100, 0, 0);
+  build_contact(scene, node, 1000, 0);
+  scene->ground.height = value;
+  return STRUT_OK;
+}
+
+static void test_rising_ground(void **state) {
+  (void)state;
+  strut_scene scene;
+  assert_int_equal(scene_of_ground(NULL, -0.2, &scene, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&scene);
+  strut_path path = follow(model, &(strut_path_options){.over = STRUT_PATH_OVER_SCENE,
+                                                        .name = "height",
+                                                        .unit = "m",
+                                                        .scene_at = scene_of_ground,
+                                                        .from = -0.2,
+                                                        .until = 0.1});
+  assert_int_equal(path.event_count, 1);
+  assert_int_equal(path.events[0].kind, STRUT_PATH_TOUCHDOWN);
+  assert_near(path.events[0].factor, 0, 1e-13);
+  for (size_t i = 0; i < path.point_count; i++) {
+    const strut_path_point *p = &path.points[i];
+    double y = 1000 * fmax(0, p->factor) / 1100;
+    assert_near(p->q[3], y, 1e-13);
+    assert_near(p->contact[0], 100 * y, 1e-10);
+    assert_near(p->reaction[1], 100 * -y, 1e-10);
+    assert_near(p->force[0], -100 * y, 1e-10);
+  }
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* A number that does nothing, or that changes what the structure is made of. */
+static void test_refusals(void **state) {
+  (void)state;
+  family idle = {.idle = true}, grows = {.more_nodes = 1500};
+  strut_scene scene;
+  strut_error error = {0};
+  strut_path path;
+  assert_int_equal(scene_of_stiffness(&idle, 1000, &scene, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&scene);
+  strut_path_options options = over_stiffness(&idle, 1000, 2000);
+  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  assert_non_null(strstr(error.message, "k changes nothing that matters at rest"));
+  strut_path_free(&path);
+  options = over_stiffness(&grows, 1000, 2000);
+  strut_status status = strut_path_follow(model, &options, &path, &error);
+  assert_int_equal(status, STRUT_OK); /* it is found on the way */
+  assert_int_equal(path.end, STRUT_PATH_INVALID);
+  assert_near(path.points[path.point_count - 1].factor, 1500, 0.1);
+  assert_non_null(strstr(path.remark, "changes what the structure is made of"));
+  strut_path_free(&path);
+  options = over_stiffness(&grows, 1000, 1000);
+  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  strut_path_free(&path);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+static void test_memory(void **state) {
+  (void)state;
+  family f = {0};
+  strut_scene scene;
+  assert_int_equal(scene_of_stiffness(&f, 1000, &scene, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&scene);
+  const strut_path_options all[] = {
+      {.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.05, .at = "start"},
+      {.over = STRUT_PATH_OVER_COORDINATE, .index = 0, .from = 0.001, .until = -0.05}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    strut_status status = STRUT_NO_MEMORY;
+    int64_t n = 0;
+    for (; status != STRUT_OK && n < 10000; n++) {
+      strut_path path = {0};
+      strut_fail_allocation_after(n);
+      status = strut_path_follow(model, &all[i], &path, NULL);
+      strut_fail_allocation_after(-1);
+      strut_path_free(&path);
+      if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
+    }
+    assert_true(n > 10);
+    assert_int_equal(status, STRUT_OK);
+  }
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_displacement_of_a_node),
+      cmocka_unit_test(test_displacement_under_load),
+      cmocka_unit_test(test_displacement_of_a_support),
+      cmocka_unit_test(test_actuator_snaps),
+      cmocka_unit_test(test_stiffness_of_a_scene),
+      cmocka_unit_test(test_end_of_validity),
+      cmocka_unit_test(test_rising_ground),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_memory),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,535 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measured quantities against closed forms: each column, each reduction, and what they cost. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/read_scene.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+
+static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
+
+static void read_scene(const char *text, const strut_override *set, size_t count,
+                       strut_scene *scene) {
+  strut_diagnostics diagnostics = {0};
+  strut_status status =
+      strut_scene_read(scene, "test", text, strlen(text), set, count, STRUT_FOR_RUN, &diagnostics);
+  if (status) print_message("%s", strut_diagnostics_render(&diagnostics, 10));
+  assert_int_equal(status, STRUT_OK);
+  strut_diagnostics_free(&diagnostics);
+}
+
+/* The scene and the summary of its run; end_run frees both. */
+typedef struct measured_run {
+  strut_scene scene;
+  strut_summary summary;
+} measured_run;
+
+static measured_run run_with(const char *text, const strut_override *set, size_t count) {
+  measured_run r;
+  read_scene(text, set, count, &r.scene);
+  r.summary = motion_simulate(&r.scene);
+  assert_int_equal(r.summary.measured_count, r.scene.experiment.quantity_count);
+  return r;
+}
+
+static measured_run run_text(const char *text) { return run_with(text, NULL, 0); }
+
+static void end_run(measured_run *r) {
+  strut_summary_free(&r->summary);
+  strut_scene_free(&r->scene);
+}
+
+static const strut_measured *get(const measured_run *r, const char *name) {
+  for (size_t i = 0; i < r->summary.measured_count; i++)
+    if (strcmp(r->summary.measured[i].name, name) == 0) return &r->summary.measured[i];
+  fail_msg("no quantity '%s'", name);
+  return NULL;
+}
+
+static double value(const measured_run *r, const char *name) { return get(r, name)->value; }
+
+/* m g + sqrt((m g)^2 + 2 k m g h) where a mass falls by h before the cable pulls. */
+static void test_a_mass_caught_by_a_cable(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {drop: 0.5 m, stiff: 2 kN/m}\n"
+      "nodes: {top: {position: [0, 0], fixed: both}, bob: {position: [0, -1], mass: 2 kg}}\n"
+      "members: {catch: {nodes: [top, bob], kind: cable, stiffness: stiff}}\n"
+      "gravity: [0, -9.81]\n"
+      "initial: {positions: {bob: [0, -1 + drop]}}\n"
+      "solver: {integrator: rk4-events, step: 1 ms}\n"
+      "run:\n"
+      "  duration: 0.5 s\n"
+      "  measure:\n"
+      "    quantities:\n"
+      "      peak: {of: catch.force, take: max, accuracy: 0.5 %}\n"
+      "      factor: {of: catch.force / (stiff * drop), take: max}\n"
+      "      deep: {of: bob.y + 1 m, take: min, accuracy: 0.1 mm}\n"
+      "      stretch: {of: catch.stretch, take: max}\n"
+      "      side: com.vx\n";
+  measured_run r = run_text(text);
+  const double weight = 2 * GRAVITY, k = 2000;
+  double peak = weight + sqrt(weight * weight + 2 * k * weight * 0.5);
+  assert_relative(value(&r, "peak"), peak, 1e-6);
+  assert_relative(value(&r, "factor"), peak / (k * 0.5), 1e-6);
+  assert_relative(value(&r, "deep"), -peak / k, 1e-6);
+  assert_relative(value(&r, "stretch"), peak / k, 1e-6);
+  assert_string_equal(get(&r, "peak")->unit, "N");
+  assert_string_equal(get(&r, "factor")->unit, "1");
+  assert_relative(get(&r, "peak")->scale, peak, 1e-3);
+  assert_true(get(&r, "side")->zero && r.summary.velocity_zero && !get(&r, "peak")->zero);
+  const strut_quantity_definition *q = r.scene.experiment.quantities;
+  assert_true(q[0].accuracy == 0.005 && q[0].accuracy_absolute == 0);
+  assert_true(q[2].accuracy == 0 && q[2].accuracy_absolute == 1e-4);
+  end_run(&r);
+  const strut_override set[] = {{"drop", "0.2 m"}, {"stiff", "500 N/m"}};
+  r = run_with(text, set, 2);
+  peak = weight + sqrt(weight * weight + 2 * 500 * weight * 0.2);
+  assert_relative(value(&r, "peak"), peak, 1e-6);
+  assert_relative(value(&r, "factor"), peak / (500 * 0.2), 1e-6);
+  end_run(&r);
+}
+
+/* An undamped oscillator of 50 rad/s about x = 1 m, amplitude 0.1 m, over ten whole periods. */
+static void test_an_oscillator(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
+      "y}}\n"
+      "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m}}\n"
+      "initial: {positions: {block: [1.1, 0]}}\n"
+      "solver: {step: 2*pi/50/100}\n" /* 100 steps in a period */
+      "run:\n"
+      "  duration: 20*pi/50\n"
+      "  measure:\n"
+      "    quantities:\n"
+      "      range: {of: block.x, take: range}\n"
+      "      high: {of: block.x - 1 m, take: max}\n"
+      "      low: {of: spring.force, take: min}\n"
+      "      speed: {of: abs(block.vx), take: max}\n"
+      "      effective: {of: block.x - 1, take: rms}\n"
+      "      middle: block.x - 1\n"
+      "      moving: energy.kinetic\n"
+      "      stored: energy.elastic\n"
+      "      kept: {of: energy.total, take: range}\n"
+      "      end: {of: block.x, take: final}\n"
+      "      drift: block.vx\n"
+      "      went: {of: block.x, take: change}\n"
+      "      clock: {of: time, take: change}\n"
+      "      pace: {of: 3 * time, take: rate}\n");
+  const double energy = 0.5 * 5000 * 0.01;
+  /* sampled ends of steps alone would miss amplitudes of this by up to 5e-4 */
+  assert_relative(value(&r, "range"), 0.2, 1e-6);
+  assert_relative(value(&r, "high"), 0.1, 1e-6);
+  assert_relative(value(&r, "low"), -500, 1e-6);
+  assert_relative(value(&r, "speed"), 5, 1e-6);
+  assert_relative(value(&r, "effective"), 0.1 / sqrt(2), 1e-6);
+  assert_near(value(&r, "middle"), 0, 1e-7);
+  assert_relative(value(&r, "moving"), energy / 2, 1e-6);
+  assert_relative(value(&r, "stored"), energy / 2, 1e-6);
+  assert_near(value(&r, "kept"), 0, 1e-6 * energy);
+  assert_relative(get(&r, "kept")->scale, energy, 1e-6);
+  assert_relative(value(&r, "end"), 1.1, 1e-6);
+  assert_near(value(&r, "drift"), 0, 1e-6);
+  assert_same_bits(value(&r, "went"), r.summary.positions[2] - 1.1);
+  assert_relative(value(&r, "clock"), 20 * PI / 50, 1e-12);
+  assert_relative(value(&r, "pace"), 3, 1e-12);
+  assert_string_equal(get(&r, "pace")->unit, "1");
+  assert_true(isnan(get(&r, "range")->spread)); /* a run in seconds has no periods */
+  end_run(&r);
+}
+
+/* Extremes between steps where the window has a peak at a fraction of a step. */
+static void test_peaks_between_steps(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {late: 0}\n"
+      "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg}}\n"
+      "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 1 N/m}}\n"
+      "initial: {positions: {block: [1 + 0.1*cos(late * 1 rad), 0]},"
+      " velocities: {block: [-0.1*sin(late * 1 rad), 0]}}\n"
+      "solver: {step: 0.1 s}\n"
+      "run: {duration: 12, measure: {quantities: {peak: {of: spring.force, take: max},"
+      " dip: {of: -spring.force, take: min}}}}\n";
+  for (int i = 0; i < 10; i++) {
+    char late[16];
+    snprintf(late, sizeof late, "%g", 3 + 0.013 * i);
+    const strut_override set[] = {{"late", late}};
+    measured_run r = run_with(text, set, 1);
+    assert_relative(value(&r, "peak"), 0.1, 1e-5);
+    assert_relative(value(&r, "dip"), -0.1, 1e-5);
+    end_run(&r);
+  }
+}
+
+/* A force that jumps has no vertex between its steps: nothing is larger than what was there. */
+static void test_a_jump_is_no_peak(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {ball: {position: [0, 0.3], mass: 1 kg}}\n"
+      "gravity: [0, -9.81]\n"
+      "ground: {stiffness: 100 kN/m, damping: 400 N s/m}\n"
+      "solver: {integrator: rk4-events, step: 0.1 ms}\n"
+      "run: {duration: 0.3, measure: {quantities: {top: {of: ball.normal, take: max}}}}\n");
+  /* of this damping the force is largest at touchdown, and falls by 1.5 % in a step from there */
+  double jump = 400 * sqrt(2 * GRAVITY * 0.3);
+  assert_within(value(&r, "top"), 0.98 * jump, jump * (1 + 1e-6));
+  end_run(&r);
+}
+
+/* A rigid pendulum released at 60 degrees: tension m g (3 - 2 cos) at the bottom. */
+static void test_a_pendulum(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "bars: rigid\n"
+      "gravity: [0, -9.81]\n"
+      "nodes: {top: {position: [0, 0], fixed: both},"
+      " bob: {position: [2*sin(60 deg), -2*cos(60 deg)], mass: 3 kg}}\n"
+      "members: {rod: {nodes: [top, bob], kind: bar, stiffness: 1 MN/m}}\n"
+      "solver: {step: 1 ms}\n"
+      "run:\n"
+      "  duration: 4 s\n"
+      "  measure:\n"
+      "    quantities:\n"
+      "      swing: {of: \"angle(top, bob)\", take: range}\n"
+      "      lean: {of: rod.angle, take: max, accuracy: 0.1 deg}\n"
+      "      pull: {of: rod.force, take: max}\n"
+      "      least: {of: rod.force, take: min}\n"
+      "      long: {of: \"distance(top, bob)\", take: range}\n"
+      "      fall: {of: energy.gravity, take: range}\n"
+      "      quick: {of: \"hypot(bob.vx, bob.vy)\", take: max}\n");
+  assert_relative(value(&r, "swing"), 2 * PI / 3, 1e-6);
+  assert_near(value(&r, "lean"), -PI / 2 + PI / 3, 1e-6);
+  assert_relative(value(&r, "pull"), 3 * GRAVITY * (3 - 2 * 0.5), 1e-6);
+  assert_relative(value(&r, "least"), 3 * GRAVITY * 0.5, 1e-6);
+  assert_true(get(&r, "long")->zero);
+  assert_relative(value(&r, "fall"), 3 * GRAVITY * 2 * 0.5, 1e-6);
+  assert_relative(value(&r, "quick"), sqrt(2 * GRAVITY * 2 * 0.5), 1e-6);
+  assert_string_equal(get(&r, "swing")->unit, "rad");
+  end_run(&r);
+}
+
+/* Angles go on beyond a turn: a spoke that spins at 7 rad/s for 10 s. */
+static void test_an_angle_beyond_a_turn(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "bars: rigid\n"
+      "nodes: {hub: {position: [0, 0], fixed: both}, rim: {position: [1, 0], mass: 1 kg}}\n"
+      "members: {spoke: {nodes: [hub, rim], kind: bar, stiffness: 1}}\n"
+      "initial: {velocities: {rim: [0, -7]}}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {duration: 10 s, measure: {quantities: {turned: {of: spoke.angle, take: change},"
+      " spin: {of: \"angle(rim, hub)\", take: rate}}}}\n");
+  assert_relative(value(&r, "turned"), -70, 1e-8);
+  assert_relative(value(&r, "spin"), -7, 1e-8);
+  assert_string_equal(get(&r, "spin")->unit, "rad/s");
+  end_run(&r);
+}
+
+/* Free fall above a slope of 30 degrees, over the last second of two. */
+static void test_a_falling_mass(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {ball: {position: [1, 50], mass: 2 kg}, other: {position: [5, 60], mass: 1 kg}}\n"
+      "gravity: [0, -9.81]\n"
+      "ground: {stiffness: 1e5, slope: 30 deg, height: 1 m, nodes: [ball]}\n"
+      "solver: {step: 1 ms}\n"
+      "run:\n"
+      "  duration: 2 s\n"
+      "  measure:\n"
+      "    last: 1 s\n"
+      "    node: ball\n"
+      "    quantities:\n"
+      "      climb: com.vy\n"
+      "      height: {of: ball.height, take: final}\n"
+      "      sink: {of: ball.height, take: change}\n"
+      "      apart: {of: ball.y - other.y, take: range}\n"
+      "      square: ball.vy^2\n"
+      "      push: {of: ball.normal, take: max}\n"
+      "      side: ball.vx\n"
+      "      centre: {of: com.x, take: final}\n");
+  double c = cos(PI / 6), s = sin(PI / 6), at2 = 50 - 0.5 * GRAVITY * 4;
+  assert_relative(value(&r, "climb"), -GRAVITY * 1.5, 1e-9);
+  assert_relative(value(&r, "height"), -s * 1 + c * (at2 - 1), 1e-9);
+  assert_relative(value(&r, "sink"), -c * 0.5 * GRAVITY * 3, 1e-9);
+  assert_true(get(&r, "apart")->zero);
+  assert_relative(value(&r, "square"), GRAVITY * GRAVITY * 7 / 3, 1e-6);
+  assert_true(value(&r, "push") == 0 && get(&r, "push")->zero);
+  assert_same_bits(value(&r, "side"), r.summary.velocity);
+  assert_relative(value(&r, "centre"), 7.0 / 3, 1e-12);
+  end_run(&r);
+}
+
+static void rest_on_slope(const char *method) {
+  char text[900];
+  snprintf(text, sizeof text,
+           "strut: 1\n"
+           "nodes: {foot: {position: [0, 1 mm], mass: 4 kg}}\n"
+           "gravity: [0, -9.81]\n"
+           "ground: {stiffness: 1e5, damping: 1e3, slope: 10 deg,"
+           " friction: {mu: 0.5, stick_velocity: 1 mm/s}}\n"
+           "solver: {integrator: %s, step: 0.1 ms}\n"
+           "run: {duration: 1 s, measure: {last: 0.1 s, quantities: {up: foot.normal,"
+           " along: {of: foot.friction, take: final}, deep: {of: -foot.height, take: max},"
+           " spring: {of: energy.contact, take: final}}}}\n",
+           method);
+  measured_run r = run_text(text);
+  double normal = 4 * GRAVITY * cos(PI / 18);
+  assert_relative(value(&r, "up"), normal, 1e-6);
+  assert_relative(value(&r, "along"), 4 * GRAVITY * sin(PI / 18), 1e-6);
+  assert_relative(value(&r, "deep"), normal / 1e5, 1e-6);
+  assert_relative(value(&r, "spring"), normal * normal / 2e5, 1e-6);
+  end_run(&r);
+}
+
+static void test_contact_forces_at_rest_carry_the_weight(void **unused) {
+  (void)unused;
+  rest_on_slope("rk4");
+  rest_on_slope("verlet-events");
+}
+
+/* x = A sin in the drive's own frame: works and losses of a damper that an actuator pulls. */
+static void test_works_and_periods(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1e9 kg}}\n"
+      "members: {piston: {nodes: [wall, block], kind: spring, damping: 30 N s/m}}\n"
+      "actuators: {drive: {member: piston,"
+      " signal: {sine: {amplitude: 2 mm, frequency: 5 Hz}}}}\n"
+      "solver: {step: 0.7 ms}\n" /* does not divide the period */
+      "run:\n"
+      "  periods: 12\n"
+      "  of: drive\n"
+      "  measure:\n"
+      "    last: 4\n"
+      "    quantities:\n"
+      "      power: {of: work.drives, take: rate}\n"
+      "      lost: {of: losses.total, take: change}\n"
+      "      same: {of: losses.members - work.drives, take: range}\n"
+      "      pull: {of: piston.force, take: max}\n"
+      "      clock: {of: time, take: final}\n"
+      "      mean: {of: time}\n");
+  double w = 2 * PI * 5, power = 0.5 * 30 * pow(0.002 * w, 2);
+  assert_relative(value(&r, "power"), power, 1e-4);
+  assert_relative(value(&r, "lost"), power * 4 / 5.0, 1e-4);
+  assert_near(value(&r, "same"), 0, 1e-9);
+  assert_relative(value(&r, "pull"), 30 * 0.002 * w, 1e-5);
+  assert_relative(value(&r, "clock"), 12 / 5.0, 1e-9);
+  assert_relative(value(&r, "mean"), 10 / 5.0, 1e-9);
+  /* each period's own value: power alike, the clock one period later each time */
+  assert_within(get(&r, "power")->spread, 0, 1e-4 * power);
+  assert_relative(get(&r, "clock")->spread, sqrt(5.0 / 3) / 5, 1e-9);
+  assert_relative(get(&r, "mean")->spread, sqrt(5.0 / 3) / 5, 1e-9);
+  assert_string_equal(get(&r, "power")->unit, "W");
+  end_run(&r);
+}
+
+/* Two masses that swing against each other: the centre stays, to rounding. */
+static void test_zero_by_symmetry(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {a: {position: [-1/3, 0.2], mass: 0.7}, b: {position: [1/3, 0.2], mass: 0.7}}\n"
+      "members: {spring: {nodes: [a, b], kind: spring, stiffness: 777, damping: 0.1}}\n"
+      "initial: {velocities: {a: [-0.3, 0], b: [0.3, 0]}}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {duration: 1.0123, measure: {quantities: {all: com.vx, one: b.vx,"
+      " sum: a.x + b.x, up: {of: com.y, take: change}, tilt: {of: spring.angle, take: range}}}}\n");
+  assert_true(r.summary.velocity_zero);
+  assert_true(get(&r, "all")->zero && get(&r, "sum")->zero && get(&r, "up")->zero);
+  assert_true(get(&r, "tilt")->zero);
+  assert_false(get(&r, "one")->zero);
+  assert_true(get(&r, "all")->scale > 0.01);
+  end_run(&r);
+}
+
+static const char HOPPER[] =
+    "strut: 1\n"
+    "nodes: {a: {position: [0, 0.02], mass: 1}, b: {position: [0.3, 0.05], mass: 1}}\n"
+    "members: {leg: {nodes: [a, b], kind: spring, stiffness: 3000, damping: 2}}\n"
+    "gravity: [0, -9.81]\n"
+    "ground: {stiffness: 1e5, damping: 30, friction: {mu: 0.4, stick_velocity: 1 mm/s}}\n"
+    "actuators: {drive: {member: leg, signal: {sine: {amplitude: 20 mm, frequency: 6 Hz}}}}\n"
+    "solver: {integrator: %s, step: 0.05 ms}\n"
+    "run: {periods: 6, of: drive, measure: {last: 3%s}}\n";
+static const char ALL[] =
+    ", quantities: {n: a.normal, f: {of: b.friction, take: max}, w: {of: work.drives, take: rate},"
+    " l: {of: leg.force, take: min}, e: {of: energy.total, take: final}, v: com.vx}";
+
+static strut_summary hop(const char *method, const char *quantities, strut_scene *scene) {
+  char text[1400];
+  snprintf(text, sizeof text, HOPPER, method, quantities);
+  read_scene(text, NULL, 0, scene);
+  return motion_simulate(scene);
+}
+
+/* Looking on changes no bit of the motion, and a scene without quantities has none. */
+static void test_measuring_changes_nothing(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4", "verlet", "verlet-events", "rk4-events", "adaptive"};
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+    strut_scene plain, more;
+    strut_summary s = hop(methods[i], "", &plain), m = hop(methods[i], ALL, &more);
+    assert_true(s.measured_count == 0 && !s.measured && m.measured_count == 6);
+    assert_int_equal(s.force_evaluations, m.force_evaluations);
+    assert_same_bits(s.velocity, m.velocity);
+    assert_same_bits(m.measured[5].value, m.velocity);
+    assert_same_bits(s.energy.residual, m.energy.residual);
+    for (size_t k = 0; k < 4; k++) assert_same_bits(s.positions[k], m.positions[k]);
+    for (size_t k = 0; k < 6; k++) assert_true(isfinite(m.measured[k].value));
+    strut_summary_free(&s), strut_summary_free(&m);
+    strut_scene_free(&plain), strut_scene_free(&more);
+  }
+}
+
+/* Works are there where the run keeps no ledger for itself. */
+static void test_works_without_the_ledger(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_summary with = hop("rk4", ALL, &scene), without;
+  strut_error error = {0};
+  strut_model *model = motion_compile(&scene);
+  strut_run_options options = {.without_ledger = true};
+  assert_int_equal(strut_simulate(model, &options, &without, &error), STRUT_OK);
+  assert_same_bits(without.measured[2].value, with.measured[2].value);
+  assert_true(with.measured[2].value > 0);
+  strut_summary_free(&with), strut_summary_free(&without);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* A stopped window gives no number, and no crash. */
+static void test_a_run_that_is_interrupted(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  strut_error error = {0};
+  strut_summary full = hop("rk4", ALL, &scene), s;
+  strut_summary_free(&full);
+  strut_model *model = motion_compile(&scene);
+  volatile sig_atomic_t stop = 1;
+  strut_run_options options = {.interrupt = &stop};
+  assert_int_equal(strut_simulate(model, &options, &s, &error), STRUT_INTERRUPTED);
+  for (size_t k = 0; k < 6; k++) assert_true(isnan(s.measured[k].value) && !s.measured[k].zero);
+  strut_summary_free(&s);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* Twice as many steps take as many allocations. */
+static void test_steps_allocate_nothing(void **unused) {
+  (void)unused;
+  uint64_t count[2];
+  for (int i = 0; i < 2; i++) {
+    strut_scene scene;
+    strut_error error = {0};
+    strut_summary s;
+    char text[1400];
+    snprintf(text, sizeof text, HOPPER, "rk4", ALL);
+    read_scene(text, NULL, 0, &scene);
+    scene.experiment.step /= 1 + i;
+    strut_model *model = motion_compile(&scene);
+    uint64_t before = strut_allocation_count();
+    strut_run_options options = {0};
+    assert_int_equal(strut_simulate(model, &options, &s, &error), STRUT_OK);
+    count[i] = strut_allocation_count() - before;
+    strut_summary_free(&s);
+    strut_model_free(model);
+    strut_scene_free(&scene);
+  }
+  assert_int_equal(count[0], count[1]);
+}
+
+/* Every allocation of reading and running fails once: an error, no crash and no leak. */
+static void test_memory_that_runs_out(void **unused) {
+  (void)unused;
+  char text[1400];
+  snprintf(text, sizeof text, HOPPER, "rk4", ALL);
+  strut_status status = STRUT_NO_MEMORY;
+  int64_t n = 0;
+  for (; status == STRUT_NO_MEMORY && n < 5000; n++) {
+    strut_scene scene;
+    strut_diagnostics diagnostics = {0};
+    strut_fail_allocation_after(n);
+    status =
+        strut_scene_read(&scene, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    strut_fail_allocation_after(-1);
+    strut_diagnostics_free(&diagnostics);
+    if (status == STRUT_OK) strut_scene_free(&scene);
+  }
+  assert_int_equal(status, STRUT_OK);
+  assert_true(n > 20);
+  strut_scene scene;
+  read_scene(text, NULL, 0, &scene);
+  scene.experiment.step = 1e-4;
+  strut_model *model = motion_compile(&scene);
+  for (status = STRUT_NO_MEMORY, n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
+    strut_run_options options = {0};
+    strut_error error = {0};
+    strut_summary s;
+    strut_fail_allocation_after(n);
+    status = strut_simulate(model, &options, &s, &error);
+    strut_fail_allocation_after(-1);
+    strut_summary_free(&s);
+  }
+  assert_int_equal(status, STRUT_OK);
+  assert_true(n > 5);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* Driven at 1 Hz and 0.5 Hz, of which the first counts: a motion of two periods. */
+static void test_a_steady_run_measures_its_whole_orbit(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg, fixed: "
+      "y}}\n"
+      "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 100, damping: 4}}\n"
+      "loads: {push: {node: block, force: [1 N, 0],"
+      " signal: {sine: {amplitude: 1, frequency: 1 Hz}}},"
+      " slow: {node: block, force: [1 N, 0], signal: {sine: {amplitude: 1, frequency: 0.5 Hz}}}}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {periods: 400, of: push, measure: {steady: true, quantities:"
+      " {clock: {of: time, take: change}, far: {of: block.x, take: change},"
+      " mean: spring.stretch, high: {of: block.x, take: max}}}}\n");
+  assert_int_equal(r.summary.steady.kind, STRUT_MOTION_PERIODIC);
+  assert_int_equal(r.summary.steady.repeats, 2);
+  assert_relative(value(&r, "clock"), 2, 1e-9);
+  assert_near(value(&r, "far"), 0, 1e-5);
+  assert_near(value(&r, "mean"), 0, 1e-5);
+  assert_relative(get(&r, "clock")->spread + 1, 1, 1e-9);
+  assert_true(get(&r, "high")->spread > 1e-3); /* the two periods differ */
+  end_run(&r);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_mass_caught_by_a_cable),
+      cmocka_unit_test(test_an_oscillator),
+      cmocka_unit_test(test_peaks_between_steps),
+      cmocka_unit_test(test_a_jump_is_no_peak),
+      cmocka_unit_test(test_a_pendulum),
+      cmocka_unit_test(test_an_angle_beyond_a_turn),
+      cmocka_unit_test(test_a_falling_mass),
+      cmocka_unit_test(test_contact_forces_at_rest_carry_the_weight),
+      cmocka_unit_test(test_works_and_periods),
+      cmocka_unit_test(test_zero_by_symmetry),
+      cmocka_unit_test(test_measuring_changes_nothing),
+      cmocka_unit_test(test_works_without_the_ledger),
+      cmocka_unit_test(test_a_run_that_is_interrupted),
+      cmocka_unit_test(test_steps_allocate_nothing),
+      cmocka_unit_test(test_memory_that_runs_out),
+      cmocka_unit_test(test_a_steady_run_measures_its_whole_orbit),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Switches that methods with events used to miss, or to make without end.
+
+  tests/physics/switches_test.py STRUT
+
+Each scene of tests/physics/switches is run by adaptive, with two longest steps, and by rk4-events: what
+they find must not depend on where steps happen to end, nor on the method.
+
+- touch-together: two nodes come down in the same instant.
+- square-drive: rest lengths that jump within a step.
+- release-before-opening: what holds a node lets go just before the contact opens.
+- edge-of-the-band: forces balance for a while at the edge of a stick band.
+- yielding: static above kinetic friction; a contact stays where holding and pushing lead to each other.
+- jump-at-the-edge: a drive jumps while a contact stays at the edge of its band.
+- tied-and-held: both at once, with a loose tolerance.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+
+strut = sys.argv[1]
+scenes = pathlib.Path(__file__).parent / "switches"
+failures = []
+
+
+def run(name, *options):
+    words = [strut, "run", str(scenes / f"{name}.yaml"), "--json", *options]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode:
+        failures.append(f"{name}: {' '.join(options)}: {done.stderr.strip()}")
+        return None
+    return json.loads(done.stdout)
+
+
+def unit_of(name):
+    """The drive's period, or a two-hundredth of the run: a fiftieth of it is the file's step."""
+    return 50 * json.loads((scenes / f"{name}.yaml").read_text(encoding="utf-8"))["solver"]["step"]
+
+
+def compare(name, part, most_events, *ways):
+    """The ways agree in the velocity to `part`, and no one makes more than so many switches."""
+    found = [(way, run(name, *way)) for way in ways]
+    found = [(way, one) for way, one in found if one]
+    for way, one in found:
+        if abs(one["velocity"] - found[0][1]["velocity"]) > part * abs(found[0][1]["velocity"]):
+            failures.append(f"{name}: {one['velocity']} by {way}, {found[0][1]['velocity']} by {found[0][0]}")
+        if one["events"] > most_events:
+            failures.append(f"{name}: {one['events']} switches by {way}")
+
+
+def adaptive(unit, steps, tolerance):
+    return ("--integrator", "adaptive", "--step", repr(unit / steps), "--tolerance", tolerance)
+
+
+def fixed(unit, steps, method="rk4-events"):
+    return ("--integrator", method, "--step", repr(unit / steps))
+
+
+u = unit_of("touch-together")
+compare("touch-together", 1e-7, 200, adaptive(u, 100, "1e-11"), adaptive(u, 1000, "1e-12"), fixed(u, 1000),
+        fixed(u, 4000))
+u = unit_of("square-drive")
+compare("square-drive", 1e-4, 1000, adaptive(u, 100, "1e-9"), adaptive(u, 330, "1e-10"), fixed(u, 16000))
+u = unit_of("release-before-opening")
+compare("release-before-opening", 1e-4, 400, adaptive(u, 50, "1e-9"), adaptive(u, 100, "1e-9"), fixed(u, 400))
+u = unit_of("edge-of-the-band")
+compare("edge-of-the-band", 1e-3, 1000, adaptive(u, 50, "1e-4"), adaptive(u, 100, "1e-9"), fixed(u, 1000))
+u = unit_of("yielding")
+compare("yielding", 1e-3, 4000, adaptive(u, 400, "1e-12"), adaptive(u, 4000, "1e-11"), fixed(u, 4000),
+        fixed(u, 20000))
+u = unit_of("jump-at-the-edge")
+compare("jump-at-the-edge", 1e-5, 500, adaptive(u, 100, "1e-9"), adaptive(u, 400, "1e-11"), fixed(u, 1000),
+        fixed(u, 2000))
+u = unit_of("tied-and-held")
+compare("tied-and-held", 5e-3, 2000, adaptive(u, 50, "1e-4"), adaptive(u, 100, "1e-9"))
+
+# A rest length that jumps: the work of the drive is what it adds to the elastic energy, and the balance
+# closes.
+one = run("square-drive", *fixed(unit_of("square-drive"), 4000))
+if one and abs(one["energy"]["residual"]) > 1e-7 * one["energy"]["moved"]:
+    failures.append(f"square-drive: {one['energy']['residual']} J of {one['energy']['moved']} J missing")
+
+for line in failures:
+    print(line)
+print(f"{max(0, 8 - len(failures))} passed, {len(failures)} failed" if failures else "all agree")
+sys.exit(bool(failures))

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Equilibria that the points of a study share: only structures that stand alike may. */
+#include "engine/study/standing.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+
+enum { NODES = 3 };
+
+/* A weight on two springs that also presses a soft ground; its configuration is its only shape. */
+static void hanging(strut_scene *scene) {
+  strut_scene_init(scene);
+  build_support(scene, -1, 0);
+  build_support(scene, 1, 0.1);
+  build_mass(scene, 0.1, -0.6, 2);
+  for (int32_t i = 0; i < 2; i++) build_sized(scene, STRUT_SPRING, i, 2, 60, 1, 0.1, 0.9);
+  build_contact(scene, 2, 40, 3);
+  build_load(scene, 2, 1.5, -0.5, -1);
+  scene->ground.height = -0.45;
+  scene->gravity[1] = -9.81;
+  scene->search.starts = 20;
+  scene->configurations = strut_arena_allocate(&scene->arena, 1, sizeof *scene->configurations);
+  assert_non_null(scene->configurations);
+  double(*shape)[2] = strut_arena_allocate(&scene->arena, NODES, sizeof *shape);
+  assert_non_null(shape);
+  for (int i = 0; i < NODES; i++) memcpy(shape[i], scene->nodes[i].position, sizeof *shape);
+  scene->configurations[0] =
+      (strut_configuration){.name = "rest", .shaped = true, .position = shape};
+  scene->configuration_count = 1;
+  scene->start_equilibrium = 0;
+}
+
+/* Where the scene stands, by equilibria that may be known already. */
+static void resolve(strut_standing *standing, strut_scene *scene, double at[2]) {
+  strut_error error = {0};
+  strut_status status = strut_standing_resolve(standing, scene, &error);
+  if (status) fail_msg("%s", error.message);
+  assert_int_equal(scene->start_equilibrium, -1);
+  memcpy(at, scene->nodes[2].start, 2 * sizeof *at);
+}
+
+/* Each number of a scene that matters, changed a little; false: there are no more. */
+static bool change(strut_scene *s, int which) {
+  double *const numbers[] = {&s->nodes[0].position[1], &s->nodes[2].mass,
+                             &s->members[0].stiffness, &s->members[1].rest_value,
+                             &s->members[1].mass,      &s->contacts[0].stiffness,
+                             &s->loads[0].force[0],    &s->loads[0].force[1],
+                             &s->gravity[0],           &s->gravity[1],
+                             &s->ground.height,        &s->ground.slope};
+  if (which >= (int)(sizeof numbers / sizeof numbers[0])) return false;
+  double *x = numbers[which];
+  *x = *x != 0.0 ? *x * 1.01 : 0.02;
+  if (which == 0) s->nodes[0].start[1] = *x;
+  return true;
+}
+
+static void test_each_structure_has_equilibria_of_its_own(void **unused) {
+  (void)unused;
+  strut_standing *shared = strut_standing_create();
+  double first[2], again[2];
+  assert_non_null(shared);
+  for (int which = -1;; which++) {
+    strut_scene scene, copy;
+    double found[2], alone[2];
+    hanging(&scene);
+    hanging(&copy);
+    if (which >= 0 && !(change(&scene, which) && change(&copy, which))) {
+      resolve(shared, &scene, again); /* the first one, unchanged */
+      strut_scene_free(&scene);
+      strut_scene_free(&copy);
+      break;
+    }
+    strut_standing *own = strut_standing_create();
+    assert_non_null(own);
+    resolve(shared, &scene, found);
+    resolve(own, &copy, alone);
+    for (int c = 0; c < 2; c++) assert_same_bits(found[c], alone[c]);
+    if (which < 0)
+      memcpy(first, found, sizeof first);
+    else if (!(hypot(found[0] - first[0], found[1] - first[1]) > 1e-5))
+      fail_msg("change %d moves nothing", which);
+    strut_standing_free(own);
+    strut_scene_free(&scene);
+    strut_scene_free(&copy);
+  }
+  for (int c = 0; c < 2; c++) assert_same_bits(again[c], first[c]);
+  strut_standing_free(shared);
+}
+
+/* What stands alike is looked for once: friction and the run's step change nothing of where. */
+static void test_points_that_stand_alike_share(void **unused) {
+  (void)unused;
+  strut_standing *shared = strut_standing_create();
+  double at[2], other[2];
+  assert_non_null(shared);
+  strut_scene scene, rough;
+  hanging(&scene);
+  hanging(&rough);
+  rough.contacts[0].friction =
+      (strut_friction){.law = STRUT_FRICTION_KARNOPP, .mu_static = 0.3, .mu_kinetic = 0.2};
+  rough.experiment.step = 1e-5;
+  resolve(shared, &scene, at);
+  uint64_t before = strut_allocation_count();
+  resolve(shared, &rough, other);
+  assert_true(strut_allocation_count() - before < 20); /* no search */
+  for (int c = 0; c < 2; c++) assert_same_bits(other[c], at[c]);
+  strut_standing_free(shared);
+  strut_scene_free(&scene);
+  strut_scene_free(&rough);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_each_structure_has_equilibria_of_its_own),
+      cmocka_unit_test(test_points_that_stand_alike_share),
+  };
+  return cmocka_run_group_tests_name("standing", tests, NULL, NULL);
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* CSV tables read for pictures: cells, numbers, what is no table, and nothing left behind. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "parser/cli/streams.c" /* the program is no library to link with */
+#include "parser/cli/table_file.c"
+#include "tests/support/heap.h"
+#include "tests/unit/scratch.h"
+
+static strut_status read_text_as_file(const char *text, strut_table *table) {
+  const char *path = scratch_path("table.csv");
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fputs(text, file);
+  assert_int_equal(fclose(file), 0);
+  int kept = dup(STDERR_FILENO), silent = open("/dev/null", O_WRONLY);
+  assert_true(kept >= 0 && silent >= 0);
+  dup2(silent, STDERR_FILENO); /* messages are for other tests */
+  strut_status status = strut_table_read(path, table);
+  dup2(kept, STDERR_FILENO);
+  close(kept);
+  close(silent);
+  return status;
+}
+
+static void test_cells_and_numbers(void **unused) {
+  (void)unused;
+  strut_table table;
+  scratch_make();
+  assert_int_equal(
+      read_text_as_file("f [Hz],\"a, \"\"b\"\"\",v\r\n1.5,x,-2e3\r\n\r\n.25,\"y\nz\",nan\r\n",
+                        &table),
+      STRUT_OK);
+  assert_int_equal(table.column_count, 3);
+  assert_int_equal(table.row_count, 2);
+  assert_string_equal(table.columns[0].name, "f");
+  assert_string_equal(table.columns[0].unit, "Hz");
+  assert_string_equal(table.columns[1].name, "a, \"b\"");
+  assert_string_equal(table.columns[1].text[1], "y\nz");
+  assert_null(table.columns[1].value);
+  assert_true(table.columns[0].value[0] == 1.5 && table.columns[0].value[1] == 0.25);
+  assert_true(table.columns[2].value[0] == -2000 && isnan(table.columns[2].value[1]));
+  strut_arena_free(&table.arena);
+  scratch_remove();
+}
+
+/* Each way to fail gives everything back, whether the table had begun or not. */
+static void test_a_table_with_errors_leaves_nothing(void **unused) {
+  (void)unused;
+  static const char *const bad[] = {"", "a,b\n", "a,b\n1,2\n3\n", "a,b\n1,\"2\n", "a\n\"1\"2\n"};
+  size_t before = 0;
+  scratch_make();
+  for (int round = 0; round < 20; round++) {
+    if (round == 8) before = heap_in_use(); /* by now malloc's caches are full */
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+      strut_table table;
+      assert_int_equal(read_text_as_file(bad[i], &table), STRUT_BAD_SCENE);
+      assert_null(table.arena.chunk);
+    }
+  }
+  assert_in_range(heap_in_use(), 0, before + 500);
+  scratch_remove();
+}
+
+/* The same where memory is out. */
+static void test_no_memory_leaves_nothing(void **unused) {
+  (void)unused;
+  size_t before = 0;
+  scratch_make();
+  for (int round = 0; round < 20; round++) {
+    strut_status status = STRUT_NO_MEMORY;
+    int64_t n = 0;
+    if (round == 8) before = heap_in_use();
+    for (; status != STRUT_OK; n++) {
+      strut_table table;
+      strut_fail_allocation_after(n);
+      status = read_text_as_file("a,b\n1,2\n3,x\n", &table);
+      strut_fail_allocation_after(-1);
+      if (status == STRUT_OK)
+        strut_arena_free(&table.arena);
+      else
+        assert_null(table.arena.chunk);
+      assert_true(n < 1000);
+    }
+    assert_true(n >= 3);
+  }
+  assert_in_range(heap_in_use(), 0, before + 500);
+  scratch_remove();
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cells_and_numbers),
+      cmocka_unit_test(test_a_table_with_errors_leaves_nothing),
+      cmocka_unit_test(test_no_memory_leaves_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
