@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <string.h>
 
-#include "parser/diagnostics.h"
-#include "parser/text.h"
+#include "parser/yaml/diagnostics.h"
+#include "parser/yaml/text.h"
 
 /* Longer words get no suggestion; more candidates than this are not worth the time. */
 enum { WORD_MOST = 64, CANDIDATE_MOST = 10000 };

@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_MIDPOINT_MATRIX_H
 #define STRUT_ENGINE_INTEGRATE_MIDPOINT_MATRIX_H
 
-#include "engine/forces/averaged.h"
+#include "engine/forces/discrete_gradient.h"
 #include "engine/model/refactor.h"
 #include "engine/model/sparse.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "engine/model/model.h"
-#include "engine/model/room.h"
+#include "engine/model/memory_estimate.h"
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {

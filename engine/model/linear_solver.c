@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/model/room.h"
+#include "engine/model/memory_estimate.h"
 
 static void start_cholmod(cholmod_common *common) {
   cholmod_start(common);

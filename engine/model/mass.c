@@ -3,7 +3,7 @@
 
 #include "engine/model/mass_matrix.h"
 #include "engine/model/model.h"
-#include "engine/model/room.h"
+#include "engine/model/memory_estimate.h"
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
 static int32_t find_root(int32_t *parent, int32_t i) {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "engine/output/json_value.h"
-#include "engine/run/summary.h"
+#include "engine/run/measure/summary.h"
 #include "engine/scene/scene.h"
 
 /**

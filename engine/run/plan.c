@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/plan.h"
 
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 
 static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},

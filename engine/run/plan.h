@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_RUN_PLAN_H
 #define STRUT_ENGINE_RUN_PLAN_H
 
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 
 /** A term, whether the model evaluates it, and what it is. */
 typedef struct strut_plan_term {

@@ -7,7 +7,7 @@
 
 #include "engine/model/state.h"
 #include "engine/run/recorder.h"
-#include "engine/run/time_grid.h"
+#include "engine/run/measure/time_grid.h"
 
 enum { STRUT_CHANNELS = 6 };
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/integrate/step_limit.h"
-#include "engine/model/room.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/model/memory_estimate.h"
 #include "engine/run/simulate_parts.h"
 #include "engine/run/settle.h"
 

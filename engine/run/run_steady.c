@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/run/simulate_parts.h"
-#include "engine/run/shooting.h"
+#include "engine/run/orbit/shooting.h"
 
 int64_t strut_run_middle(int64_t period) { return (int64_t)(0.382 * (double)period); }
 

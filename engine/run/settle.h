@@ -11,9 +11,9 @@
 
 #include <signal.h>
 
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/model/state.h"
-#include "engine/run/summary.h"
+#include "engine/run/measure/summary.h"
 
 /** A model without drives, driven loads, belt and, unless kept, friction, with a state that relaxes. */
 typedef struct strut_relaxation {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/integrate/integrator.h"
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/run/settle.h"
 
 /* Of the largest stable step, where the scene gives none. Halvings of one that diverges. */

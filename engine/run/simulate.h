@@ -9,7 +9,7 @@
 
 #include "engine/model/model.h"
 #include "engine/run/recorder.h"
-#include "engine/run/summary.h"
+#include "engine/run/measure/summary.h"
 
 /** A state to go on from, or to keep: coordinate arrays of the model's length, owned by the caller. */
 typedef struct strut_snapshot {

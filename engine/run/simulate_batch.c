@@ -2,7 +2,7 @@
 #include "engine/run/simulate_batch.h"
 
 #include "engine/base/subnormals.h"
-#include "engine/integrate/batch.h"
+#include "engine/integrate/lanes/batch.h"
 #include "engine/run/simulate_parts.h"
 
 /* A lane and who runs in it. */

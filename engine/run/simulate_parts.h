@@ -5,15 +5,15 @@
 #ifndef STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 #define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 
-#include "engine/integrate/step_limit.h"
-#include "engine/run/balance.h"
-#include "engine/run/guard.h"
-#include "engine/run/measure.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/run/measure/balance.h"
+#include "engine/run/measure/step_limit_monitor.h"
+#include "engine/run/measure/measure.h"
 #include "engine/run/recording.h"
 #include "engine/run/simulate.h"
-#include "engine/run/steady.h"
-#include "engine/run/stick_band.h"
-#include "engine/run/time_grid.h"
+#include "engine/run/orbit/steady_detector.h"
+#include "engine/run/measure/stick_band.h"
+#include "engine/run/measure/time_grid.h"
 
 /** All that belongs to one run. */
 typedef struct strut_run {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/equilibria_report.h"
+#include "engine/output/report/equilibria_report.h"
 #include "engine/output/figures/equilibria_figure.h"
 #include "engine/output/file.h"
 #include "parser/cli/interrupt.h"
@@ -13,7 +13,7 @@
 #include "parser/cli/option_values.h"
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
-#include "parser/diagnostics.h"
+#include "parser/yaml/diagnostics.h"
 
 /* The seed is kept as a JSON integer, which readers hold exactly up to here. */
 static const int64_t MOST_STARTS = 1000000000, MOST_SEED = 9007199254740992;

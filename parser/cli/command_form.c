@@ -7,12 +7,12 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/form_figure.h"
 #include "engine/output/file.h"
-#include "engine/output/form_report.h"
+#include "engine/output/report/form_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
-#include "parser/write_scene.h"
+#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_FROM, "from", "WHAT", "densities, lengths or prestress; else as the model says"},

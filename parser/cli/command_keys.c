@@ -3,7 +3,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
-#include "parser/keys_page.h"
+#include "parser/write/keys_page.h"
 
 static strut_status run(const strut_arguments *arguments) {
   (void)arguments;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <sys/resource.h>
 
-#include "engine/study/merge.h"
+#include "engine/study/results/merge.h"
 #include "parser/cli/streams.h"
 
 static const strut_option options[] = {

@@ -4,7 +4,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/modes_figure.h"
 #include "engine/output/file.h"
-#include "engine/output/modes_report.h"
+#include "engine/output/report/modes_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/plot_options.h"

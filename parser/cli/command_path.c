@@ -4,7 +4,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/path_figure.h"
 #include "engine/output/file.h"
-#include "engine/output/path_report.h"
+#include "engine/output/report/path_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/path_over.h"

@@ -10,7 +10,7 @@
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
-#include "parser/diagnostics.h"
+#include "parser/yaml/diagnostics.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_PLOT, "plot", "FILE", "the figure: FILE ends with .svg, .pdf or .png"},

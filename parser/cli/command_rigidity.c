@@ -4,7 +4,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/rigidity_figure.h"
 #include "engine/output/file.h"
-#include "engine/output/rigidity_report.h"
+#include "engine/output/report/rigidity_report.h"
 #include "parser/cli/named_shape.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/plot_options.h"

@@ -9,7 +9,7 @@
 #include "engine/output/hdf5.h"
 #include "engine/output/json.h"
 #include "engine/output/results.h"
-#include "engine/run/accuracy.h"
+#include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "parser/cli/fidelity_settings.h"
 #include "parser/cli/interrupt.h"
@@ -18,7 +18,7 @@
 #include "parser/cli/run_pictures.h"
 #include "parser/cli/run_settings.h"
 #include "parser/cli/streams.h"
-#include "parser/write_scene.h"
+#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "engine/output/file.h"
-#include "engine/study/shard.h"
-#include "engine/study/study_table.h"
+#include "engine/study/results/shard.h"
+#include "engine/study/results/study_table.h"
 #include "parser/cli/interrupt.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"

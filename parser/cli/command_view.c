@@ -12,7 +12,7 @@
 #include "parser/cli/open_run.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
-#include "parser/write_scene.h"
+#include "parser/write/write_scene.h"
 
 /* A page holds a few million numbers, so that more than this need not be read: 128 MB. */
 static const size_t ROOM = (size_t)1 << 24;

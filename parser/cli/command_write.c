@@ -4,7 +4,7 @@
 #include "engine/base/memory.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/streams.h"
-#include "parser/write_scene.h"
+#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},

@@ -21,7 +21,7 @@
 #include "parser/cli/command_tradeoff.h"
 #include "parser/cli/command_view.h"
 #include "parser/cli/command_write.h"
-#include "parser/diagnostics.h"
+#include "parser/yaml/diagnostics.h"
 
 static const strut_command *const commands[] = {
     &strut_command_run,

@@ -3,7 +3,7 @@
 
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
-#include "parser/keys.h"
+#include "parser/language/keys.h"
 
 /* Reads an option whose words are those of a key: the word's index, as the reader takes it too. */
 static strut_status read_word(const strut_command *command, const strut_arguments *arguments,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/named_shape.h"
 
-#include "engine/statics/equilibria/stand.h"
+#include "engine/statics/equilibria/rest_state.h"
 
 strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
                                     strut_arena *arena, strut_named_shape *shape,

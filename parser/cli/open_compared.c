@@ -6,9 +6,9 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
-#include "parser/difference.h"
-#include "parser/read_scene.h"
-#include "parser/write_scene.h"
+#include "parser/read/difference.h"
+#include "parser/read/read_scene.h"
+#include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
 

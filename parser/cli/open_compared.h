@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_CLI_OPEN_COMPARED_H
 #define STRUT_PARSER_CLI_OPEN_COMPARED_H
 
-#include "engine/study/compare.h"
+#include "engine/study/compare/compare.h"
 #include "parser/cli/options.h"
 
 /** Zero-initialise. */

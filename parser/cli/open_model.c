@@ -7,10 +7,10 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/statics/equilibria/stand.h"
+#include "engine/statics/equilibria/rest_state.h"
 #include "parser/cli/streams.h"
-#include "parser/document_room.h"
-#include "parser/read_scene.h"
+#include "parser/yaml/memory_estimate.h"
+#include "parser/read/read_scene.h"
 
 enum { MOST_MESSAGES = 50 };
 

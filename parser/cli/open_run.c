@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "parser/cli/streams.h"
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 
 static bool is_directory(const char *path) {
   struct stat found;

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "parser/cli/options.h"
-#include "parser/units.h"
+#include "parser/expression/units.h"
 
 /**
  * Reads an option such as --least-tension "5 N" into *value [SI], which keeps what it holds where the

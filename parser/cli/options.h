@@ -13,7 +13,7 @@
 #include <stddef.h>
 
 #include "engine/base/status.h"
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 
 /** What an option sets in the arguments below; also its letter where it has one. */
 typedef enum strut_option_id {

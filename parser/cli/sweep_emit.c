@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/parallel_script.h"
-#include "engine/study/shard.h"
-#include "engine/study/slurm_script.h"
+#include "engine/study/cluster/parallel_script.h"
+#include "engine/study/results/shard.h"
+#include "engine/study/cluster/slurm_script.h"
 #include "parser/cli/command_sweep.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"

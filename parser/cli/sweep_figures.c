@@ -6,10 +6,10 @@
 
 #include "engine/output/figures/table_map.h"
 #include "engine/output/ownership.h"
-#include "engine/study/study_runs.h"
+#include "engine/study/sweep/study_runs.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
-#include "parser/diagnostics.h"
+#include "parser/yaml/diagnostics.h"
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 

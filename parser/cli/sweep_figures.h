@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_CLI_SWEEP_FIGURES_H
 #define STRUT_PARSER_CLI_SWEEP_FIGURES_H
 
-#include "engine/study/sweep.h"
+#include "engine/study/sweep/sweep.h"
 
 /** Do all figures name columns of what they draw? STRUT_BAD_SCENE with the reason. */
 strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error);

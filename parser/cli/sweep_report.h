@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_CLI_SWEEP_REPORT_H
 #define STRUT_PARSER_CLI_SWEEP_REPORT_H
 
-#include "engine/study/sweep.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/cli/progress.h"
 
 /** A bar on a terminal, a line now and then elsewhere. */

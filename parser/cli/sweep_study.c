@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "engine/base/checksum.h"
-#include "engine/study/grid.h"
+#include "engine/study/sweep/grid.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/sweep_figures.h"
-#include "parser/write_scene.h"
+#include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
 

@@ -5,9 +5,9 @@
 #ifndef STRUT_PARSER_CLI_SWEEP_STUDY_H
 #define STRUT_PARSER_CLI_SWEEP_STUDY_H
 
-#include "engine/study/sweep.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/cli/options.h"
-#include "parser/read_study.h"
+#include "parser/study/read_study.h"
 
 /** Stays where it is while in use. Zero-initialise; strut_sweep_study_close releases it. */
 typedef struct strut_sweep_study {

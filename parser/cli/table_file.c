@@ -7,9 +7,9 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
-#include "parser/diagnostics.h"
-#include "parser/number.h"
-#include "parser/read_scene.h"
+#include "parser/yaml/diagnostics.h"
+#include "parser/expression/number.h"
+#include "parser/read/read_scene.h"
 
 enum { MOST_MESSAGES = 20, MOST_COLUMNS = 10000 };
 

@@ -20,7 +20,7 @@
 
 #include "engine/integrate/integrator.h"
 #ifdef BENCH_PARSER
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 #endif
 #include "tests/bench/lanes.h"
 #include "tests/bench/rivals.h"

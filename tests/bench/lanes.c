@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "engine/integrate/batch.h"
+#include "engine/integrate/lanes/batch.h"
 #include "engine/run/simulate_batch.h"
 #include "tests/bench/scenes.h"
 

@@ -7,8 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "engine/study/slots.h"
-#include "engine/study/study_table.h"
+#include "engine/study/results/slots.h"
+#include "engine/study/results/study_table.h"
 
 enum { POINTS = 1000000, NUMBERS = 14 };
 

@@ -8,8 +8,8 @@
 #include <time.h>
 
 #include "engine/forces/energy.h"
-#include "engine/integrate/step_limit.h"
-#include "engine/run/balance.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/run/measure/balance.h"
 #include "tests/support/allocations.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

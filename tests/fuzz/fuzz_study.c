@@ -11,8 +11,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "engine/study/grid.h"
-#include "parser/read_study.h"
+#include "engine/study/sweep/grid.h"
+#include "parser/study/read_study.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

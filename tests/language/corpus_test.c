@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/bad/"
 

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "parser/document.h"
+#include "parser/yaml/document.h"
 #include "tests/language/scenes.h"
 
 /* What saying nothing means too: dropping such a key changes nothing, and must not. */

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "parser/keys.h"
-#include "parser/write_scene.h"
+#include "parser/language/keys.h"
+#include "parser/write/write_scene.h"
 #include "tests/language/scenes.h"
 
 static void same_bits(const char *what, const void *a, const void *b, size_t size) {

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "parser/write_scene.h"
+#include "parser/write/write_scene.h"
 
 typedef struct collection {
   scene_file *files;

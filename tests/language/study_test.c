@@ -13,9 +13,9 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/grid.h"
-#include "parser/keys.h"
-#include "parser/read_study.h"
+#include "engine/study/sweep/grid.h"
+#include "parser/language/keys.h"
+#include "parser/study/read_study.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/studies/"
 

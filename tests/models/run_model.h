@@ -7,7 +7,7 @@
 
 #include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 
 typedef struct model_run {
   strut_scene scene;

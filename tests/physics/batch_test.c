@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "engine/integrate/batch.h"
+#include "engine/integrate/lanes/batch.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

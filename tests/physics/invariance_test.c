@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

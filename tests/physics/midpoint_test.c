@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 

@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/accuracy.h"
+#include "engine/run/accuracy/accuracy.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "engine/statics/equilibria/stand.h"
+#include "engine/statics/equilibria/rest_state.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/integrate/batch.h"
+#include "engine/integrate/lanes/batch.h"
 #include "engine/run/simulate_batch.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

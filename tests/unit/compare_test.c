@@ -9,10 +9,10 @@
 
 #include <cmocka.h>
 
-#include "engine/study/compare_figure.h"
-#include "engine/study/compare_report.h"
-#include "parser/difference.h"
-#include "parser/read_scene.h"
+#include "engine/study/compare/compare_figure.h"
+#include "engine/study/compare/compare_report.h"
+#include "parser/read/difference.h"
+#include "parser/read/read_scene.h"
 
 static const char hopper[] =
     "strut: 1\n"

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "parser/diagnostics.h"
+#include "parser/yaml/diagnostics.h"
 
 static strut_place at(uint32_t line, uint32_t column, uint32_t length) {
   return (strut_place){line, column, length};

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "parser/document.h"
+#include "parser/yaml/document.h"
 
 char *shown_end(char *out) { return out + strlen(out); }
 

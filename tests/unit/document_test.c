@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "parser/document.h"
+#include "parser/yaml/document.h"
 #include "tests/unit/document_support.h"
 
 static void trees_have_the_shape_of_the_text(void **state) {

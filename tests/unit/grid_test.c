@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/study/grid.h"
+#include "engine/study/sweep/grid.h"
 
 static double value_of(strut_range_kind kind, double from, double to, int64_t i, int64_t count) {
   const strut_study_column column = {

@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "parser/keys.h"
-#include "parser/keys_page.h"
+#include "parser/language/keys.h"
+#include "parser/write/keys_page.h"
 
 static void rooms_divide_the_table(void **state) {
   (void)state;

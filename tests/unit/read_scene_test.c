@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "parser/read_scene.h"
-#include "parser/write_scene.h"
+#include "parser/read/read_scene.h"
+#include "parser/write/write_scene.h"
 
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"

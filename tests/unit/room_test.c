@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What memory cannot hold is refused before it is allocated: a scene by its counts, a factor by its
    nonzeros, a text by its colons and commas. */
-#include "engine/model/room.h"
+#include "engine/model/memory_estimate.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -10,9 +10,9 @@
 #include "engine/base/memory.h"
 #include "engine/model/model.h"
 #include "engine/model/sparse.h"
-#include "parser/document.h"
-#include "parser/document_room.h"
-#include "parser/read_scene.h"
+#include "parser/yaml/document.h"
+#include "parser/yaml/memory_estimate.h"
+#include "parser/read/read_scene.h"
 #include "tests/support/check.h"
 
 /* Sanitizers take memory of their own, and stop the program where it is refused. */

@@ -8,8 +8,8 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/study/merge.h"
-#include "engine/study/study_table.h"
+#include "engine/study/results/merge.h"
+#include "engine/study/results/study_table.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 

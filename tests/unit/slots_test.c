@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/slots.h"
+#include "engine/study/results/slots.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 

@@ -3,7 +3,7 @@
  * The search for equilibria on small structures with closed forms: which supports are held, what
  * becomes of the shapes, what is said where nothing can rest; and shapes to stand in by name.
  */
-#include "engine/statics/equilibria/stand.h"
+#include "engine/statics/equilibria/rest_state.h"
 
 #include <math.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/figures/modes_figure.h"
 #include "engine/output/figures/path_figure.h"
 #include "tests/models/run_model.h"

@@ -8,8 +8,8 @@
 #include <time.h>
 
 #include "engine/forces/stiffness.h"
-#include "engine/integrate/step_limit.h"
-#include "engine/integrate/tangent_bound.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/integrate/limit/tangent_bound.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

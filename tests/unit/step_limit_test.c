@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest stable step: RK4's own limits, closed forms of structures, and the truth of it. */
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 
 #include <math.h>
 

@@ -17,8 +17,8 @@
 
 #include <cmocka.h>
 
-#include "engine/study/study_table.h"
-#include "engine/study/sweep.h"
+#include "engine/study/results/study_table.h"
+#include "engine/study/sweep/sweep.h"
 
 /* The thread sanitizer's own threads do not outlive a fork, and memory and time are its own. */
 #if defined(__SANITIZE_THREAD__)

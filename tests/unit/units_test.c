@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "parser/expression.h"
-#include "parser/units.h"
+#include "parser/expression/expression.h"
+#include "parser/expression/units.h"
 
 static const strut_unit *unit(const char *name) { return strut_unit_find(name, strlen(name)); }
 

@@ -13,9 +13,9 @@
 #include "engine/base/memory.h"
 #include "engine/output/film/encoder.h"
 #include "engine/output/film/film.h"
-#include "engine/output/sketch.h"
+#include "engine/output/report/sketch.h"
 #include "engine/output/vtk.h"
-#include "parser/read_scene.h"
+#include "parser/read/read_scene.h"
 #include "tests/unit/scratch.h"
 
 enum { FRAMES = 3, MOST = 1000 };

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "engine/output/draw/axes.h"
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/equilibria_parts.h"
 

@@ -7,7 +7,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"

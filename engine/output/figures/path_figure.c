@@ -8,7 +8,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/axes.h"
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/path_figure_parts.h"
 

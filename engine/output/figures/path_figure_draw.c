@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "engine/output/draw/axes.h"
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/path_figure_parts.h"

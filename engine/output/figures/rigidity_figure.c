@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/output/draw/axes.h"
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 

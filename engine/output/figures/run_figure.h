@@ -8,7 +8,7 @@
 
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
-#include "engine/run/summary.h"
+#include "engine/run/measure/summary.h"
 
 typedef enum strut_run_view {
   STRUT_RUN_OVERVIEW,  /* the last shape, the ways to it, and curves of the last periods */

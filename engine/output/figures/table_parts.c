@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/draw/key.h"
+#include "engine/output/draw/legend.h"
 
 static const double EDGE = 5, TITLE = 15, LOWEST = 165, HIGHEST = 260;
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/equilibria_report.h"
+#include "engine/output/report/equilibria_report.h"
 #include "engine/output/page/page_parts.h"
 
 struct cJSON;

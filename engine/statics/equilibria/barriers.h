@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_BARRIERS_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_BARRIERS_H
 
-#include "engine/statics/equilibria/hunt.h"
+#include "engine/statics/equilibria/equilibrium_search.h"
 
 /** More stable equilibria than this do not enter the table. */
 enum { STRUT_MOST_BARRIERS_BETWEEN = 12 };

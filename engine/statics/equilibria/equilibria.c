@@ -8,7 +8,7 @@
 
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/barriers.h"
-#include "engine/statics/equilibria/hunt.h"
+#include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
 static strut_status no_memory(strut_hunt *h) {

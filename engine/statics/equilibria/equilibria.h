@@ -8,7 +8,7 @@
 
 #include <signal.h>
 
-#include "engine/run/summary.h"
+#include "engine/run/measure/summary.h"
 #include "engine/statics/search/critical.h"
 
 typedef enum strut_fate {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/equilibria/hunt.h"
+#include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
 /* It still stands as it stood if no node has moved further, in model sizes. */

@@ -7,7 +7,7 @@
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/statics/search/critical.h"
 
 /* Simulated steps between two looks at the energy; the pause grows while nothing is decided. */

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/integrate/step_limit.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/statics/form/parts.h"
 #include "engine/statics/minimise.h"
 

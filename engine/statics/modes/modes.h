@@ -13,7 +13,7 @@
 #define STRUT_ENGINE_STATICS_MODES_MODES_H
 
 #include "engine/model/model.h"
-#include "engine/run/summary.h"
+#include "engine/run/measure/summary.h"
 
 enum { STRUT_DENSE_MODES = 400, STRUT_SPARSE_MODES = 10, STRUT_DAMPED_MODES = 160 };
 

@@ -7,7 +7,7 @@
 
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/modes/solver.h"
-#include "engine/statics/equilibria/stand.h"
+#include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/modes/vibration.h"
 
 /** Eigenvalues ascending and vectors (n each), x'Mx = 1. */

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/discrete_gradient.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/forces.h"
+
+bool strut_averaged_create(const strut_model *model, strut_state *state, strut_averaged *step) {
+  size_t slots = (size_t)model->members.slots;
+  double **all[] = {&step->length0, &step->rest0,   &step->rest_rate, &step->sum[0],
+                    &step->sum[1],  &step->lengths, &step->tension,   &step->slope};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    if (!(*all[i] = strut_arena_allocate(&state->arena, slots, sizeof(double)))) return false;
+  memcpy(step->rest0, model->members.rest, slots * sizeof(double));
+  return true;
+}
+
+void strut_averaged_begin(const strut_model *model, strut_state *state, const double *q,
+                          double begin, double h, strut_averaged *step) {
+  const strut_member_table *t = &model->members;
+  step->begin = begin, step->h = h;
+  if (model->plan & STRUT_TERM_DRIVE) {
+    if (begin != state->drive_time) strut_drive_apply(model, state, begin);
+    memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
+    strut_drive_apply(model, state, begin + 0.5 * h);
+    memcpy(step->rest_rate, state->rest_rate, (size_t)t->slots * sizeof(double));
+    strut_drive_apply(model, state, begin + h);
+  }
+  for (int32_t j = 0; j < t->count; j++) {
+    double dx = q[t->to[j]] - q[t->from[j]], dy = q[t->to[j] + 1] - q[t->from[j] + 1];
+    step->length0[j] = sqrt(dx * dx + dy * dy);
+  }
+}
+
+/* Tension of a member on average, its elastic part, and what the first changes by with the end. */
+typedef struct average {
+  double tension, elastic, slope;
+} average;
+
+/* A member's stretches at both ends, c, k, and the rate of its stretching less jumps of the drive. */
+typedef struct stretching {
+  double s0, s1, stiffness, damping, rate, h;
+} stretching;
+
+static average of_taut(const stretching *m) {
+  double elastic = 0.5 * m->stiffness * (m->s0 + m->s1);
+  return (average){elastic + m->damping * m->rate, elastic,
+                   0.5 * m->stiffness + m->damping / m->h};
+}
+
+/* Slack at one end it pulls for a part of the step, in which it has half of that end's stretch. */
+static average of_cable(const stretching *m) {
+  if (!(m->s0 > 0.0 || m->s1 > 0.0)) return (average){0.0, 0.0, 0.0};
+  average a;
+  if (m->s0 > 0.0 && m->s1 > 0.0) {
+    a = of_taut(m);
+  } else {
+    bool tightens = m->s1 > 0.0;
+    double change = m->s1 - m->s0, end = tightens ? m->s1 : m->s0, part = end / fabs(change);
+    double elastic = 0.5 * m->stiffness * end * part;
+    double grows = tightens ? part * (2.0 - part) : part * part;
+    double part_grows = (tightens ? 1.0 - part : -part) / change;
+    a = (average){elastic + m->damping * m->rate * part, elastic,
+                  0.5 * m->stiffness * grows +
+                      m->damping * (part / m->h + m->rate * part_grows)};
+    a.slope = fmax(a.slope, 0.0);
+  }
+  return a.tension > 0.0 ? a : (average){0.0, a.elastic, 0.0};
+}
+
+/* The drive moves the spring's rest length by all of its change, the damper's by its rate. */
+static void add_powers(strut_state *state, const average *a, const stretching *m, double change,
+                       double rest_rate) {
+  double damped = a->tension - a->elastic, lost = damped * m->rate;
+  double drive = -a->elastic * change / m->h - damped * rest_rate;
+  state->power[STRUT_POWER_DRIVE] += drive;
+  state->power[STRUT_POWER_MEMBERS] += lost;
+  state->power[STRUT_POWER_MOVED] += fabs(drive) + lost;
+}
+
+static void add_members(const strut_model *model, strut_state *state, strut_averaged *step,
+                        const double *restrict q0, const double *restrict q1) {
+  const strut_member_table *t = &model->members;
+  double *restrict force = state->force;
+  for (int32_t j = 0; j < t->count; j++) {
+    uint32_t a = t->from[j], b = t->to[j];
+    double dx = q1[b] - q1[a], dy = q1[b + 1] - q1[a + 1], length = sqrt(dx * dx + dy * dy);
+    const stretching m = {.s0 = step->length0[j] - step->rest0[j],
+                          .s1 = length - state->rest[j],
+                          .stiffness = t->stiffness[j],
+                          .damping = t->damping[j],
+                          .rate = (length - step->length0[j]) / step->h - step->rest_rate[j],
+                          .h = step->h};
+    average now = t->slack[j] < 0.0 ? of_taut(&m) : of_cable(&m);
+    double x = dx + (q0[b] - q0[a]), y = dy + (q0[b + 1] - q0[a + 1]);
+    double lengths = step->length0[j] + length;
+    double density = lengths > 0.0 ? now.tension / lengths : 0.0;
+    step->sum[0][j] = x, step->sum[1][j] = y, step->lengths[j] = lengths;
+    step->tension[j] = now.tension, step->slope[j] = now.slope;
+    force[a] += density * x, force[a + 1] += density * y;
+    force[b] -= density * x, force[b + 1] -= density * y;
+    if (state->ledger)
+      add_powers(state, &now, &m, state->rest[j] - step->rest0[j], step->rest_rate[j]);
+  }
+}
+
+void strut_averaged_forces(const strut_model *model, strut_state *state, strut_averaged *step,
+                           const double *q1, const double *u) {
+  size_t bytes = (size_t)model->length * sizeof(double);
+  state->evaluations++;
+  memset(state->power, 0, sizeof state->power);
+  if (model->plan & STRUT_TERM_CONSTANT)
+    memcpy(state->force, model->constant_force, bytes);
+  else
+    memset(state->force, 0, bytes);
+  if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
+  add_members(model, state, step, state->q, q1);
+}
+
+void strut_averaged_tensions(const strut_model *model, const strut_state *state, double *tension) {
+  const strut_member_table *t = &model->members;
+  for (int32_t j = 0; j < t->count; j++) {
+    double dx = state->q[t->to[j]] - state->q[t->from[j]];
+    double dy = state->q[t->to[j] + 1] - state->q[t->from[j] + 1];
+    tension[j] = fmax(t->slack[j], t->stiffness[j] * (sqrt(dx * dx + dy * dy) - state->rest[j]));
+  }
+}

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Dormand and Prince's pair of orders 5 and 4 (J. Comp. Appl. Math. 6, 1980) with error control,
+ * from event to event. The last stage is the first of the next step.
+ *
+ * Errors are measured against the size of the structure, a hundredth of it, for positions, and
+ * against the fastest speed so far for velocities. A step within which a contact's gap or slip dips
+ * below its mode's edge and comes back is rejected as well: its ends alone would not show that.
+ */
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/events/event_kernel.h"
+
+enum { PAIR = 7, V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
+
+static const double ahead[PAIR] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
+static const double table[PAIR][PAIR - 1] = {
+    {0},
+    {1.0 / 5},
+    {3.0 / 40, 9.0 / 40},
+    {44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+    {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+/* Weights of order 5 less those of order 4. */
+static const double difference[PAIR] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
+                                        -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+
+/* sum_j weight[j] k[j] over `count` stages at i; where these are constants no weight is looked at. */
+STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, int32_t i) {
+  strut_lanes sum = weight[0] * strut_lanes_load_pairs(k[0] + i);
+#pragma GCC unroll 8
+  for (int j = 1; j < count; j++)
+    if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load_pairs(k[j] + i);
+  return sum;
+}
+
+/* Stage k: q = q0 + h sum v, speed = v0 + h sum a, over the stages before it. */
+STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
+                        double *const *a, int k, double *restrict q, double *restrict speed) {
+  for (int32_t i = 0; i < n; i += STRUT_LANES) {
+    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, table[k], k, i));
+    strut_lanes_store(speed + i, strut_lanes_load(now->v + i) + h * weighted(a, table[k], k, i));
+  }
+}
+
+STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
+                           double *const *a, int k, double *restrict q) {
+  switch (k) {
+    case 1:
+      stage(n, h, now, v, a, 1, q, v[1]);
+      break;
+    case 2:
+      stage(n, h, now, v, a, 2, q, v[2]);
+      break;
+    case 3:
+      stage(n, h, now, v, a, 3, q, v[3]);
+      break;
+    case 4:
+      stage(n, h, now, v, a, 4, q, v[4]);
+      break;
+    case 5:
+      stage(n, h, now, v, a, 5, q, v[5]);
+      break;
+    default:
+      stage(n, h, now, v, a, 6, q, v[6]);
+      break;
+  }
+}
+
+/* The largest magnitude seen so far, lane by lane; `poison` is no number once one was none. */
+typedef struct largest {
+  strut_lanes most, poison;
+} largest;
+
+STRUT_INLINE largest larger_of(largest so_far, strut_lanes x) {
+  strut_lanes size = strut_lanes_magnitude(x);
+  return (largest){strut_lanes_choose(size > so_far.most, size, so_far.most),
+                   so_far.poison + (x - x)};
+}
+
+STRUT_INLINE double largest_of(largest x) {
+  double most = x.most[0], poison = x.poison[0];
+  for (int l = 1; l < STRUT_LANES; l++) {
+    most = x.most[l] > most ? x.most[l] : most;
+    poison += x.poison[l];
+  }
+  return poison == 0.0 ? most : HUGE_VAL;
+}
+
+/* Local error over what is allowed, by the difference of the pair. */
+STRUT_INLINE double error_of(const strut_model *model, strut_located *l, double h, double *const *v,
+                             double *const *a) {
+  largest position = {0}, velocity = {0}, speed = {0};
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    position = larger_of(position, h * weighted(v, difference, PAIR, i));
+    velocity = larger_of(velocity, h * weighted(a, difference, PAIR, i));
+    speed = larger_of(speed, strut_lanes_load(l->now->v + i));
+    speed = larger_of(speed, strut_lanes_load(l->next->v + i));
+  }
+  double fast = largest_of(speed), off = largest_of(velocity);
+  if (fast > l->fastest) l->fastest = fast;
+  double error = largest_of(position) / (0.01 * model->size * l->tolerance);
+  double other = off > 0.0 ? off / (l->fastest * l->tolerance) : 0.0;
+  return other > error ? other : error;
+}
+
+/*
+ * Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if that is below
+ * 0 by more than `faint`; else 0.
+ */
+static double dip(double g0, double d0, double g1, double d1, double faint) {
+  if (!(d0 < 0.0 && d1 > 0.0)) return 0.0;
+  /* slope: d0 + 2 b x + 3 c x^2, which passes 0 upwards once */
+  double rise = g1 - g0, b = 3.0 * rise - 2.0 * d0 - d1, c = d0 + d1 - 2.0 * rise;
+  double x = -d0 / (b + sqrt(fmax(0.0, b * b - 3.0 * c * d0)));
+  return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
+}
+
+/* Forces of stages, which are of lower order, may be off by this part without a word. */
+static const double STAGE_ERROR = 0.01;
+
+/*
+ * Does contact i, as a stage has it, contradict its mode by more than a stage's own error? Where the ends
+ * of the step do not, what began within it would have ended within it unseen.
+ */
+static bool contradicts_at_stage(const strut_model *model, const strut_located *l, int32_t i) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_touch *o = &l->next->touch[i];
+  double most = e->mu_static * o->normal, part = STAGE_ERROR;
+  if (!(o->normal > 0.0)) return false;
+  switch ((strut_contact_mode)l->mode[i]) {
+    case STRUT_MODE_STICK:
+      return fabs(o->friction) > most * (1.0 + part);
+    case STRUT_MODE_BAND:
+      return e->mu_static != e->mu_kinetic && fabs(o->applied) > most * (1.0 + part);
+    case STRUT_MODE_PUSH:
+      return fabs(o->applied) < most * (1.0 - part);
+    case STRUT_MODE_CREEP:
+      return l->side[i] * o->friction < -e->mu_kinetic * o->normal * (1.0 + part);
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_SLIDE:
+    case STRUT_MODE_SLIP: /* by earliest_dip */
+    case STRUT_MODE_YIELD:
+      break;
+  }
+  return false;
+}
+
+static bool any_contradicts_at_stage(const strut_model *model, const strut_located *l) {
+  for (int32_t k = 0; k < l->closed_count; k++)
+    if (contradicts_at_stage(model, l, l->closed[k])) return true;
+  return false;
+}
+
+/* Earliest point, within the step, where a cable that pulls at both ends is slack, or the other way; 0: none. */
+static double earliest_slack_dip(const strut_model *model, strut_state *state,
+                                 const strut_located *l, double h) {
+  double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
+  strut_event_measure(model, state, l, l->next);
+  for (int32_t k = 0; k < l->cable_count; k++) {
+    double side = l->pulling[k] ? 1.0 : -1.0;
+    double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
+    if (!(from > 0.0 && to > 0.0)) continue;
+    double at = dip(from, side * h * l->now->stretch_rate[k], to,
+                    side * h * l->next->stretch_rate[k], faint);
+    if (at > 0.0 && (first == 0.0 || at < first)) first = at;
+  }
+  return first;
+}
+
+/* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
+static double earliest_dip(const strut_model *model, const strut_located *l, double h) {
+  const strut_contact_table *c = &model->contacts;
+  double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
+  double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
+  for (int32_t i = 0; i < c->count; i++) {
+    strut_touch from, to;
+    located_place(c, i, l->now->q, l->now->v, &from);
+    located_place(c, i, l->next->q, l->next->v, &to);
+    bool open = l->mode[i] == STRUT_MODE_OPEN;
+    double side = open ? 1.0 : -1.0;
+    double at = 0.0;
+    if (side * to.gap > 0.0)
+      at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
+    if (l->mode[i] == STRUT_MODE_SLIP && at == 0.0) {
+      const strut_contact_entry *e = &c->entry[i];
+      double s = l->side[i], edge = e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+      double end = s * to.slip - edge;
+      if (end > 0.0)
+        at = dip(s * from.slip - edge, s * h * l->now->touch[i].slip_rate, end,
+                 s * h * l->next->touch[i].slip_rate, faint[1]);
+    }
+    if (at > 0.0 && (first == 0.0 || at < first)) first = at;
+  }
+  return first;
+}
+
+/* Steps are not split for a stage's sake below this part of the longest. */
+static const double LEAST_SPLIT = 1e-4;
+
+/* The error that makes the next step end there. */
+static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
+
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+                       double h, bool ledger) {
+  double *v[PAIR], *a[PAIR];
+  for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
+  v[0] = l->now->v, a[0] = l->now->a;
+  v[PAIR - 1] = l->next->v, a[PAIR - 1] = l->next->a;
+  int32_t n = model->length;
+  double broken = 0.0; /* where a stage contradicts a contact's mode */
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+    l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
+  for (int k = 1; k < PAIR; k++) {
+    double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
+    stage_of(n, h, l->now, v, a, k, q);
+    if (k == PAIR - 1) break;
+    located_acceleration(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
+    if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
+    for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+      l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
+  }
+  located_finish(model, state, l, t + h, l->next, ledger);
+  l->error = error_of(model, l, h, v, a);
+  if (!(l->error <= 1.0)) return;
+  double part = model->contacts.count ? earliest_dip(model, l, h) : 0.0;
+  double slack = l->cable_count ? earliest_slack_dip(model, state, l, h) : 0.0;
+  if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
+  if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
+      strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)
+    part = broken;
+  if (part > 0.0) l->error = error_to_reach(part);
+}
+
+STRUT_CLONES
+static void adaptive_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
+                           double h) {
+  if (state->ledger)
+    take(model, state, l, t, h, true);
+  else
+    take(model, state, l, t, h, false);
+}
+
+static const strut_stepper stepper = {
+    .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true};
+
+static void *create(const strut_model *model, strut_state *state) {
+  return strut_located_create(model, state, &stepper);
+}
+
+const strut_integrator strut_integrator_adaptive = {
+    .name = "adaptive",
+    .description = "Dormand-Prince 5(4) from event to event, step by error control",
+    .order = 5,
+    .evaluations = 6,
+    .events = true,
+    .create = create,
+    .restart = strut_located_restart,
+    .advance = strut_located_advance,
+};

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How contact nodes answer to forces on them, and the multipliers that hold stuck ones. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/events/event_kernel.h"
+
+/* Entries below this part of a column's largest one change no bit that matters. */
+static const double NEGLIGIBLE = 1e-18;
+/* Sets of stuck contacts above this size are solved for by sweeps, without a matrix. */
+enum { LARGEST_FACTOR = 512 };
+/* Steps are not made shorter than by this on a contact's account: its damper is implicit anyway. */
+static const double MOST_REFINED = 64.0;
+
+/* The column of M^-1 for one coordinate of a node, into `column` (length). */
+static void solve_column(const strut_model *model, strut_state *state, uint32_t at,
+                         double *column) {
+  memset(state->force, 0, (size_t)model->length * sizeof(double));
+  state->force[at] = 1.0;
+  strut_mass_solve(model, state->force, column, state->scratch);
+}
+
+static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
+                                  double *x, double *y, strut_response *r) {
+  const strut_contact_table *c = &model->contacts;
+  uint32_t at = c->at[i];
+  solve_column(model, state, at, x);
+  solve_column(model, state, at + 1, y);
+  double least = NEGLIGIBLE * fmax(fabs(x[at]), fabs(y[at + 1]));
+  size_t count = 0;
+  for (int32_t k = 0; k < 2 * model->node_count; k += 2)
+    count += fabs(x[k]) > least || fabs(y[k + 1]) > least;
+  uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
+  double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
+  if (!place || !xy) return STRUT_NO_MEMORY;
+  for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
+    if (!(fabs(x[k]) > least || fabs(y[k + 1]) > least)) continue;
+    place[r->count] = (uint32_t)k;
+    xy[2 * r->count] = x[k];
+    xy[2 * r->count++ + 1] = y[k + 1];
+  }
+  r->at = place, r->xy = xy;
+  r->normal = x[at] * c->normal[0] * c->normal[0] + y[at + 1] * c->normal[1] * c->normal[1];
+  r->tangent = x[at] * c->tangent[0] * c->tangent[0] + y[at + 1] * c->tangent[1] * c->tangent[1];
+  return STRUT_OK;
+}
+
+/*
+ * How long a closed contact remembers a touchdown: the slower root of m s^2 + k s + c, or, where
+ * nothing damps it, three of its periods.
+ */
+static double settling_time(const strut_contact_entry *e, double inverse_mass) {
+  double rate = 0.5 * e->damping * inverse_mass, square = e->stiffness * inverse_mass;
+  if (!(square > 0.0)) return 0.0;
+  double longest = 18.0 / sqrt(square);
+  if (rate * rate > square) rate -= sqrt(rate * rate - square);
+  return rate * longest > 1.0 ? 1.0 / rate : longest;
+}
+
+static int32_t root_of(int32_t *body, int32_t i) {
+  while (body[i] != i) i = body[i] = body[body[i]];
+  return i;
+}
+
+/* Joins contacts whose responses share a node. */
+static strut_status find_bodies(const strut_model *model, strut_located *l) {
+  size_t nodes = (size_t)model->node_count;
+  int32_t *seen = strut_allocate(nodes, sizeof *seen), count = model->contacts.count;
+  if (!seen) return STRUT_NO_MEMORY;
+  for (int32_t i = 0; i < count; i++) {
+    const strut_response *r = &l->response[i];
+    l->body[i] = i;
+    for (int32_t k = 0; k < r->count; k++) {
+      int32_t *first = &seen[r->at[k] / 2]; /* one more than the index; 0: none yet */
+      if (*first)
+        l->body[root_of(l->body, *first - 1)] = root_of(l->body, i);
+      else
+        *first = i + 1;
+    }
+  }
+  for (int32_t i = 0; i < count; i++) l->body[i] = root_of(l->body, i);
+  strut_release(seen);
+  return STRUT_OK;
+}
+
+strut_status strut_located_prepare(const strut_model *model, strut_state *state, strut_located *l) {
+  const strut_contact_table *c = &model->contacts;
+  double *x = l->next->q, *y = l->next->v;
+  double fastest = 0.0;
+  memset(x, 0, (size_t)model->length * sizeof *x);
+  memset(y, 0, (size_t)model->length * sizeof *y);
+  for (int32_t i = 0; i < c->count; i++) {
+    strut_status status = make_response(model, state, i, x, y, &l->response[i]);
+    if (status) return status;
+    l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
+    fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
+    fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
+  }
+  const strut_experiment *e = &model->scene->experiment;
+  double wanted = ceil(fastest * e->step / e->refine_rate);
+  l->refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
+  l->refine_time = e->refine_time;
+  l->refine_memory = e->refine_memory;
+  l->passes = c->normal[0] != 0.0 && !model->mass->shared ? 8 : 1;
+  l->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
+  size_t room = (size_t)l->stuck_room;
+  l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
+  l->stuck_work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
+  l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
+  l->slider = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->slider);
+  if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->slider) return STRUT_NO_MEMORY;
+  return find_bodies(model, l);
+}
+
+void strut_located_respond(const strut_model *model, const strut_located *l, int32_t i,
+                           double normal, double tangential, double *a) {
+  const strut_contact_table *c = &model->contacts;
+  const strut_response *r = &l->response[i];
+  double fx = tangential * c->tangent[0] + normal * c->normal[0];
+  double fy = tangential * c->tangent[1] + normal * c->normal[1];
+  for (int32_t k = 0; k < r->count; k++) {
+    a[r->at[k]] += r->xy[2 * k] * fx;
+    a[r->at[k] + 1] += r->xy[2 * k + 1] * fy;
+  }
+}
+
+/* In place, lower triangle; false if it is not positive definite. */
+static bool factor(int32_t n, double *a) {
+  for (int32_t j = 0; j < n; j++) {
+    for (int32_t k = 0; k < j; k++)
+      for (int32_t i = j; i < n; i++) a[i * n + j] -= a[i * n + k] * a[j * n + k];
+    if (!(a[j * n + j] > 0.0)) return false;
+    double root = sqrt(a[j * n + j]);
+    for (int32_t i = j; i < n; i++) a[i * n + j] /= root;
+  }
+  return true;
+}
+
+/* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
+static void factor_stuck(const strut_model *model, strut_located *l) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t n = l->stuck_count;
+  const double *t = c->tangent;
+  for (int32_t j = 0; j < n; j++) {
+    const strut_response *r = &l->response[l->stuck[j]];
+    for (int32_t k = 0; k < r->count; k++) {
+      l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
+      l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
+    }
+    for (int32_t i = j; i < n; i++) {
+      uint32_t at = c->at[l->stuck[i]];
+      l->stuck_factor[i * n + j] = l->scatter[at] * t[0] + l->scatter[at + 1] * t[1];
+    }
+    for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
+  }
+  if (!factor(n, l->stuck_factor)) l->stuck_count = -n; /* singular: by sweeps */
+}
+
+static bool is_slider(const strut_located *l, const strut_contact_entry *e, int32_t i) {
+  if (e->dissipation > 0.0) return false;
+  return l->mode[i] == STRUT_MODE_SLIP ||
+         (l->mode[i] == STRUT_MODE_SLIDE && e->law != STRUT_FRICTION_SMOOTH);
+}
+
+static void list_sliders(const strut_model *model, strut_located *l) {
+  l->plain = l->apart;
+  for (int32_t k = 0; k < l->closed_count && l->plain; k++) {
+    int32_t i = l->closed[k];
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    const strut_response *r = &l->response[i];
+    bool slips = l->mode[i] == STRUT_MODE_SLIP;
+    l->plain = is_slider(l, e, i);
+    l->slider[k] = (strut_slider){.at = model->contacts.at[i],
+                                  .index = i,
+                                  .nodes = r->count,
+                                  .stiffness = e->stiffness,
+                                  .damping = e->damping,
+                                  .answer = r->normal,
+                                  .friction = slips ? -l->side[i] * e->mu_kinetic : 0.0,
+                                  .side = slips ? l->side[i] : 0.0,
+                                  .edge = slips ? located_edge(e) : 0.0,
+                                  .place = r->at,
+                                  .xy = r->xy};
+  }
+}
+
+void strut_located_relist(const strut_model *model, strut_located *l) {
+  l->closed_count = l->stuck_count = 0;
+  l->apart = model->contacts.normal[0] == 0.0;
+  for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
+    if (l->mode[i] == STRUT_MODE_OPEN) continue;
+    if (l->body_seen[l->body[i]]) l->apart = false;
+    l->body_seen[l->body[i]] = true;
+    l->closed[l->closed_count++] = i;
+    if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
+      if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
+  }
+  list_sliders(model, l);
+  if (l->stuck_count > l->stuck_room)
+    l->stuck_count = -l->stuck_count;
+  else if (l->stuck_count > 1)
+    factor_stuck(model, l);
+}
+
+static double along(const strut_contact_table *c, int32_t i, const double *x) {
+  return x[c->at[i]] * c->tangent[0] + x[c->at[i] + 1] * c->tangent[1];
+}
+
+/* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
+static void still(const strut_contact_table *c, int32_t i, double *a) {
+  double rest = along(c, i, a);
+  a[c->at[i]] -= rest * c->tangent[0];
+  a[c->at[i] + 1] -= rest * c->tangent[1];
+}
+
+/* One after the other until none needs more: for sets too large for a matrix. */
+static void hold_by_sweeps(const strut_model *model, const strut_located *l, double *a,
+                           strut_step_end *end) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t n = -l->stuck_count;
+  for (int sweep = 0; sweep < 200; sweep++) {
+    double largest = 0.0, changed = 0.0;
+    for (int32_t k = 0; k < n; k++) {
+      int32_t i = l->stuck[k];
+      double more = -along(c, i, a) / l->response[i].tangent;
+      strut_located_respond(model, l, i, 0.0, more, a);
+      end->touch[i].friction += more;
+      changed = fmax(changed, fabs(more));
+      largest = fmax(largest, fabs(end->touch[i].friction));
+    }
+    if (changed <= 1e-15 * largest) break;
+  }
+}
+
+void strut_located_hold(const strut_model *model, strut_located *l, double *a,
+                        strut_step_end *end) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t n = l->stuck_count;
+  double *x = l->stuck_work;
+  if (n < 0) {
+    hold_by_sweeps(model, l, a, end);
+    return;
+  }
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a);
+  if (n == 1) {
+    x[0] /= l->response[l->stuck[0]].tangent;
+  } else {
+    const double *f = l->stuck_factor;
+    for (int32_t i = 0; i < n; i++) {
+      for (int32_t j = 0; j < i; j++) x[i] -= f[i * n + j] * x[j];
+      x[i] /= f[i * n + i];
+    }
+    for (int32_t i = n - 1; i >= 0; i--) {
+      for (int32_t j = i + 1; j < n; j++) x[i] -= f[j * n + i] * x[j];
+      x[i] /= f[i * n + i];
+    }
+  }
+  for (int32_t k = 0; k < n; k++) {
+    int32_t i = l->stuck[k];
+    strut_located_respond(model, l, i, 0.0, x[k], a);
+    end->touch[i].friction += x[k];
+    still(c, i, a);
+  }
+  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a);
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which mode follows: at the start, at an event, and when several contacts hold at once. */
+#include <math.h>
+
+#include "engine/integrate/events/event_kernel.h"
+
+/* At rest on the ground is what is slower than this part of size times the contact's frequency. */
+static const double TIE = 1e-12;
+
+STRUT_CLONES
+static void located_derive(const strut_model *model, strut_state *state, strut_located *l,
+                           double t) {
+  strut_step_end *now = l->now;
+  if (!l->fresh) {
+    located_finish(model, state, l, t, now, state->ledger);
+  } else {
+    for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
+    located_close(model, state, l, now->q, now->v, now->a, now, state->ledger);
+    located_rates(model, l, now->a, now->touch);
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];
+  }
+  l->fresh = true;
+}
+
+void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
+                          double t) {
+  located_derive(model, state, l, t);
+  strut_event_measure(model, state, l, l->now);
+}
+
+/* Sets the speed along the ground exactly. */
+static void snap(const strut_model *model, strut_located *l, int32_t i, double slip) {
+  const strut_contact_table *c = &model->contacts;
+  strut_touch place;
+  located_place(c, i, l->now->q, l->now->v, &place);
+  double more = slip - place.slip;
+  double *v = l->now->v + c->at[i];
+  if (c->normal[0] == 0.0) {
+    v[0] = slip + c->belt_speed;
+    return;
+  }
+  v[0] += more * c->tangent[0];
+  v[1] += more * c->tangent[1];
+}
+
+static void cable_mode(strut_state *state, strut_located *l, int32_t k, bool pulls) {
+  int32_t j = l->cable[k];
+  l->pulling[k] = pulls;
+  l->fresh = false;
+  state->taut_stretch[j] = pulls ? -HUGE_VAL : 0.0;
+  state->taut_tension[j] = pulls ? -HUGE_VAL : HUGE_VAL;
+}
+
+/* Mode of a contact that touches, from its speeds. */
+static void close_contact(const strut_model *model, strut_located *l, int32_t i) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  strut_touch o;
+  located_place(&model->contacts, i, l->now->q, l->now->v, &o);
+  l->damper[i] = 0;
+  if (l->stepper->exact && e->damping > 0.0) l->damper[i] = o.into < 0.0 ? 1 : -1;
+  l->side[i] = o.slip < 0.0 ? -1 : 1;
+  if (!(l->response[i].tangent > 0.0) || e->law == STRUT_FRICTION_NONE ||
+      e->law == STRUT_FRICTION_SMOOTH) {
+    l->mode[i] = STRUT_MODE_SLIDE;
+  } else if (e->law == STRUT_FRICTION_KARNOPP) {
+    bool inside = fabs(o.slip) < e->stick_velocity * (1.0 + TIED); /* or at its edge, by rounding */
+    l->mode[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
+  } else if (fabs(o.slip) > TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) {
+    l->mode[i] = STRUT_MODE_SLIP;
+  } else {
+    l->mode[i] = STRUT_MODE_STICK;
+    snap(model, l, i, 0.0);
+  }
+}
+
+/* The stuck contact that is held by more than friction can give, or -1. */
+static int32_t overloaded(const strut_model *model, const strut_located *l) {
+  double worst = 1e-12;
+  int32_t found = -1;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    if (l->mode[i] != STRUT_MODE_STICK) continue;
+    const strut_touch *o = &l->now->touch[i];
+    double most = model->contacts.entry[i].mu_static * o->normal;
+    double over = fabs(o->friction) - most;
+    /* Without any normal force yet nothing can be said: the end of the step will tell. */
+    if (!(over > worst * fabs(o->friction)) || !(o->normal > 0.0)) continue;
+    worst = over / fabs(o->friction);
+    found = i;
+  }
+  return found;
+}
+
+/* Derives, letting go of one overloaded stuck contact after the other. */
+static void derive_consistently(const strut_model *model, strut_state *state, strut_located *l,
+                                double t) {
+  for (int32_t k = 0; k <= model->contacts.count; k++) {
+    strut_located_relist(model, l);
+    strut_located_derive(model, state, l, t);
+    int32_t i = overloaded(model, l);
+    if (i < 0) return;
+    l->mode[i] = STRUT_MODE_SLIP;
+    l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
+  }
+}
+
+/* Which cables pull, as positions, velocities and drives are. */
+static void start_cables(const strut_model *model, strut_state *state, strut_located *l, double t) {
+  bool changed = false;
+  for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
+  derive_consistently(model, state, l, t);
+  for (int32_t k = 0; k < l->cable_count; k++)
+    if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
+      cable_mode(state, l, k, false);
+      changed = true;
+    }
+  if (changed) derive_consistently(model, state, l, t);
+}
+
+void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_located *l,
+                            double t) {
+  l->fresh = false;
+  start_cables(model, state, l, t);
+}
+
+void strut_modes_start(const strut_model *model, strut_state *state, strut_located *l, double t) {
+  l->fresh = false;
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    strut_touch o;
+    located_place(&model->contacts, i, l->now->q, l->now->v, &o);
+    l->mode[i] = STRUT_MODE_OPEN;
+    if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
+  }
+  start_cables(model, state, l, t);
+}
+
+/*
+ * At the edge of Karnopp's band, u = s delta: outside friction is -s mu N, inside it balances. The
+ * node goes where the acceleration on that side leads; where both lead to the edge it creeps along.
+ */
+static void decide_at_edge(const strut_model *model, strut_state *state, strut_located *l,
+                           int32_t i, bool from_inside, double t) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  double s = l->side[i];
+  snap(model, l, i, s * e->stick_velocity);
+  l->mode[i] = STRUT_MODE_SLIP;
+  strut_located_relist(model, l);
+  strut_located_derive(model, state, l, t);
+  const strut_touch *o = &l->now->touch[i];
+  double outside = s * o->slip_rate;
+  double most = e->mu_static * o->normal;
+  bool pushed = fabs(o->applied) >= most;
+  l->mode[i] = pushed && e->mu_static != e->mu_kinetic ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
+  strut_located_relist(model, l);
+  strut_located_derive(model, state, l, t);
+  double inside = s * l->now->touch[i].slip_rate;
+  if (inside < 0.0 && (outside < 0.0 || !from_inside)) return;
+  l->side[i] = (int8_t)s;
+  l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
+}
+
+static void begin_refinement(const strut_located *l, int32_t i, double t, double *until) {
+  double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
+  *until = fmax(*until, t + time);
+}
+
+void strut_event_apply(const strut_model *model, strut_state *state, strut_located *l,
+                       strut_event event, double t) {
+  int32_t i = event.index;
+  switch (event.kind) {
+    case STRUT_EVENT_TOUCH:
+      close_contact(model, l, i);
+      begin_refinement(l, i, t, &state->refined_until);
+      break;
+    case STRUT_EVENT_OPEN:
+      l->mode[i] = STRUT_MODE_OPEN;
+      break;
+    case STRUT_EVENT_SLOW:
+      if (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP) {
+        decide_at_edge(model, state, l, i, false, t);
+      } else {
+        snap(model, l, i, 0.0);
+        l->mode[i] = STRUT_MODE_STICK;
+      }
+      break;
+    case STRUT_EVENT_LEAVE:
+      l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
+      decide_at_edge(model, state, l, i, true, t);
+      break;
+    case STRUT_EVENT_RELEASE:
+      l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
+      l->mode[i] = STRUT_MODE_SLIP;
+      break;
+    case STRUT_EVENT_CREEP_OUT:
+      l->mode[i] = STRUT_MODE_SLIP;
+      break;
+    case STRUT_EVENT_CREEP_IN:
+      l->mode[i] = STRUT_MODE_BAND;
+      break;
+    case STRUT_EVENT_PUSH:
+      /* back and forth without a step between: the threshold attracts from both sides */
+      if (l->pushed == i && l->pushed_at == t)
+        l->mode[i] = STRUT_MODE_YIELD;
+      else
+        l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+      l->pushed = i, l->pushed_at = t;
+      l->side[i] = l->now->touch[i].applied < 0.0 ? -1 : 1;
+      break;
+    case STRUT_EVENT_YIELDED: {
+      const strut_touch *o = &l->now->touch[i];
+      bool over = fabs(o->applied) > model->contacts.entry[i].mu_static * o->normal;
+      l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+      l->side[i] = o->applied < 0.0 ? -1 : 1;
+      break;
+    }
+    case STRUT_EVENT_DAMPER:
+      l->damper[i] = (int8_t)-l->damper[i];
+      break;
+    case STRUT_EVENT_CABLE:
+      cable_mode(state, l, i, !l->pulling[i]);
+      break;
+    default:
+      break;
+  }
+  derive_consistently(model, state, l, t);
+}
+
+bool strut_modes_after_step(const strut_model *model, strut_located *l) {
+  bool changed = false;
+  for (int32_t k = 0; k < l->closed_count && !l->stepper->exact; k++) {
+    int32_t i = l->closed[k];
+    if (!(l->now->touch[i].gap > 0.0)) continue;
+    l->mode[i] = STRUT_MODE_OPEN;
+    changed = true;
+  }
+  if (changed) strut_located_relist(model, l);
+  return changed;
+}

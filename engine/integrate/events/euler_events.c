@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Semi-implicit Euler between events: the cheapest step there is, of first order. */
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/events/event_kernel.h"
+
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+                       double h, bool ledger) {
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    strut_lanes v = strut_lanes_load(l->now->v + i) + h * strut_lanes_load_pairs(l->now->a + i);
+    strut_lanes_store(l->next->v + i, v);
+    strut_lanes_store(l->next->q + i, strut_lanes_load(l->now->q + i) + h * v);
+  }
+  located_finish(model, state, l, t + h, l->next, ledger);
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+    l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
+}
+
+STRUT_CLONES
+static void euler_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+                               double t, double h) {
+  if (state->ledger)
+    take(model, state, l, t, h, true);
+  else
+    take(model, state, l, t, h, false);
+}
+
+static const strut_stepper stepper = {.trial = euler_events_trial};
+
+static void *create(const strut_model *model, strut_state *state) {
+  strut_located *l = strut_located_create(model, state, &stepper);
+  if (l && !(model->scene->experiment.refine > 0.0)) l->refine = 1.0;
+  return l;
+}
+
+const strut_integrator strut_integrator_euler_events = {
+    .name = "euler-events",
+    .description = "semi-implicit Euler from event to event, fixed step",
+    .order = 1,
+    .evaluations = 1,
+    .region = STRUT_REGION_EULER,
+    .events = true,
+    .create = create,
+    .restart = strut_located_restart,
+    .advance = strut_located_advance,
+};

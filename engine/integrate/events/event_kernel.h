@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: forces and accelerations with the contacts' modes frozen. See located.h.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
+#define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
+
+#include <float.h>
+#include <math.h>
+
+#include "engine/forces/forces_kernel.h"
+#include "engine/integrate/events/event_stepping.h"
+
+/* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
+STRUT_INLINE double located_normal(const strut_contact_entry *e, int8_t damper, double gap,
+                                   double into, bool damped) {
+  double normal = -e->stiffness * gap;
+  if (e->dissipation > 0.0 && damped) {
+    normal -= normal * e->dissipation * into;
+    return normal > 0.0 || gap >= 0.0 ? normal : 0.0;
+  }
+  bool acts = damper ? damper > 0 : into < 0.0;
+  return damped && acts ? normal - e->damping * into : normal;
+}
+
+/* Half the layer about the threshold mu_0 N in which a contact yields, relative. */
+static const double STRUT_YIELD_LAYER = 1e-3;
+
+/* Friction between holding and pushing, by how far the applied force is through the layer. */
+STRUT_INLINE double located_yield(const strut_contact_entry *e, double normal, double applied) {
+  double threshold = e->mu_static * normal, half = STRUT_YIELD_LAYER * threshold;
+  double size = applied < 0.0 ? -applied : applied;
+  double pushed = half > 0.0 ? 0.5 + 0.5 * (size - threshold) / half : 1.0;
+  pushed = pushed < 0.0 ? 0.0 : pushed > 1.0 ? 1.0 : pushed;
+  double friction = (1.0 - pushed) * size + pushed * e->mu_kinetic * normal;
+  return applied < 0.0 ? friction : -friction;
+}
+
+/* Friction by the mode; a multiplier, which comes later, is 0 here. */
+STRUT_INLINE double located_friction(const strut_contact_entry *e, uint8_t mode, int8_t side,
+                                     double normal, double slip, double applied) {
+  switch (mode) {
+    case STRUT_MODE_SLIP:
+    case STRUT_MODE_PUSH: return -side * e->mu_kinetic * normal;
+    case STRUT_MODE_SLIDE:
+      return e->law == STRUT_FRICTION_SMOOTH
+                 ? strut_friction_smooth(normal, slip, e->mu_kinetic, e->width)
+                 : 0.0;
+    case STRUT_MODE_BAND: {
+      double most = e->mu_static * normal;
+      return applied > most ? -most : applied < -most ? most : -applied;
+    }
+    case STRUT_MODE_YIELD: return located_yield(e, normal, applied);
+    default: return 0.0;
+  }
+}
+
+/* Kinematics of contact i at q, v. */
+STRUT_INLINE void located_place(const strut_contact_table *c, int32_t i, const double *restrict q,
+                                const double *restrict v, strut_touch *touch) {
+  uint32_t at = c->at[i];
+  double up = q[at + 1] - c->height;
+  touch->gap = q[at] * c->normal[0] + up * c->normal[1];
+  touch->into = v[at] * c->normal[0] + v[at + 1] * c->normal[1];
+  touch->slip = v[at] * c->tangent[0] + v[at + 1] * c->tangent[1] - c->belt_speed;
+}
+
+/* Adds the forces of the closed contacts to `force` and notes them. */
+STRUT_INLINE void located_ground(const strut_model *model, const strut_located *l,
+                                 const double *restrict q, const double *restrict v,
+                                 double *restrict force, bool damped, strut_touch *restrict touch) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    uint32_t at = c->at[i];
+    strut_touch *o = &touch[i];
+    located_place(c, i, q, v, o);
+    o->applied = force[at] * c->tangent[0] + force[at + 1] * c->tangent[1];
+    o->normal = located_normal(&c->entry[i], l->damper[i], o->gap, o->into, damped);
+    o->friction = located_friction(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip,
+                                   o->applied);
+    force[at] += o->friction * c->tangent[0] + o->normal * c->normal[0];
+    force[at + 1] += o->friction * c->tangent[1] + o->normal * c->normal[1];
+  }
+}
+
+/* Rates of speed of the closed contacts from the acceleration. */
+STRUT_INLINE void located_rates(const strut_model *model, const strut_located *l,
+                                const double *restrict a, strut_touch *restrict touch) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    uint32_t at = c->at[i];
+    touch[i].into_rate = a[at] * c->normal[0] + a[at + 1] * c->normal[1];
+    touch[i].slip_rate = a[at] * c->tangent[0] + a[at + 1] * c->tangent[1];
+  }
+}
+
+/* The ground's powers, from forces and speeds noted in `touch`; the others are in state->power. */
+STRUT_INLINE void located_powers(const strut_model *model, strut_state *state,
+                                 const strut_located *l, const strut_touch *restrict touch) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    const strut_touch *o = &touch[l->closed[k]];
+    double damper = o->normal + c->entry[l->closed[k]].stiffness * o->gap;
+    double damped = -damper * o->into, rubbed = -o->friction * o->slip;
+    double belt = o->friction * c->belt_speed;
+    state->power[STRUT_POWER_CONTACT] += damped;
+    state->power[STRUT_POWER_FRICTION] += rubbed;
+    state->power[STRUT_POWER_BELT] += belt;
+    state->power[STRUT_POWER_MOVED] += fabs(damped) + fabs(rubbed) + fabs(belt);
+  }
+}
+
+/* Notes the forces of the structure at an end of a step. */
+STRUT_INLINE void located_keep(const strut_model *model, const strut_state *state,
+                               strut_step_end *end, bool ledger) {
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES)
+    strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->force + i));
+  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
+    strut_lanes_store(end->structure_power + p, strut_lanes_load(state->power + p));
+}
+
+/* From the forces of the structure in state->force to the acceleration. */
+STRUT_INLINE void located_close(const strut_model *model, strut_state *state, strut_located *l,
+                                const double *restrict q, const double *restrict v,
+                                double *restrict a, strut_step_end *end, bool ledger) {
+  if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
+  mass_kernel(model, state->force, a, state->scratch);
+  if (l->stuck_count) strut_located_hold(model, l, a, end);
+  if (ledger && l->closed_count) located_powers(model, state, l, end->touch);
+}
+
+/* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
+STRUT_INLINE void located_acceleration(const strut_model *model, strut_state *state,
+                                       strut_located *l, double t, const double *restrict q,
+                                       const double *restrict v, double *restrict a,
+                                       strut_step_end *end, bool ledger) {
+  forces_of_structure(model, state, t, q, v, ledger);
+  located_close(model, state, l, q, v, a, end, ledger);
+}
+
+/* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
+static const double TIED = 1e-8;
+
+/*
+ * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
+ * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
+ */
+STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_located *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    strut_touch *o = &l->next->touch[i];
+    double faint = TIED * o->normal, edge = e->stick_velocity;
+    if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
+      o->friction = -o->applied + l->side[i] * faint; /* creep ends */
+    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge)
+      o->slip = (o->slip < 0.0 ? -edge : edge) * (1.0 - TIED); /* in it, not leaving */
+  }
+}
+
+/* The same at the end of a step, with all that belongs to that end. */
+STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, strut_located *l,
+                                 double t, strut_step_end *end, bool ledger) {
+  forces_of_structure(model, state, t, end->q, end->v, ledger);
+  located_keep(model, state, end, ledger);
+  located_close(model, state, l, end->q, end->v, end->a, end, ledger);
+  located_rates(model, l, end->a, end->touch);
+  if (end == l->next && !l->plain) located_settle_ties(model, l);
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
+}
+
+/* Edge of the band, or 0 where sticking is exact. */
+STRUT_INLINE double located_edge(const strut_contact_entry *e) {
+  return e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+}
+
+STRUT_INLINE double located_band_force(const strut_contact_entry *e, const strut_touch *o) {
+  double most = e->mu_static * o->normal;
+  if (fabs(o->applied) < most) return -o->applied;
+  return -e->mu_kinetic * o->normal * strut_sign(o->applied);
+}
+
+/* How far the applied force is from either end of where a contact goes on yielding [N]. */
+STRUT_INLINE double located_yield_room(const strut_contact_entry *e, const strut_touch *o) {
+  double threshold = e->mu_static * o->normal;
+  return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
+}
+
+/* What a closed contact's state at the end of a step contradicts of its mode. */
+STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e, const strut_touch *o,
+                                      uint8_t mode, double s) {
+  switch (mode) {
+    case STRUT_MODE_SLIP:
+      return s * o->slip < located_edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
+    case STRUT_MODE_STICK:
+      /* also where the gap is open by then: what holds a node lets go before that */
+      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_RELEASE : STRUT_EVENT_NONE;
+    case STRUT_MODE_CREEP:
+      if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
+      return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
+    case STRUT_MODE_BAND:
+    case STRUT_MODE_PUSH:
+      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVE;
+      if (e->mu_static == e->mu_kinetic) return STRUT_EVENT_NONE;
+      return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
+                 ? STRUT_EVENT_NONE
+                 : STRUT_EVENT_PUSH;
+    case STRUT_MODE_YIELD:
+      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVE;
+      return located_yield_room(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
+    default:
+      return STRUT_EVENT_NONE;
+  }
+}
+
+/* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
+STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, strut_located *l,
+                                 bool ledger) {
+  strut_step_end *now = l->next, *next = l->now;
+  double *restrict q = now->q, *restrict v = now->v;
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    strut_lanes_store(next->q + i, strut_lanes_load(q + i));
+    strut_lanes_store(next->v + i, strut_lanes_load(v + i));
+  }
+  now->q = next->q, now->v = next->v;
+  next->q = q, next->v = v;
+  l->now = now, l->next = next;
+  l->fresh = true;
+  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
+    strut_lanes_store(state->work + p,
+                      strut_lanes_load(state->work + p) + strut_lanes_load(l->gained + p));
+}
+
+/* A drive's jump this close to a point of the grid, in grid steps, is there. */
+static const double STRUT_AT_BREAK = 1e-9;
+
+/*
+ * Signals are evaluated a moment before the time: a step that ends where a drive jumps so sees the
+ * value from before the jump, and the one that begins there that from after it.
+ */
+STRUT_INLINE double located_moment(double t, double dt) {
+  double least = 4.0 * DBL_EPSILON * t, part = 1e-12 * dt;
+  return least > part ? least : part;
+}
+
+/* Size of the next step within what is left to the grid point. */
+STRUT_INLINE double located_step_size(const strut_state *state, const strut_located *l, double dt) {
+  double rest = dt - l->done, h = rest;
+  if (l->stepper->adaptive) {
+    h = l->h > 0.0 ? l->h : dt * 1e-3;
+    if (h < rest && h > 0.5 * rest) h = 0.5 * rest;
+  } else if (l->refine > 1.0 && (double)state->step * dt + l->done < state->refined_until) {
+    h = dt / l->refine;
+  }
+  if (l->next_break < HUGE_VAL) {
+    double left = l->next_break - ((double)state->step * dt + l->done + state->time_offset);
+    if (left < h) h = left;
+  }
+  return h > rest * (1.0 - 1e-9) ? rest : h;
+}
+
+/* The time at which a step from t is evaluated; see located_moment. */
+STRUT_INLINE double located_time(const strut_located *l, double t, double dt) {
+  return l->next_break < HUGE_VAL ? t - located_moment(t, dt) : t;
+}
+
+/* After a step of `gone`: on to the next grid point when this one is reached. */
+STRUT_INLINE void located_go_on(strut_state *state, strut_located *l, double gone, double dt) {
+  double rest = dt - l->done;
+  l->done = gone == rest ? dt : l->done + gone;
+  if (dt - l->done > 1e-12 * dt) return;
+  l->done = 0.0;
+  l->switches = 0;
+  state->step++;
+}
+
+#endif

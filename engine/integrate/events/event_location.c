@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finding what ends a mode within a step. See located.h. */
+#include <math.h>
+
+#include "engine/integrate/events/event_kernel.h"
+
+/* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
+static const double FAINT = 1e-12;
+
+static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
+  return q[c->at[i]] * c->normal[0] + (q[c->at[i] + 1] - c->height) * c->normal[1];
+}
+
+/*
+ * The edge of the band by which contact i leaves: that of the step's end, which may be beyond the one
+ * by which it came in, where the step begins. Steppers that are not exact take each end's own: a band
+ * narrower than a step they pass in a step of its own, which smooths their period map.
+ */
+static double way_out(const strut_located *l, const strut_touch *o, int32_t i) {
+  double slip = l->stepper->exact ? l->next->touch[i].slip : o->slip;
+  return slip < 0.0 ? -1.0 : 1.0;
+}
+
+double strut_event_value(const strut_model *model, const strut_located *l,
+                         const strut_step_end *end, strut_event_kind kind, int32_t i) {
+  if (kind == STRUT_EVENT_CABLE) {
+    if (l->pulling[i]) return end->tension[i];
+    /* It pulls where stretch and tension are positive; the lesser decides, both in newtons. */
+    double k = model->members.stiffness[l->cable[i]], d = model->members.damping[l->cable[i]];
+    double elastic = (k > 0.0 ? k : d / model->scene->experiment.step) * end->stretch[i];
+    return elastic < end->tension[i] ? -elastic : -end->tension[i];
+  }
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_touch *o = &end->touch[i];
+  double s = l->side[i];
+  switch (kind) {
+    case STRUT_EVENT_TOUCH:
+      return gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_OPEN:
+      return -gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_SLOW:
+      return s * o->slip - located_edge(e);
+    case STRUT_EVENT_LEAVE:
+      return located_edge(e) - way_out(l, o, i) * o->slip;
+    case STRUT_EVENT_RELEASE:
+      return e->mu_static * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT:
+      return s * o->friction + e->mu_kinetic * o->normal;
+    case STRUT_EVENT_CREEP_IN:
+      return s * (located_band_force(e, o) - o->friction);
+    case STRUT_EVENT_PUSH: {
+      double room = e->mu_static * o->normal - fabs(o->applied);
+      return l->mode[i] == STRUT_MODE_BAND ? room : -room;
+    }
+    case STRUT_EVENT_YIELDED:
+      return located_yield_room(e, o);
+    case STRUT_EVENT_DAMPER:
+      return l->damper[i] > 0 ? -o->into : o->into;
+    default:
+      return 1.0;
+  }
+}
+
+bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
+                      int32_t i, double *rate) {
+  if (kind == STRUT_EVENT_CABLE) return false;
+  const strut_touch *o = &end->touch[i];
+  switch (kind) {
+    case STRUT_EVENT_OPEN:
+      *rate = -o->into;
+      return true;
+    case STRUT_EVENT_SLOW:
+      *rate = l->side[i] * o->slip_rate;
+      return true;
+    case STRUT_EVENT_LEAVE:
+      *rate = -way_out(l, o, i) * o->slip_rate;
+      return true;
+    case STRUT_EVENT_DAMPER:
+      *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate;
+      return true;
+    default:
+      return false;
+  }
+}
+
+/* First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
+static double cubic_root(double g0, double d0, double g1, double d1) {
+  double low = 0.0, high = 1.0, x = g0 / (g0 - g1);
+  for (int k = 0; k < 60 && high - low > 1e-15; k++) {
+    double r = 1.0 - x;
+    double value = g0 * (1.0 + 2.0 * x) * r * r + d0 * x * r * r + g1 * x * x * (3.0 - 2.0 * x) -
+                   d1 * x * x * r;
+    double slope = 6.0 * x * r * (g1 - g0) + d0 * r * (r - 2.0 * x) + d1 * x * (x - 2.0 * r);
+    *(value > 0.0 ? &low : &high) = x;
+    double next = x - value / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (fabs(next - x) <= 1e-16) break;
+    x = next;
+  }
+  return x;
+}
+
+/*
+ * How far contact i is from leaving its band, where that is `room` by its speed. A band entered just now
+ * has its edge, but for rounding, where the step begins; so has one at whose edge the forces balance: it
+ * is left when they cease to, not before.
+ */
+static double room_to_leave(const strut_model *model, const strut_located *l, int32_t i,
+                            double room) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  if (!l->stepper->exact && e->mu_static == e->mu_kinetic) return room;
+  double faint = 1e-9 * located_edge(e), rate = 0.0;
+  double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
+  strut_event_rate(l, l->now, STRUT_EVENT_LEAVE, i, &rate);
+  return room < faint && rate > -balanced ? faint : room;
+}
+
+/* Where between now and next the event's value passes 0. */
+static double fraction_of(const strut_model *model, const strut_located *l, strut_event_kind kind,
+                          int32_t i, double h) {
+  double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
+  double g1 = strut_event_value(model, l, l->next, kind, i);
+  if (kind == STRUT_EVENT_LEAVE) g0 = room_to_leave(model, l, i, g0);
+  if (!(g0 > 0.0)) return 0.0;
+  if (kind == STRUT_EVENT_TOUCH) {
+    const strut_contact_table *c = &model->contacts;
+    strut_touch a, b;
+    located_place(c, i, l->now->q, l->now->v, &a);
+    located_place(c, i, l->next->q, l->next->v, &b);
+    return cubic_root(g0, h * a.into, g1, h * b.into);
+  }
+  if (kind != STRUT_EVENT_CABLE && strut_event_rate(l, l->now, kind, i, &d0) &&
+      strut_event_rate(l, l->next, kind, i, &d1))
+    return cubic_root(g0, h * d0, g1, h * d1);
+  return g0 / (g0 - g1);
+}
+
+static void keep_first(const strut_model *model, const strut_located *l, strut_event_kind kind,
+                       int32_t i, double h, strut_event *first) {
+  double fraction = fraction_of(model, l, kind, i, h);
+  if (first->kind && fraction >= first->fraction) return;
+  *first = (strut_event){kind, i, fraction};
+}
+
+/* Tensions, not clamped, and stretches of the cables at an end; the rest lengths are its own. */
+static void measure_cables(const strut_model *model, const strut_state *state,
+                           const strut_located *l, const strut_step_end *end) {
+  const strut_member_table *t = &model->members;
+  for (int32_t k = 0; k < l->cable_count; k++) {
+    int32_t j = l->cable[k];
+    const double *a = end->q + t->from[j], *b = end->q + t->to[j];
+    const double *va = end->v + t->from[j], *vb = end->v + t->to[j];
+    double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
+    double inverse = length > 0.0 ? 1.0 / length : 0.0;
+    double rate = ((vb[0] - va[0]) * dx + (vb[1] - va[1]) * dy) * inverse;
+    end->stretch[k] = length - state->rest[j];
+    end->stretch_rate[k] = rate - state->rest_rate[j];
+    end->tension[k] = t->stiffness[j] * end->stretch[k] + t->damping[j] * end->stretch_rate[k];
+  }
+}
+
+void strut_event_measure(const strut_model *model, const strut_state *state, const strut_located *l,
+                         const strut_step_end *end) {
+  if (l->cable_count) measure_cables(model, state, l, end);
+}
+
+/* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
+   opened may stand below 0 by rounding, on its way up. */
+static bool closes(const strut_contact_table *c, int32_t i, const strut_located *l) {
+  strut_touch to;
+  if (gap_of(c, i, l->now->q) > 0.0) return true;
+  located_place(c, i, l->next->q, l->next->v, &to);
+  return to.into < 0.0;
+}
+
+strut_event strut_event_first(const strut_model *model, const strut_state *state,
+                              const strut_located *l, double h) {
+  const strut_contact_table *c = &model->contacts;
+  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  int32_t k = 0;
+  for (int32_t i = 0; i < c->count; i++) {
+    if (k < l->closed_count && l->closed[k] == i) {
+      const strut_touch *o = &l->next->touch[i];
+      strut_event_kind kind = located_contradiction(&c->entry[i], o, l->mode[i], l->side[i]);
+      if (kind) keep_first(model, l, kind, i, h, &first);
+      k++;
+      if (!l->stepper->exact) continue;
+      /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
+      if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, &first);
+      if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
+          c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
+        keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
+    } else if (gap_of(c, i, l->next->q) < 0.0 && closes(c, i, l)) {
+      keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
+    }
+  }
+  strut_event_measure(model, state, l, l->next);
+  for (int32_t j = 0; j < l->cable_count; j++)
+    if (strut_event_value(model, l, l->next, STRUT_EVENT_CABLE, j) < 0.0)
+      keep_first(model, l, STRUT_EVENT_CABLE, j, h, &first);
+  return first;
+}
+
+/* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
+static double parabola_root(double gap, double speed, double bend) {
+  if (!(gap > 0.0)) return speed < 0.0 || (speed == 0.0 && bend < 0.0) ? 0.0 : 2.0;
+  double inside = speed * speed - 4.0 * bend * gap;
+  if (!(inside >= 0.0)) return 2.0;
+  double below = -speed + sqrt(inside);
+  return below > 2.0 * gap ? 2.0 * gap / below : below == 2.0 * gap ? 1.0 : 2.0;
+}
+
+/* Where within the step contact i passes the ground, by the parabola that positions follow. */
+static double crossing(const strut_model *model, const strut_state *state, const strut_located *l,
+                       int32_t i, double sign, double h) {
+  const strut_contact_table *c = &model->contacts;
+  const double *v = state->v + c->at[i], *a = l->now->a + c->at[i], *n = c->normal;
+  double speed = h * (v[0] * n[0] + v[1] * n[1]);
+  double bend = 0.5 * h * h * (a[0] * n[0] + a[1] * n[1]);
+  return parabola_root(sign * gap_of(c, i, state->q), sign * speed, sign * bend);
+}
+
+strut_event strut_event_predict(const strut_model *model, const strut_state *state,
+                                const strut_located *l, double h) {
+  const strut_contact_table *c = &model->contacts;
+  const double *q = l->next->q;
+  bool level = c->normal[0] == 0.0;
+  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  for (int32_t i = 0; i < c->count; i++) {
+    bool closed = l->mode[i] != STRUT_MODE_OPEN;
+    double gap = level ? q[c->at[i] + 1] - c->height : gap_of(c, i, q);
+    if (closed ? gap <= 0.0 : gap >= 0.0) continue;
+    double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
+    if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))
+      first = (strut_event){closed ? STRUT_EVENT_OPEN : STRUT_EVENT_TOUCH, i, fraction};
+  }
+  return first;
+}

@@ -1,0 +1,311 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of methods with events: from grid point to grid point, stopping where modes end. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/energy.h"
+#include "engine/integrate/events/event_kernel.h"
+
+/* A root this close to where the step begins, in grid steps, is there already. */
+static const double AT_ONCE = 1e-9;
+/* After so many switches without a step, or within one step of the grid, one is taken whatever the
+   modes say: switches may follow each other faster and faster without end (Zeno). */
+enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
+
+static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
+  size_t length = (size_t)model->length, members = (size_t)model->members.count;
+  if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
+  if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
+  end->a = strut_arena_allocate(arena, length, sizeof(double));
+  end->structure = strut_arena_allocate(arena, length, sizeof(double));
+  end->touch = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof *end->touch);
+  bool slack = model->plan & STRUT_TERM_SLACK;
+  end->tension = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  end->stretch = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  end->stretch_rate = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  return end->q && end->v && end->a && end->structure && end->touch && end->tension &&
+         end->stretch && end->stretch_rate;
+}
+
+static bool make_arrays(const strut_model *model, strut_state *state, strut_located *l) {
+  strut_arena *arena = &state->arena;
+  size_t contacts = (size_t)model->contacts.count, length = (size_t)model->length;
+  l->mode = strut_arena_allocate(arena, contacts, 1);
+  l->side = strut_arena_allocate(arena, contacts, 1);
+  l->damper = strut_arena_allocate(arena, contacts, 1);
+  l->outward = strut_arena_allocate(arena, contacts, sizeof(double));
+  l->body = strut_arena_allocate(arena, contacts, sizeof *l->body);
+  l->closed = strut_arena_allocate(arena, contacts, sizeof *l->closed);
+  l->stuck = strut_arena_allocate(arena, contacts, sizeof *l->stuck);
+  l->damped = strut_arena_allocate(arena, contacts, sizeof *l->damped);
+  l->response = strut_arena_allocate(arena, contacts, sizeof *l->response);
+  l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
+  l->scatter = strut_arena_allocate(arena, length, sizeof(double));
+  l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
+  bool ready = l->mode && l->side && l->damper && l->outward && l->body && l->closed && l->stuck && l->damped &&
+               l->response && l->settling_time && l->scatter && l->stage;
+  for (int k = 0; k < l->stepper->stages && ready; k++)
+    ready = (l->stage[k] = strut_arena_allocate(arena, length, sizeof(double)));
+  return ready;
+}
+
+static bool list_cables(const strut_model *model, strut_state *state, strut_located *l) {
+  const strut_member_table *t = &model->members;
+  if (!(model->plan & STRUT_TERM_SLACK)) return true;
+  size_t count = (size_t)t->count;
+  l->cable = strut_arena_allocate(&state->arena, count, sizeof *l->cable);
+  l->pulling = strut_arena_allocate(&state->arena, count, 1);
+  for (int32_t j = 0; j < t->count && l->cable; j++)
+    if (t->slack[j] == 0.0) l->cable[l->cable_count++] = j;
+  return l->cable && l->pulling;
+}
+
+/* Contact forces for whoever looks on. */
+static bool make_held(const strut_model *model, strut_state *state) {
+  size_t contacts = (size_t)model->contacts.count;
+  double *normal = strut_arena_allocate(&state->arena, contacts, sizeof *normal);
+  double *friction = strut_arena_allocate(&state->arena, contacts, sizeof *friction);
+  state->held_normal = normal, state->held_friction = friction;
+  return normal && friction;
+}
+
+void *strut_located_create(const strut_model *model, strut_state *state,
+                           const strut_stepper *stepper) {
+  strut_located *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
+  if (!l) return NULL;
+  l->stepper = stepper;
+  l->now = &l->end[0], l->next = &l->end[1];
+  l->now->q = state->q, l->now->v = state->v;
+  l->tolerance = model->scene->experiment.tolerance;
+  if (!make_end(model, &state->arena, l->now, true) ||
+      !make_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
+      !list_cables(model, state, l) || !make_held(model, state) ||
+      strut_located_prepare(model, state, l))
+    return NULL;
+  return l;
+}
+
+/* Contact forces as they are now, for recording and measuring. */
+static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
+  double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    bool open = l->mode[i] == STRUT_MODE_OPEN;
+    normal[i] = open ? 0.0 : l->now->touch[i].normal;
+    friction[i] = open ? 0.0 : l->now->touch[i].friction;
+  }
+}
+
+void strut_located_restart(const strut_model *model, strut_state *state, void *workspace,
+                           double dt) {
+  strut_located *l = workspace;
+  double t = (double)state->step * dt;
+  memcpy(l->next->q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
+  memcpy(l->next->v, state->v, (size_t)model->length * sizeof(double));
+  l->h = 0.0;
+  l->longest = dt;
+  l->fastest = 0.0;
+  l->done = 0.0;
+  l->at_once = l->switches = 0;
+  l->pushed = -1;
+  l->tried = false;
+  l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  if (l->next_break < HUGE_VAL) t += located_moment(t, dt);
+  strut_modes_start(model, state, l, t);
+  show_contacts(model, state, l);
+  l->started = true;
+}
+
+/*
+ * Where a drive or load jumps the right-hand side does: modes and accelerations are made anew. What
+ * the jump of a rest length does to the elastic energy is work of the drive.
+ */
+static void pass_break(const strut_model *model, strut_state *state, strut_located *l, double dt) {
+  double t = (double)state->step * dt + l->done;
+  if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
+  double moment = located_moment(t, dt), before = 0.0;
+  if (state->ledger) before = strut_energy_stored(model, state, t - moment).elastic;
+  l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  if (state->ledger) {
+    double gained = strut_energy_stored(model, state, t + moment).elastic - before;
+    state->work[STRUT_POWER_DRIVE] += gained;
+    state->work[STRUT_POWER_MOVED] += fabs(gained);
+  }
+  strut_modes_after_jump(model, state, l, t + moment);
+}
+
+/* Where a value passes 0: between low and high, and the latest two points of the search. */
+typedef struct search {
+  double low, high;
+  double x, value, last_x, last_value;
+} search;
+
+static search begin_search(double before, double fraction, double after, double first) {
+  return (search){.high = fraction,
+                  .x = first,
+                  .last_x = before > 0.0 ? 0.0 : fraction,
+                  .last_value = before > 0.0 ? before : after};
+}
+
+/* Newton's step where the slope is known, else the secant's; halves where they leave the bracket. */
+static double next_point(search *s, double slope) {
+  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
+  if (slope == 0.0) slope = (s->value - s->last_value) / (s->x - s->last_x);
+  double next = s->x - s->value / slope;
+  s->last_x = s->x, s->last_value = s->value;
+  return next > s->low && next < s->high ? next : 0.5 * (s->low + s->high);
+}
+
+/* The latest correction was small and did not make the value smaller: the rest is rounding. */
+static bool stagnant(const search *s) {
+  return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
+}
+
+/* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
+static const double BALANCED = 1e-5;
+
+/* Forces still balance at the edge of the band, where speeds are held apart from it by TIED: there is no root
+   here, though the value does not change. */
+static bool tied_at_edge(const strut_model *model, const strut_event *event, double value) {
+  return event->kind == STRUT_EVENT_LEAVE &&
+         value > 0.5 * TIED * located_edge(&model->contacts.entry[event->index]);
+}
+
+/*
+ * Takes the step again up to the event. Returns the length taken; l->next is its end. Exact steppers
+ * go on until the root is known to 1e-13 of the step, or to rounding.
+ */
+static double retake(const strut_model *model, strut_state *state, strut_located *l, double t,
+                     double h, strut_event *event) {
+  double before = strut_event_value(model, l, l->now, event->kind, event->index);
+  double after = strut_event_value(model, l, l->next, event->kind, event->index);
+  search s = begin_search(before, 1.0, after, event->fraction);
+  for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
+    if (l->stepper->predict) l->stepper->predict(model, l, s.x * h);
+    l->stepper->trial(model, state, l, t, s.x * h);
+    if (!l->stepper->exact) break;
+    strut_event other = strut_event_first(model, state, l, s.x * h);
+    bool same = other.kind == event->kind && other.index == event->index;
+    if (other.kind && !same) { /* another one comes first */
+      *event = other;
+      before = strut_event_value(model, l, l->now, other.kind, other.index);
+      after = strut_event_value(model, l, l->next, other.kind, other.index);
+      s = begin_search(before, s.x, after, s.x * other.fraction);
+      continue;
+    }
+    s.value = strut_event_value(model, l, l->next, event->kind, event->index);
+    double rate = 0.0;
+    if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
+    if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
+    bool tied = tied_at_edge(model, event, s.value);
+    if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
+    if (tied && s.high - s.x <= BALANCED) break;
+    double x = next_point(&s, rate);
+    if (tied) x = 0.5 * (s.low + s.high);
+    if (s.high - s.low <= 1e-13) break;
+    s.x = x;
+  }
+  return s.x * h;
+}
+
+/* New step after an error of l->error in a method of fifth order. */
+static void control(strut_located *l, double h, bool whole) {
+  double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
+  factor = factor < 0.2 ? 0.2 : factor > 5.0 ? 5.0 : factor;
+  if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
+}
+
+/* The trial over h, and what happens in it. False: the error is too large; l->h says what to try. */
+static bool try_step(const strut_model *model, strut_state *state, strut_located *l, double t,
+                     double h, double dt) {
+  if (!l->tried) l->stepper->trial(model, state, l, t, h);
+  l->tried = false;
+  if (!l->stepper->adaptive) return true;
+  double error = l->error;
+  control(l, h, h < l->h);
+  if (error <= 1.0) return true;
+  if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_TROUBLE_STEP;
+  return false;
+}
+
+/* One trial over at most h; handles rejection and events. Returns the time gone, 0 if none. */
+static double step(const strut_model *model, strut_state *state, strut_located *l, double t,
+                   double h, double dt) {
+  strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
+  bool force = l->at_once >= MOST_AT_ONCE || l->switches >= MOST_SWITCHES;
+  if (l->stepper->predict && !l->tried) {
+    l->stepper->predict(model, l, h);
+    if (!force) event = strut_event_predict(model, state, l, h);
+    if (event.kind) l->stepper->predict(model, l, h *= event.fraction);
+  }
+  if (h > AT_ONCE * dt || !event.kind) {
+    if (!try_step(model, state, l, t, h, dt)) return 0.0;
+    strut_event inside =
+        force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0} : strut_event_first(model, state, l, h);
+    if (inside.kind) {
+      event = inside;
+      double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
+                         ? 0.0
+                         : retake(model, state, l, t, h, &event);
+      h = taken > AT_ONCE * dt ? taken : 0.0;
+    }
+  } else {
+    h = 0.0;
+  }
+  if (h > 0.0) {
+    located_accept(model, state, l, state->ledger);
+    l->at_once = 0;
+  } else {
+    l->at_once++;
+  }
+  if (event.kind) {
+    strut_event_apply(model, state, l, event, t + h);
+    state->events++;
+    l->switches++;
+  } else if (force) {
+    strut_modes_start(model, state, l, t + h);
+  } else if (strut_modes_after_step(model, l)) {
+    strut_located_derive(model, state, l, t + h);
+  }
+  return h;
+}
+
+/*
+ * Error control may take long within one step of the grid: when interrupted, or out of work allowed, it
+ * goes back to the start of it. The last two stages hold that.
+ */
+static bool given_up(const strut_model *model, strut_state *state, strut_located *l) {
+  double **kept = l->stage + l->stepper->stages - 2;
+  bool spent = state->most_evaluations > 0 && state->evaluations > state->most_evaluations;
+  bool wanted = spent || (state->interrupt && *state->interrupt);
+  size_t bytes = (size_t)model->length * sizeof(double);
+  if (l->done == 0.0) {
+    memcpy(kept[0], state->q, bytes);
+    memcpy(kept[1], state->v, bytes);
+    memcpy(l->work, state->work, sizeof l->work);
+  } else if (wanted) {
+    memcpy(state->q, kept[0], bytes);
+    memcpy(state->v, kept[1], bytes);
+    memcpy(state->work, l->work, sizeof l->work);
+  }
+  if (wanted) state->trouble = spent ? STRUT_TROUBLE_WORK : STRUT_TROUBLE_INTERRUPT;
+  return wanted;
+}
+
+void strut_located_step(const strut_model *model, strut_state *state, void *workspace, double dt) {
+  strut_located *l = workspace;
+  double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+  located_go_on(state, l, step(model, state, l, located_time(l, t, dt), h, dt), dt);
+  if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
+}
+
+void strut_located_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
+                           int64_t count) {
+  strut_located *l = workspace;
+  if (!l->started) strut_located_restart(model, state, workspace, dt);
+  for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
+    if (l->stepper->quiet && l->at_once == 0) l->stepper->quiet(model, state, l, dt, end);
+    if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
+    strut_located_step(model, state, l, dt);
+  }
+  show_contacts(model, state, l);
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The classical Runge-Kutta method between events: each step within one smooth set of modes, so
+ * that the fourth order holds through contact, friction and slack cables.
+ */
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/events/event_kernel.h"
+
+/* Positions, then velocities and accelerations of the stages 2 to 4. */
+enum { Q, V, A = V + 3, STAGES = A + 3 };
+
+STRUT_INLINE void stage(int32_t n, double h, const double *restrict q0, const double *restrict v0,
+                        const double *restrict v, const double *restrict a, double *restrict q,
+                        double *restrict next) {
+  for (int32_t i = 0; i < n; i += STRUT_LANES) {
+    strut_lanes_store(q + i, strut_lanes_load(q0 + i) + h * strut_lanes_load(v + i));
+    strut_lanes_store(next + i, strut_lanes_load(v0 + i) + h * strut_lanes_load_pairs(a + i));
+  }
+}
+
+STRUT_INLINE void combine(int32_t n, double h, const double *restrict z, const double *k1,
+                          const double *restrict k2, const double *restrict k3,
+                          const double *restrict k4, double *restrict out) {
+  double sixth = h / 6.0;
+  for (int32_t i = 0; i < n; i += STRUT_LANES) {
+    strut_lanes inner = strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i);
+    strut_lanes sum = strut_lanes_load(k1 + i) + 2.0 * inner + strut_lanes_load_pairs(k4 + i);
+    strut_lanes_store(out + i, strut_lanes_load(z + i) + sixth * sum);
+  }
+}
+
+STRUT_INLINE void gain(const strut_state *state, strut_located *l, double weight) {
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->power[p];
+}
+
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+                       double h, bool ledger) {
+  static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
+  double **w = l->stage;
+  const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
+  double *const a[4] = {l->now->a, w[A], w[A + 1], w[A + 2]};
+  int32_t n = model->length;
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now->power[p];
+  for (int k = 1; k < 4; k++) {
+    stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
+    located_acceleration(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, ledger);
+    if (ledger) gain(state, l, weight[k] * h / 6.0);
+  }
+  combine(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
+  combine(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
+  located_finish(model, state, l, t + h, l->next, ledger);
+}
+
+STRUT_CLONES
+static void rk4_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+                             double t, double h) {
+  if (state->ledger)
+    take(model, state, l, t, h, true);
+  else
+    take(model, state, l, t, h, false);
+}
+
+static const strut_stepper stepper = {.trial = rk4_events_trial, .stages = STAGES, .exact = true};
+
+static void *create(const strut_model *model, strut_state *state) {
+  strut_located *l = strut_located_create(model, state, &stepper);
+  if (l && !(model->scene->experiment.refine > 0.0)) l->refine = 1.0;
+  return l;
+}
+
+const strut_integrator strut_integrator_rk4_events = {
+    .name = "rk4-events",
+    .description = "classical Runge-Kutta from event to event, fixed step",
+    .order = 4,
+    .evaluations = 4,
+    .region = STRUT_REGION_RK4,
+    .events = true,
+    .create = create,
+    .restart = strut_located_restart,
+    .advance = strut_located_advance,
+};

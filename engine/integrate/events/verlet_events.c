@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Velocity Verlet between events, with the ground's dampers implicit: one evaluation a step, no
+ * limit from the dampers, and shorter steps for a while after a touchdown.
+ */
+#include "engine/integrate/events/implicit_ground.h"
+#include "engine/integrate/integrator.h"
+
+enum { PREDICTED, STAGES };
+
+static void predict(const strut_model *model, strut_located *l, double h) {
+  const double *restrict q = l->now->q, *restrict v = l->now->v, *restrict a = l->now->a;
+  double *restrict next = l->next->q, *restrict speed = l->stage[PREDICTED], half = 0.5 * h;
+  for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
+    strut_lanes rate = strut_lanes_load(v + i), bend = strut_lanes_load(a + i);
+    strut_lanes_store(next + i, strut_lanes_load(q + i) + h * (rate + half * bend));
+    strut_lanes_store(speed + i, rate + h * bend);
+  }
+}
+
+STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const double *restrict a0,
+                          const double *restrict a1, double *restrict next) {
+  double half = 0.5 * h;
+  for (int32_t i = 0; i < n; i += STRUT_LANES)
+    strut_lanes_store(next + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a0 + i) +
+                                                                  strut_lanes_load_pairs(a1 + i)));
+}
+
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+                       double h, bool ledger) {
+  int32_t n = model->length;
+  double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
+  forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
+  located_keep(model, state, l->next, ledger);
+  if (!l->closed_count) {
+    mass_kernel(model, state->force, a1, state->scratch);
+  } else if (l->plain) {
+    mass_kernel(model, state->force, a1, state->scratch);
+    implicit_ground_slides(model, l, h, a1);
+  } else if (l->apart) {
+    mass_kernel(model, state->force, a1, state->scratch);
+    implicit_ground_apart(model, l, h, predicted, state->force, a1);
+  } else {
+    located_ground(model, l, l->next->q, predicted, state->force, false, l->next->touch);
+    mass_kernel(model, state->force, a1, state->scratch);
+    implicit_ground_together(model, l, h, a1, l->next->touch);
+  }
+  correct(n, h, l->now->v, l->now->a, a1, l->next->v);
+  if (l->closed_count && l->apart)
+    implicit_ground_leave(model, state, l, ledger);
+  else if (l->closed_count)
+    implicit_ground_finish(model, state, l, ledger);
+  if (!l->plain) located_settle_ties(model, l);
+  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
+    strut_lanes power = strut_lanes_load(state->power + p);
+    strut_lanes_store(l->next->power + p, power);
+    strut_lanes_store(l->gained + p, 0.5 * h * (strut_lanes_load(l->now->power + p) + power));
+  }
+}
+
+STRUT_CLONES
+static void verlet_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+                                double t, double h) {
+  if (state->ledger)
+    take(model, state, l, t, h, true);
+  else
+    take(model, state, l, t, h, false);
+}
+
+/* Does a contact open or close within the step that has been predicted? */
+STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_located *l,
+                          const double *restrict q) {
+  const uint32_t *restrict at = c->at;
+  const double *restrict outward = l->outward;
+  const double slope = c->normal[0], rise = c->normal[1], height = c->height;
+  double lowest = 0.0;
+  if (slope == 0.0) {
+    for (int32_t i = 0, count = c->count; i < count; i++) {
+      double gap = outward[i] * (q[at[i] + 1] - height);
+      lowest = gap < lowest ? gap : lowest;
+    }
+  } else {
+    for (int32_t i = 0, count = c->count; i < count; i++) {
+      double gap = outward[i] * (q[at[i]] * slope + (q[at[i] + 1] - height) * rise);
+      lowest = gap < lowest ? gap : lowest;
+    }
+  }
+  return lowest < 0.0;
+}
+
+/* Does what l->next says contradict a mode? */
+STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
+                              const strut_located *l, double h) {
+  if (l->plain) {
+    const strut_slider *s = l->slider;
+    for (const strut_slider *end = s + l->closed_count; s < end; s++)
+      if (s->side * l->next->touch[s->index].slip < s->edge) return true;
+  }
+  for (int32_t k = 0; k < l->closed_count && !l->plain; k++) {
+    int32_t i = l->closed[k];
+    if (located_contradiction(&model->contacts.entry[i], &l->next->touch[i], l->mode[i],
+                              l->side[i]))
+      return true;
+  }
+  return l->cable_count && strut_event_first(model, state, l, h).kind;
+}
+
+STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut_located *l,
+                             double dt, int64_t end, bool ledger) {
+  while (state->step < end) {
+    double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+    if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) return;
+    t = located_time(l, t, dt);
+    predict(model, l, h);
+    if (crosses(&model->contacts, l, l->next->q)) return;
+    take(model, state, l, t, h, ledger);
+    l->tried = contradicts(model, state, l, h);
+    if (l->tried) return;
+    located_accept(model, state, l, ledger);
+    located_go_on(state, l, h, dt);
+  }
+}
+
+STRUT_CLONES
+static void verlet_events_quiet(const strut_model *model, strut_state *state, strut_located *l,
+                                double dt, int64_t end) {
+  if (state->ledger)
+    go_quietly(model, state, l, dt, end, true);
+  else
+    go_quietly(model, state, l, dt, end, false);
+}
+
+static const strut_stepper stepper = {.trial = verlet_events_trial,
+                                      .stages = STAGES,
+                                      .predict = predict,
+                                      .quiet = verlet_events_quiet};
+
+static void *create(const strut_model *model, strut_state *state) {
+  return strut_located_create(model, state, &stepper);
+}
+
+const strut_integrator strut_integrator_verlet_events = {
+    .name = "verlet-events",
+    .description =
+        "velocity Verlet from event to event, implicit ground dampers, shorter steps "
+        "after a touchdown",
+    .order = 2,
+    .evaluations = 1,
+    .region = STRUT_REGION_VERLET,
+    .implicit_damper = true,
+    .events = true,
+    .create = create,
+    .restart = strut_located_restart,
+    .advance = strut_located_advance,
+};

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lanczos's method for the largest eigenvalues of a tangent matrix: where to look for motions. */
+#include <gsl/gsl_eigen.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/integrate/limit/krylov_basis.h"
+
+/* Steps at most; and of its motions, how many are kept. */
+enum { MOST_STEPS = 80, KEPT = 3 };
+
+typedef struct lanczos {
+  strut_tangent_space *space;
+  double a, b;                                /* the matrix is a K + b D */
+  double *v, *u, *before, *r;                 /* v, u = M v, the u before, residual; (n) */
+  double *kept;                               /* (KEPT, n) */
+  double alpha[MOST_STEPS], beta[MOST_STEPS]; /* of the tridiagonal matrix */
+  double mix[KEPT][MOST_STEPS];               /* its eigenvectors */
+  int steps, wanted;
+} lanczos;
+
+static bool begin(lanczos *l, strut_arena *arena) {
+  size_t n = (size_t)l->space->tangent->n;
+  l->v = strut_arena_allocate(arena, n, sizeof(double));
+  l->u = strut_arena_allocate(arena, n, sizeof(double));
+  l->before = strut_arena_allocate(arena, n, sizeof(double));
+  l->r = strut_arena_allocate(arena, n, sizeof(double));
+  l->kept = strut_arena_allocate(arena, KEPT * n, sizeof(double));
+  return l->v && l->u && l->before && l->r && l->kept;
+}
+
+/* Are all eigenvalues of the leading n rows below x? Then all pivots of T - x are negative. */
+static bool all_below(const lanczos *l, int n, double x) {
+  double pivot = l->alpha[0] - x;
+  for (int j = 1; j < n && pivot < 0; j++)
+    pivot = l->alpha[j] - x - l->beta[j - 1] * l->beta[j - 1] / pivot;
+  return pivot < 0;
+}
+
+/* The largest eigenvalue of the leading n rows, at least 0. */
+static double largest_of_tridiagonal(const lanczos *l, int n) {
+  double low = 0.0, high = 0.0;
+  for (int j = 0; j < n; j++)
+    high = fmax(high, fabs(l->alpha[j]) + l->beta[j] + (j ? l->beta[j - 1] : 0.0));
+  for (int i = 0; i < 50; i++) {
+    double middle = 0.5 * (low + high);
+    *(all_below(l, n, middle) ? &high : &low) = middle;
+  }
+  return high;
+}
+
+/* A start that leans on no motion: bits stirred from the index. */
+static double stirred(uint64_t i) {
+  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  return (double)((z ^ (z >> 27)) >> 11) * 0x1p-53 - 0.5;
+}
+
+/*
+ * The next v and u from the residual: divided by its size in the mass, which is returned. 0: the
+ * motions seen so far are all there are.
+ */
+static double next_vector(lanczos *l) {
+  int32_t n = l->space->tangent->n;
+  double square = 0.0;
+  memcpy(l->v, l->r, (size_t)n * sizeof *l->v);
+  strut_tangent_divide(l->space, l->v);
+  for (int32_t i = 0; i < n; i++) square += l->r[i] * l->v[i];
+  if (!(square > 0)) return 0.0;
+  double size = sqrt(square), *swap = l->before;
+  l->before = l->u, l->u = swap;
+  for (int32_t i = 0; i < n; i++) l->u[i] = l->r[i] / size, l->v[i] /= size;
+  return size;
+}
+
+/* Begins at the start; its entries are weighed, so that light nodes move as much as heavy ones. */
+static bool first_vector(lanczos *l) {
+  int32_t n = l->space->tangent->n;
+  for (int32_t i = 0; i < n; i++) l->v[i] = stirred((uint64_t)i), l->u[i] = l->before[i] = 0.0;
+  strut_tangent_mass(l->space, l->v, l->r);
+  return next_vector(l) > 0;
+}
+
+/* r becomes the matrix times v less what v and the one before have of it; alpha of this step. */
+static double next_residual(lanczos *l, double size) {
+  int32_t n = l->space->tangent->n;
+  double alpha = 0.0;
+  strut_tangent_apply(l->space, l->a, l->b, l->v, l->r);
+  for (int32_t i = 0; i < n; i++) alpha += l->v[i] * l->r[i];
+  for (int32_t i = 0; i < n; i++) l->r[i] -= alpha * l->u[i] + size * l->before[i];
+  return alpha;
+}
+
+/* The tridiagonal matrix. False where nothing has a positive eigenvalue. */
+static bool walk(lanczos *l) {
+  int32_t n = l->space->tangent->n;
+  int most = n < MOST_STEPS ? n : MOST_STEPS;
+  double value = 0.0, size = 0.0;
+  if (!first_vector(l)) return false;
+  for (int j = 0; j < most; j++) {
+    double earlier = value;
+    l->alpha[j] = next_residual(l, size);
+    l->beta[j] = 0.0;
+    l->steps = j + 1;
+    value = largest_of_tridiagonal(l, j + 1);
+    size = next_vector(l);
+    if (size <= 1e-10 * value || (j > 40 && value - earlier < 1e-9 * value)) break;
+    l->beta[j] = size;
+  }
+  return value > 0.0;
+}
+
+/* Eigenvectors of the tridiagonal matrix for its largest eigenvalues. */
+static bool mix(lanczos *l) {
+  size_t m = (size_t)l->steps;
+  gsl_matrix *t = gsl_matrix_calloc(m, m), *x = gsl_matrix_alloc(m, m);
+  gsl_vector *value = gsl_vector_alloc(m);
+  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(m);
+  bool good = t && x && value && w;
+  for (size_t j = 0; good && j < m; j++) {
+    gsl_matrix_set(t, j, j, l->alpha[j]);
+    if (j + 1 == m) break;
+    gsl_matrix_set(t, j, j + 1, l->beta[j]);
+    gsl_matrix_set(t, j + 1, j, l->beta[j]);
+  }
+  good = good && !gsl_eigen_symmv(t, value, x, w);
+  if (good) gsl_eigen_symmv_sort(value, x, GSL_EIGEN_SORT_VAL_DESC);
+  l->wanted = l->steps < KEPT ? l->steps : KEPT;
+  for (int k = 0; good && k < l->wanted; k++)
+    for (size_t j = 0; j < m; j++) l->mix[k][j] = gsl_matrix_get(x, j, (size_t)k);
+  gsl_eigen_symmv_free(w);
+  gsl_vector_free(value);
+  gsl_matrix_free(x);
+  gsl_matrix_free(t);
+  return good;
+}
+
+/* The same walk again, which sums up the motions. */
+static void gather(lanczos *l) {
+  int32_t n = l->space->tangent->n;
+  double size = 0.0;
+  if (!first_vector(l)) return;
+  for (int j = 0; j < l->steps; j++) {
+    for (int k = 0; k < l->wanted; k++) {
+      double *x = l->kept + (size_t)k * (size_t)n;
+      for (int32_t i = 0; i < n; i++) x[i] += l->mix[k][j] * l->v[i];
+    }
+    next_residual(l, size);
+    if (j + 1 < l->steps) size = next_vector(l);
+  }
+}
+
+bool strut_tangent_explore(strut_tangent_space *space, double a, double b) {
+  strut_arena arena = {0};
+  lanczos *l = strut_arena_allocate(&arena, 1, sizeof *l);
+  if (l) *l = (lanczos){.space = space, .a = a, .b = b};
+  bool good = l && begin(l, &arena);
+  if (good && walk(l)) {
+    good = mix(l);
+    if (good) gather(l);
+    for (int k = 0; good && k < l->wanted; k++)
+      strut_tangent_space_add(space, l->kept + (size_t)k * (size_t)space->tangent->n);
+  }
+  strut_arena_free(&arena);
+  return good;
+}

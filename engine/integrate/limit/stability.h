@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Largest stable steps of the explicit methods for one damped mode, z^2 + d z + k = 0.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_LIMIT_STABILITY_H
+#define STRUT_ENGINE_INTEGRATE_LIMIT_STABILITY_H
+
+#include "engine/integrate/integrator.h"
+
+/** Largest h with |R(h lambda)| <= 1 for RK4's R and lambda = re + i im, re <= 0; INFINITY at 0. */
+STRUT_API double strut_rk4_limit(double re, double im);
+
+/**
+ * Velocity Verlet with velocity-dependent forces at the predicted velocity v + h a. k [1/s^2], d [1/s].
+ * 2/omega without damping.
+ */
+STRUT_API double strut_verlet_limit(double k, double d);
+
+/** Semi-implicit Euler: (sqrt(d^2 + 4 k) - d) / k. */
+STRUT_API double strut_euler_limit(double k, double d);
+
+/** The limit of a region for an eigenvalue re + i im of a mode with k and d. */
+STRUT_API double strut_region_limit(strut_region region, double re, double im, double k, double d);
+
+#endif

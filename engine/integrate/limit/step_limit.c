@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/integrate/limit/step_limit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/rigid.h"
+#include "engine/forces/stiffness.h"
+#include "engine/integrate/limit/tangent_bound.h"
+#include "engine/integrate/limit/tangent_limits.h"
+#include "engine/model/memory_estimate.h"
+
+/*
+ * Many coordinates: a space that grows by what the binding motions leave of K x and D x, Davidson's
+ * method on the quadratic problem itself. Unlike Arnoldi's on the first-order system it keeps the
+ * signs of K and D, so that no false eigenvalue lies beyond the true ones, with vectors half as long;
+ * ARPACK, a floor above, knows the first-order form only.
+ */
+enum { ROOM = 64, LARGE_ROOM = 48, LARGE = 100000, MOST_ROUNDS = 14 };
+/* From here on a search would take tens of seconds, and the bound is told. */
+enum { TOO_LARGE = 250000 };
+/* Quotients come from below; the space has converged to a fraction of this. */
+static const double MARGIN = 0.998, SETTLED = 2e-4;
+
+typedef struct search {
+  const strut_tangent *tangent;
+  strut_arena *arena;
+  strut_tangent_space space;
+  strut_tangent_limits found;
+  bool damped, rk4, settled;
+  double *x, *y, *other, *mix, *work; /* (n) twice and (n), coefficients */
+} search;
+
+static bool begin(search *s, const strut_model *model, int most) {
+  size_t n = (size_t)s->tangent->n, m = (size_t)most;
+  s->damped = false;
+  for (int32_t i = 0; i < s->tangent->damping->start[n]; i++)
+    s->damped = s->damped || s->tangent->damping->value[i] != 0.0;
+  s->x = strut_arena_allocate(s->arena, n, sizeof(double));
+  s->y = strut_arena_allocate(s->arena, n, sizeof(double));
+  s->other = strut_arena_allocate(s->arena, n, sizeof(double));
+  s->mix = strut_arena_allocate(s->arena, 2 * STRUT_MOST_BINDING * m, sizeof(double));
+  s->work = strut_arena_allocate(s->arena, m, sizeof(double));
+  return s->x && s->y && s->other && s->mix && s->work &&
+         strut_tangent_space_create(model, s->tangent, most, s->arena, &s->space) &&
+         strut_tangent_limits_create(most, s->arena, &s->found);
+}
+
+/* Few coordinates: the space of all motions. */
+static bool take_all(search *s) {
+  for (int32_t i = 0; i < s->tangent->n; i++) {
+    memset(s->x, 0, (size_t)s->tangent->n * sizeof *s->x);
+    s->x[i] = 1.0;
+    if (s->tangent->rigid) { /* a push on the coordinate moves it as the bars allow */
+      strut_tangent_divide(&s->space, s->x);
+    }
+    strut_tangent_space_add(&s->space, s->x);
+  }
+  return strut_tangent_limits_find(&s->space, s->damped, s->rk4, &s->found);
+}
+
+/* to = M^-1 (K x + re D x - im D y). */
+static void residual(search *s, double a, double re, double im, const double *x, const double *y,
+                     double *to) {
+  strut_tangent_apply(&s->space, a, re, x, to);
+  if (im != 0.0) {
+    double *image = s->space.image;
+    strut_tangent_apply(&s->space, 0.0, -im, y, image);
+    for (int32_t i = 0; i < s->tangent->n; i++) to[i] += image[i];
+  }
+  strut_tangent_divide(&s->space, to);
+}
+
+/* Adds what binding motion i leaves. */
+static void grow(search *s, const strut_binding *b) {
+  strut_tangent_space_combine(&s->space, b->x, s->x);
+  if (!b->rk4 || !b->complex_pair) {
+    double a = b->rk4 ? 1.0 : b->a, c = b->rk4 ? b->re : b->b;
+    residual(s, a, c, 0.0, s->x, NULL, s->other);
+    strut_tangent_space_add(&s->space, s->other);
+    return;
+  }
+  strut_tangent_space_combine(&s->space, b->y, s->y);
+  residual(s, 1.0, b->re, b->im, s->x, s->y, s->other);
+  strut_tangent_space_add(&s->space, s->other);
+  residual(s, 1.0, b->re, -b->im, s->y, s->x, s->other);
+  strut_tangent_space_add(&s->space, s->other);
+}
+
+/* Keeps the binding motions only. */
+static void shrink(search *s) {
+  size_t columns = (size_t)s->space.count;
+  int rows = 0;
+  for (int i = 0; i < s->found.count; i++) {
+    const strut_binding *b = &s->found.binding[i];
+    memcpy(s->mix + (size_t)rows++ * columns, b->x, columns * sizeof(double));
+    if (b->complex_pair) memcpy(s->mix + (size_t)rows++ * columns, b->y, columns * sizeof(double));
+  }
+  strut_tangent_space_shrink(&s->space, s->mix, rows, s->work);
+}
+
+static bool find(search *s) {
+  return strut_tangent_limits_find(&s->space, s->damped, s->rk4, &s->found);
+}
+
+/* By how much, relatively, some limit has fallen. */
+static double fallen(const strut_tangent_limits *found, const double *before) {
+  double most = 0.0;
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    if (found->of[region] < HUGE_VAL)
+      most = fmax(most, before[region] < HUGE_VAL
+                            ? fabs(before[region] - found->of[region]) / found->of[region]
+                            : 1.0);
+  return most;
+}
+
+static bool look_around(search *s) {
+  if (!strut_tangent_explore(&s->space, 1.0, 0.0)) return false;
+  if (!s->damped) return find(s);
+  if (!strut_tangent_explore(&s->space, 0.0, 1.0) || !find(s)) return false;
+  double h = s->found.of[STRUT_REGION_VERLET];
+  return !(h < HUGE_VAL) || (strut_tangent_explore(&s->space, 0.25 * h * h, h) && find(s));
+}
+
+static bool improve(search *s) {
+  int quiet = 0;
+  for (int round = 0; round < MOST_ROUNDS && quiet < 2; round++) {
+    double before[STRUT_REGIONS];
+    memcpy(before, s->found.of, sizeof before);
+    if (s->space.count + 2 * STRUT_MOST_BINDING > s->space.most) {
+      shrink(s);
+      if (!find(s)) return false;
+    }
+    strut_tangent_limits *found = &s->found;
+    for (int i = 0; i < found->count; i++) {
+      int had = s->space.count;
+      grow(s, &found->binding[i]);
+      /* coefficients of the other motions end where the space did when they were found */
+      for (int k = i + 1; k < found->count; k++)
+        for (int j = had; j < s->space.count; j++)
+          found->binding[k].x[j] = found->binding[k].y[j] = 0.0;
+    }
+    if (!find(s)) return false;
+    quiet = fallen(found, before) < SETTLED ? quiet + 1 : 0;
+  }
+  s->settled = quiet >= 2;
+  return true;
+}
+
+/* Few coordinates: all motions; many: those that bind. False: out of memory. */
+static bool seek(search *s, const strut_model *model, bool all) {
+  int32_t n = s->tangent->n;
+  if (!begin(s, model, all ? n : n > LARGE ? LARGE_ROOM : ROOM)) return false;
+  return all ? take_all(s) : look_around(s) && improve(s);
+}
+
+static void tell_found(const search *s, bool all, strut_step_limit *limit) {
+  limit->exact = all && s->found.solved;
+  limit->largest_frequency = s->found.largest_frequency;
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of[region] = limit->exact ? s->found.of[region] : MARGIN * s->found.of[region];
+}
+
+/* What all motions keep to, in place of what could not be found. */
+static bool tell_bound(const strut_model *model, const strut_tangent *tangent, strut_arena *arena,
+                       strut_step_limit *limit) {
+  strut_tangent_bound bound;
+  if (!strut_tangent_bound_find(model, tangent, arena, &bound)) return false;
+  limit->exact = false;
+  limit->bound = true;
+  limit->largest_frequency = bound.frequency;
+  memcpy(limit->of, bound.of, sizeof limit->of);
+  return true;
+}
+
+/* Without ground's dampers: for methods in which they are implicit, none of which is RK4's kind. */
+static strut_status limits(const strut_model *model, const double *q, const double *rest,
+                           strut_closed closed, bool rk4, strut_arena *arena,
+                           strut_step_limit *limit) {
+  strut_tangent tangent;
+  search s = {.tangent = &tangent, .arena = arena, .rk4 = rk4};
+  *limit = (strut_step_limit){.limit = HUGE_VAL, .exact = true};
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of[region] = limit->of_implicit[region] = HUGE_VAL;
+  strut_status status = strut_tangent_assemble(model, q, rest, closed, arena, &tangent);
+  if (status || tangent.n == 0) return status;
+  if ((model->plan & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
+    return STRUT_NO_MEMORY;
+  bool all = tangent.n <= STRUT_EXACT_LIMIT, room = true;
+  if (tangent.rigid || tangent.n <= TOO_LARGE) {
+    room = seek(&s, model, all);
+    if (room) tell_found(&s, all, limit);
+  }
+  if (room && !tangent.rigid && tangent.n > LARGE && !s.settled)
+    room = tell_bound(model, &tangent, arena, limit);
+  if (!room) return STRUT_NO_MEMORY;
+  limit->limit = limit->of[STRUT_REGION_RK4];
+  return STRUT_OK;
+}
+
+static bool ground_damps(const strut_model *model) {
+  bool damped = false;
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    damped = damped || model->contacts.entry[i].damping > 0.0 ||
+             model->contacts.entry[i].dissipation > 0.0;
+  return damped;
+}
+
+strut_status strut_step_limit_told(const strut_model *model, const strut_integrator *method,
+                                   double *limit, bool *bound, strut_error *error) {
+  strut_arena arena = {0};
+  strut_step_limit found;
+  *limit = HUGE_VAL;
+  *bound = false;
+  if (method->region == STRUT_REGION_ALL) return STRUT_OK;
+  bool undamped = method->implicit_damper && ground_damps(model);
+  strut_status status = limits(model, model->start, model->members.rest,
+                               undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
+                               method->region == STRUT_REGION_RK4, &arena, &found);
+  *limit = found.of[method->region];
+  *bound = found.bound;
+  strut_arena_free(&arena);
+  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
+}
+
+strut_status strut_step_limit_for(const strut_model *model, const strut_integrator *method,
+                                  double *limit, strut_error *error) {
+  bool bound;
+  return strut_step_limit_told(model, method, limit, &bound, error);
+}
+
+strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
+                                       strut_error *error) {
+  strut_arena arena = {0};
+  strut_step_limit implicit;
+  const double *q = model->start, *rest = model->members.rest;
+  strut_status status = limits(model, q, rest, STRUT_CLOSED_ALL, true, &arena, limit);
+  implicit = *limit;
+  strut_arena_free(&arena);
+  if (!status && ground_damps(model))
+    status = limits(model, q, rest, STRUT_CLOSED_UNDAMPED, false, &arena, &implicit);
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of_implicit[region] = implicit.of[region];
+  limit->bound = limit->bound || implicit.bound;
+  strut_arena_free(&arena);
+  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
+}
+
+/* Takes bytes, a whole number of words, into both hashes. */
+static void digest(uint64_t key[2], const void *data, size_t bytes) {
+  for (size_t i = 0; i + sizeof(uint64_t) <= bytes; i += sizeof(uint64_t)) {
+    uint64_t word;
+    memcpy(&word, (const char *)data + i, sizeof word);
+    key[0] = (key[0] ^ word) * 1099511628211u;
+    key[0] ^= key[0] >> 29;
+    key[1] = (key[1] + word) * 0x9e3779b97f4a7c15u;
+    key[1] ^= key[1] >> 32;
+  }
+}
+
+static void digest_number(uint64_t key[2], double x) { digest(key, &x, sizeof x); }
+
+/* All that an estimate reads of a model. */
+static void digest_model(const strut_model *m, uint64_t key[2]) {
+  const strut_member_table *t = &m->members;
+  const strut_contact_table *c = &m->contacts;
+  const size_t slots = (size_t)t->slots * sizeof(double), both = (size_t)m->length * sizeof(double);
+  key[0] = 14695981039346656037u, key[1] = 1;
+  const double counts[] = {m->plan,  m->length,   t->slots,     t->count,
+                           c->count, m->scene->mass_model, m->scene->bar_model};
+  digest(key, counts, sizeof counts);
+  for (int32_t j = 0; j < t->count; j++) {
+    digest_number(key, t->from[j]);
+    digest_number(key, t->to[j]);
+  }
+  const double *const of_members[] = {t->stiffness, t->damping, t->rest, t->slack, t->mass};
+  for (size_t i = 0; i < sizeof of_members / sizeof of_members[0]; i++)
+    digest(key, of_members[i], slots);
+  digest(key, m->start, both);
+  digest(key, m->point_mass, (size_t)m->node_count * sizeof(double));
+  for (int32_t i = 0; i < m->length; i++) digest_number(key, m->fixed[i]);
+  digest(key, m->scene->gravity, sizeof m->scene->gravity);
+  for (int32_t i = 0; i < c->count; i++) {
+    const strut_contact_entry *e = &c->entry[i];
+    bool smooth = e->law == STRUT_FRICTION_SMOOTH; /* the other laws have no slope */
+    const double entry[] = {e->node,        e->stiffness,       e->damping,
+                            e->dissipation, smooth ? e->width : 0.0, smooth ? e->mu_kinetic : 0.0};
+    digest(key, entry, sizeof entry);
+  }
+  const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed};
+  digest(key, ground, sizeof ground);
+}
+
+strut_status strut_step_limit_recall(const strut_model *model, const strut_integrator *method,
+                                     strut_step_limits *kept, double *limit, strut_error *error) {
+  uint64_t key[2];
+  digest_model(model, key);
+  digest_number(key, method->region);
+  digest_number(key, method->implicit_damper);
+  for (int i = 0; i < STRUT_LIMITS_KEPT && i < kept->count; i++)
+    if (kept->key[i][0] == key[0] && kept->key[i][1] == key[1]) {
+      *limit = kept->limit[i];
+      return STRUT_OK;
+    }
+  strut_status status = strut_step_limit_for(model, method, limit, error);
+  if (status) return status;
+  int64_t at = kept->count++ % STRUT_LIMITS_KEPT;
+  kept->key[at][0] = key[0], kept->key[at][1] = key[1];
+  kept->limit[at] = *limit;
+  return STRUT_OK;
+}
+
+strut_status strut_step_limit_at(const strut_model *model, const double *q, const double *rest,
+                                 strut_closed closed, strut_step_limit *limit, strut_error *error) {
+  strut_arena arena = {0};
+  strut_status status = limits(model, q, rest, closed, true, &arena, limit);
+  for (int region = 0; region < STRUT_REGIONS; region++)
+    limit->of_implicit[region] = limit->of[region];
+  strut_arena_free(&arena);
+  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
+}
+
+double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method) {
+  return method->implicit_damper ? limit->of_implicit[method->region] : limit->of[method->region];
+}

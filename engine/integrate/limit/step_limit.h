@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * How large a step may be: the spectrum of small motions against a method's region of stability.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
+#define STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
+
+#include "engine/forces/stiffness.h"
+#include "engine/integrate/limit/stability.h"
+
+typedef struct strut_step_limit {
+  double largest_frequency; /* undamped, all contacts closed [rad/s]; 0 where nothing vibrates */
+  double limit;             /* largest stable RK4 step [s]; INFINITY where nothing limits it */
+  double of[STRUT_REGIONS]; /* largest stable step of each region, RK4's being `limit` */
+  double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
+  bool exact; /* from all eigenvalues; else from those that bind, within 1 %, or bounds */
+  bool bound; /* some are bounds: all smaller steps are stable, the largest stable one is not known */
+} strut_step_limit;
+
+/**
+ * Limits at the model's start with every contact closed, its stiffness and damping counted. Up to
+ * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
+ * those that bind, from a space of motions that grows until they have settled: within 1 %, whatever
+ * the damping. Above 250000 coordinates, and above 100000 where they do not settle, bounds from the
+ * entries of the matrices (tangent_bound.h) are told. The model must have a mass.
+ */
+STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
+                                                 strut_error *error);
+
+/** The same at positions q and rest lengths `rest`, with those contacts; of_implicit is as `of`. */
+STRUT_API strut_status strut_step_limit_at(const strut_model *model, const double *q,
+                                           const double *rest, strut_closed closed,
+                                           strut_step_limit *limit, strut_error *error);
+
+/** The largest stable step of one method alone [s], for less work than all of them are. */
+STRUT_API strut_status strut_step_limit_for(const strut_model *model,
+                                            const strut_integrator *method, double *limit,
+                                            strut_error *error);
+
+/** The same; *bound: it is a bound. */
+STRUT_API strut_status strut_step_limit_told(const strut_model *model,
+                                             const strut_integrator *method, double *limit,
+                                             bool *bound, strut_error *error);
+
+/** Limits found lately. Zero-initialise it. */
+enum { STRUT_LIMITS_KEPT = 16 };
+typedef struct strut_step_limits {
+  int64_t count; /* ever noted; the latest STRUT_LIMITS_KEPT of them are kept */
+  uint64_t key[STRUT_LIMITS_KEPT][2];
+  double limit[STRUT_LIMITS_KEPT]; /* [s] */
+} strut_step_limits;
+
+/**
+ * strut_step_limit_for, or what it said of the same members, masses, supports, springs and dampers of
+ * contacts, start and kind of method: told by two independent hashes of all these numbers.
+ */
+STRUT_API strut_status strut_step_limit_recall(const strut_model *model,
+                                               const strut_integrator *method,
+                                               strut_step_limits *kept, double *limit,
+                                               strut_error *error);
+
+/** The largest stable step of a method [s]. */
+STRUT_API double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method);
+
+enum { STRUT_EXACT_LIMIT = 60 };
+
+#endif

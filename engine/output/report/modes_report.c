@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/report/modes_report.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/json.h"
+#include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+
+enum { MOST_ROWS = 40, DIGITS = 6 };
+
+static const double TURN = 6.283185307179586476925;
+
+static const char *name_of(const strut_model *model, int32_t node) {
+  return model->scene->nodes[node].name;
+}
+
+/* Two numbers for every node, by name. */
+static void add_nodes(strut_json *json, struct cJSON *row, const char *key,
+                      const strut_model *model, const double *values) {
+  struct cJSON *nodes = strut_json_object(json, row, key);
+  for (int32_t i = 0; i < model->node_count; i++)
+    strut_json_numbers(json, nodes, name_of(model, i), values + 2 * i, 2);
+}
+
+static void add_mode(strut_json *json, struct cJSON *list, const strut_model *model,
+                     const strut_mode *mode) {
+  struct cJSON *row = strut_json_object(json, list, NULL);
+  strut_json_number(json, row, "frequency", mode->angular_frequency / TURN);
+  strut_json_number(json, row, "angular_frequency", mode->angular_frequency);
+  strut_json_number(json, row, "eigenvalue", mode->eigenvalue);
+  strut_json_number(json, row, "damping_ratio", mode->damping_ratio);
+  strut_json_number(json, row, "damped_frequency", mode->damped_frequency / TURN);
+  strut_json_number(json, row, "decay_rate", mode->decay_rate);
+  strut_json_number(json, row, "residual", mode->residual);
+  strut_json_number(json, row, "error", mode->error);
+  strut_json_text(json, row, "kind", strut_mode_kind_name(mode->kind));
+  strut_json_text(json, row, "description", mode->description);
+  add_nodes(json, row, "shape", model, mode->shape);
+}
+
+char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
+  strut_json json = strut_json_begin();
+  strut_json_text(&json, json.root, "name", model->scene->name);
+  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
+  strut_json_text(&json, json.root, "at", modes->at);
+  add_nodes(&json, json.root, "nodes", model, modes->q);
+  strut_json_integer(&json, json.root, "coordinates", modes->coordinates);
+  struct cJSON *contacts = strut_json_array(&json, json.root, "contacts");
+  for (int32_t i = 0; i < modes->closed_count; i++)
+    strut_json_text(&json, contacts, NULL, name_of(model, modes->closed[i]));
+  strut_json_text(&json, json.root, "method", modes->dense ? "dense" : "sparse");
+  strut_json_number(&json, json.root, "condition", modes->condition);
+  strut_json_bool(&json, json.root, "at_rest", modes->at_rest);
+  strut_json_settle(&json, json.root, &modes->settle);
+  strut_json_text(&json, json.root, "damping",
+                  modes->damped_exactly ? "quadratic eigenproblem" : "modal quotient");
+  struct cJSON *list = strut_json_array(&json, json.root, "modes");
+  for (size_t i = 0; i < modes->count; i++) add_mode(&json, list, model, &modes->list[i]);
+  return strut_json_end(&json);
+}
+
+static void add_head(strut_buffer *table, const strut_model *model, const strut_modes *modes) {
+  const char *name = model->scene->name;
+  strut_buffer_add(table, "%s%smodes at %s", name, *name ? ": " : "", modes->at);
+  for (int32_t i = 0; i < modes->closed_count; i++)
+    strut_buffer_add(table, "%s%s", i ? ", " : ", on ", name_of(model, modes->closed[i]));
+  strut_buffer_add(
+      table, "\n  %d coordinates, %s; the stiffnesses span %.2g\n", (int)modes->coordinates,
+      modes->dense ? "all modes computed" : "the lowest modes computed", modes->condition);
+  if (!modes->at_rest)
+    strut_buffer_add(table,
+                     "  this shape is no equilibrium: it will not stay to show these modes\n");
+  char warning[300];
+  if (strut_settle_warning(&modes->settle, warning, sizeof warning))
+    strut_buffer_add(table, "  %s\n", warning);
+  if (!modes->damped_exactly)
+    strut_buffer_add(table,
+                     "  damping by the quotient of each mode, coupling between modes left out\n");
+}
+
+static void add_row(strut_buffer *table, size_t i, const strut_mode *mode) {
+  char frequency[STRUT_QUANTITY_TEXT], ratio[STRUT_QUANTITY_TEXT] = "";
+  strut_quantity_text(mode->angular_frequency / TURN, DIGITS, "Hz", frequency);
+  if (isfinite(mode->damping_ratio)) snprintf(ratio, sizeof ratio, "%.4g", mode->damping_ratio);
+  strut_buffer_add(table, "  %4zu %14s %10s %8.1e  %-10s %s\n", i + 1, frequency, ratio,
+                   mode->error, strut_mode_kind_name(mode->kind), mode->description);
+}
+
+char *strut_modes_table(const strut_model *model, const strut_modes *modes) {
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer table = {0};
+  add_head(&table, model, modes);
+  strut_buffer_add(&table, "\n  %4s %14s %10s %8s  %-10s %s\n", "mode", "frequency", "damping",
+                   "error", "kind", "shape");
+  for (size_t i = 0; i < modes->count && i < MOST_ROWS; i++) add_row(&table, i, &modes->list[i]);
+  if (modes->count > MOST_ROWS)
+    strut_buffer_add(&table, "  ... and %zu more; --json lists all\n", modes->count - MOST_ROWS);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}
+
+static void add_number(strut_buffer *csv, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_number_text(value, text);
+  strut_buffer_add(csv, ",%s", text);
+}
+
+char *strut_modes_csv(const strut_modes *modes) {
+  strut_buffer csv = {0};
+  strut_buffer_add(&csv,
+                   "mode,frequency [Hz],damping ratio,damped frequency [Hz],decay rate [1/s],"
+                   "error,kind,description\n");
+  for (size_t i = 0; i < modes->count; i++) {
+    const strut_mode *mode = &modes->list[i];
+    strut_buffer_add(&csv, "%zu", i + 1);
+    add_number(&csv, mode->angular_frequency / TURN);
+    add_number(&csv, mode->damping_ratio);
+    add_number(&csv, mode->damped_frequency / TURN);
+    add_number(&csv, mode->decay_rate);
+    add_number(&csv, mode->error);
+    strut_buffer_add(&csv, ",%s,\"%s\"\n", strut_mode_kind_name(mode->kind), mode->description);
+  }
+  return strut_buffer_take(&csv);
+}

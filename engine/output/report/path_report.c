@@ -1,0 +1,382 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/report/path_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+
+enum {
+  MOST_ROWS = 20,
+  DIGITS = 6,
+  LONG = 8,
+  MOST_STOPS = 5,
+  MOST_FORCES = 40,
+  COLUMN = 14,
+  LABEL = 20
+};
+
+static const double ROUNDING = 1e-12; /* of the largest force */
+
+/* One line of a path, a point or an event. */
+typedef struct state {
+  double factor, arc;
+  const double *q, *force, *reaction, *contact;
+} state;
+
+static state state_of_point(const strut_path_point *p) {
+  return (state){p->factor, p->arc, p->q, p->force, p->reaction, p->contact};
+}
+
+static state state_of_event(const strut_path_event *e) {
+  return (state){e->factor, e->arc, e->q, e->force, e->reaction, e->contact};
+}
+
+/* The largest member force there [N]. */
+static double largest_force(const state *at, const strut_scene *scene) {
+  double most = 0;
+  for (size_t j = 0; j < scene->member_count; j++) most = fmax(most, fabs(at->force[j]));
+  return most;
+}
+
+/* A force as tables show it: 0 where it is a rounding of others. */
+static double shown_force(double value, double largest) {
+  return fabs(value) > ROUNDING * largest ? value : 0.0;
+}
+
+/* Whether the node's coordinate has a reaction: supported, or held for being displaced. */
+static bool is_held(const strut_path *path, const strut_scene *scene, size_t node, int axis) {
+  return scene->nodes[node].fixed[axis] || path->coordinate == (int32_t)(2 * node) + axis;
+}
+
+static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
+                      const double *q) {
+  struct cJSON *nodes = strut_json_object(json, to, "nodes");
+  for (size_t i = 0; i < scene->node_count; i++)
+    strut_json_numbers(json, nodes, scene->nodes[i].name, q + 2 * i, 2);
+}
+
+static void add_forces(strut_json *json, struct cJSON *to, const strut_path *path,
+                       const strut_scene *scene, const state *at) {
+  struct cJSON *forces = strut_json_object(json, to, "forces");
+  for (size_t j = 0; j < scene->member_count; j++)
+    strut_json_number(json, forces, scene->members[j].name, at->force[j]);
+  struct cJSON *reactions = strut_json_object(json, to, "reactions");
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (is_held(path, scene, i, 0) || is_held(path, scene, i, 1))
+      strut_json_numbers(json, reactions, scene->nodes[i].name, at->reaction + 2 * i, 2);
+  struct cJSON *contacts = strut_json_object(json, to, "contacts");
+  for (size_t i = 0; i < scene->contact_count; i++)
+    strut_json_number(json, contacts, scene->nodes[scene->contacts[i].node].name, at->contact[i]);
+}
+
+/* The parameter: a load's factor and what it is in newtons, or a value. */
+static void add_value(strut_json *json, struct cJSON *to, const strut_path *path, double value) {
+  if (path->over != STRUT_PATH_OVER_LOAD) {
+    strut_json_number(json, to, "value", value);
+    return;
+  }
+  strut_json_number(json, to, "factor", value);
+  if (path->reference > 0) strut_json_number(json, to, "force", value * path->reference);
+}
+
+static void add_points(strut_json *json, const strut_path *path, const strut_scene *scene) {
+  struct cJSON *points = strut_json_array(json, json->root, "points");
+  for (size_t i = 0; i < path->point_count; i++) {
+    const strut_path_point *point = &path->points[i];
+    struct cJSON *row = strut_json_object(json, points, NULL);
+    state at = state_of_point(point);
+    add_value(json, row, path, point->factor);
+    strut_json_number(json, row, "arc", point->arc);
+    strut_json_bool(json, row, "stable", point->negative == 0);
+    strut_json_integer(json, row, "negative_eigenvalues", point->negative);
+    add_nodes(json, row, scene, point->q);
+    add_forces(json, row, path, scene, &at);
+  }
+}
+
+static void add_events(strut_json *json, const strut_path *path, const strut_scene *scene) {
+  struct cJSON *events = strut_json_array(json, json->root, "events");
+  for (size_t i = 0; i < path->event_count; i++) {
+    const strut_path_event *event = &path->events[i];
+    struct cJSON *row = strut_json_object(json, events, NULL);
+    state at = state_of_event(event);
+    strut_json_text(json, row, "kind", strut_path_event_name(event->kind));
+    add_value(json, row, path, event->factor);
+    strut_json_number(json, row, "arc", event->arc);
+    strut_json_text(json, row, "detail", event->detail);
+    strut_json_bool(json, row, "stable_before", event->before == 0);
+    strut_json_bool(json, row, "stable_after", event->after == 0);
+    strut_json_integer(json, row, "negative_before", event->before);
+    strut_json_integer(json, row, "negative_after", event->after);
+    add_nodes(json, row, scene, event->q);
+    add_forces(json, row, path, scene, &at);
+  }
+}
+
+char *strut_path_json(const strut_path *path, const strut_scene *scene) {
+  static const char *const ends[] = {"until", "steps", "away", "lost", "invalid"};
+  bool loads = path->over == STRUT_PATH_OVER_LOAD;
+  strut_json json = strut_json_begin();
+  strut_json_text(&json, json.root, "name", scene->name);
+  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
+  strut_json_text(&json, json.root, "load", path->load);
+  strut_json_text(&json, json.root, "over", loads ? NULL : path->name);
+  strut_json_text(&json, json.root, "unit", path->unit);
+  strut_json_text(&json, json.root, "end", ends[path->end]);
+  strut_json_text(&json, json.root, "remark", path->remark[0] ? path->remark : NULL);
+  add_points(&json, path, scene);
+  add_events(&json, path, scene);
+  return strut_json_end(&json);
+}
+
+/* The node that is farthest from where the path began at some point of it; a free one if there is. */
+static size_t farthest_node(const strut_path *path, const strut_scene *scene) {
+  const double *from = path->points[0].q;
+  double most = -1;
+  size_t best = 0;
+  for (int pass = 0; pass < 2 && most < 0; pass++)
+    for (size_t k = 0; k < path->point_count; k++)
+      for (size_t i = 0; i < scene->node_count; i++) {
+        if (pass == 0 && scene->nodes[i].fixed[0] && scene->nodes[i].fixed[1]) continue;
+        double dx = path->points[k].q[2 * i] - from[2 * i];
+        double dy = path->points[k].q[2 * i + 1] - from[2 * i + 1];
+        if (dx * dx + dy * dy > most * (1 + 1e-9)) most = dx * dx + dy * dy, best = i;
+      }
+  return best;
+}
+
+/* The parameter with its unit; a load's factor without. */
+static const char *value_text(const strut_path *path, double value,
+                              char text[STRUT_QUANTITY_TEXT]) {
+  if (*path->unit) return strut_quantity_text(value, LONG, path->unit, text);
+  snprintf(text, STRUT_QUANTITY_TEXT, "%.*g", LONG, value);
+  return text;
+}
+
+/* The column for what is displaced: nothing but its reaction says more than the displacement. */
+static bool has_force(const strut_path *path) {
+  return path->coordinate >= 0 || (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0);
+}
+
+static double force_of(const strut_path *path, const state *at) {
+  return path->coordinate >= 0 ? at->reaction[path->coordinate] : at->factor * path->reference;
+}
+
+static void add_row(strut_buffer *table, const strut_path *path, const strut_scene *scene,
+                    const state *at, size_t node, const char *what) {
+  const double *q = at->q + 2 * node, *from = path->points[0].q + 2 * node;
+  double largest = path->coordinate >= 0 ? largest_force(at, scene) : 0;
+  double own = shown_force(force_of(path, at), largest);
+  char value[STRUT_QUANTITY_TEXT], force[STRUT_QUANTITY_TEXT];
+  char x[STRUT_QUANTITY_TEXT], y[STRUT_QUANTITY_TEXT];
+  strut_buffer_add(table, "  %14s", value_text(path, at->factor, value));
+  if (has_force(path))
+    strut_buffer_add(table, "  %14s", strut_quantity_text(own, LONG, "N", force));
+  strut_buffer_add(table, "  %14s  %14s  %s\n", strut_quantity_text(q[0] - from[0], DIGITS, "m", x),
+                   strut_quantity_text(q[1] - from[1], DIGITS, "m", y), what);
+}
+
+/* Bytes of at most so many characters of a text; how many they are into *count. */
+static int text_bytes(const char *text, int most, int *count) {
+  int bytes = 0;
+  for (*count = 0; text[bytes]; bytes++) {
+    if (((unsigned char)text[bytes] & 0xC0) == 0x80) continue;
+    if (*count == most) break;
+    ++*count;
+  }
+  return bytes;
+}
+
+/* A text cut to so many characters, at the right end of a column of them, or at the left one. */
+static void add_cut(strut_buffer *table, const char *text, int columns, bool right) {
+  int count, bytes = text_bytes(text, columns, &count);
+  strut_buffer_add(table, "%*s%.*s%*s", right ? columns - count : 0, "", bytes, text,
+                   right ? 0 : columns - count, "");
+}
+
+static void add_head(strut_buffer *table, const strut_path *path, const char *node) {
+  static const char *const axes[] = {" moves x", " moves y"};
+  strut_buffer_add(table, "  ");
+  add_cut(table, path->over == STRUT_PATH_OVER_LOAD ? "factor" : path->name, COLUMN, true);
+  if (has_force(path))
+    strut_buffer_add(table, "  %*s", COLUMN,
+                     path->coordinate >= 0 ? "reaction"
+                     : path->several       ? "force of each"
+                                           : "force");
+  for (int axis = 0; axis < 2; axis++) {
+    int count, bytes = text_bytes(node, COLUMN - (int)strlen(axes[axis]), &count);
+    strut_buffer_add(table, "  %*s%.*s%s", COLUMN - (int)strlen(axes[axis]) - count, "", bytes,
+                     node, axes[axis]);
+  }
+  strut_buffer_add(table, "\n");
+}
+
+/* The states that forces are printed of: the beginning, the first events, the end. */
+static size_t choose_stops(const strut_path *path, state stops[MOST_STOPS],
+                           const char *heads[MOST_STOPS]) {
+  size_t count = 1;
+  heads[0] = "start";
+  stops[0] = state_of_point(&path->points[0]);
+  for (size_t i = 0; i < path->event_count && count + 1 < MOST_STOPS; i++) {
+    if (path->events[i].arc == stops[count - 1].arc) continue;
+    heads[count] = strut_path_event_name(path->events[i].kind);
+    stops[count++] = state_of_event(&path->events[i]);
+  }
+  heads[count] = "end";
+  stops[count++] = state_of_point(&path->points[path->point_count - 1]);
+  return count;
+}
+
+static void add_force_row(strut_buffer *table, const char *name, const char *which, size_t count,
+                          const double *values, const double *largest) {
+  char text[STRUT_QUANTITY_TEXT];
+  int characters, bytes = text_bytes(name, LABEL - (int)strlen(which), &characters);
+  strut_buffer_add(table, "  %.*s%s%*s", bytes, name, which,
+                   LABEL - (int)strlen(which) - characters, "");
+  for (size_t k = 0; k < count; k++)
+    strut_buffer_add(table, "  %14s",
+                     strut_quantity_text(shown_force(values[k], largest[k]), DIGITS, "N", text));
+  strut_buffer_add(table, "\n");
+}
+
+/* Forces of members, supports and ground where something happens. */
+static void add_force_table(strut_buffer *table, const strut_path *path, const strut_scene *scene) {
+  state stops[MOST_STOPS];
+  const char *heads[MOST_STOPS];
+  double values[MOST_STOPS], largest[MOST_STOPS];
+  char text[STRUT_QUANTITY_TEXT];
+  size_t count = choose_stops(path, stops, heads), rows = 0, left = 0;
+  for (size_t k = 0; k < count; k++) largest[k] = largest_force(&stops[k], scene);
+  strut_buffer_add(table, "\n  %-*s", LABEL, "forces at");
+  for (size_t k = 0; k < count; k++) {
+    strut_buffer_add(table, "  ");
+    add_cut(table, heads[k], COLUMN, true);
+  }
+  strut_buffer_add(table, "\n  ");
+  add_cut(table, path->over == STRUT_PATH_OVER_LOAD ? "factor" : path->name, LABEL, false);
+  for (size_t k = 0; k < count; k++)
+    strut_buffer_add(table, "  %14s", value_text(path, stops[k].factor, text));
+  strut_buffer_add(table, "\n");
+  for (size_t j = 0; j < scene->member_count; j++) {
+    for (size_t k = 0; k < count; k++) values[k] = stops[k].force[j];
+    if (rows++ < MOST_FORCES)
+      add_force_row(table, scene->members[j].name, "", count, values, largest);
+  }
+  for (size_t i = 0; i < 2 * scene->node_count; i++) {
+    if (!is_held(path, scene, i / 2, i % 2)) continue;
+    for (size_t k = 0; k < count; k++) values[k] = stops[k].reaction[i];
+    if (rows++ < MOST_FORCES)
+      add_force_row(table, scene->nodes[i / 2].name, i % 2 ? " support y" : " support x", count,
+                    values, largest);
+  }
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    for (size_t k = 0; k < count; k++) values[k] = stops[k].contact[i];
+    if (rows++ < MOST_FORCES)
+      add_force_row(table, scene->nodes[scene->contacts[i].node].name, " ground", count, values,
+                    largest);
+  }
+  left = rows > MOST_FORCES ? rows - MOST_FORCES : 0;
+  if (left) strut_buffer_add(table, "  and %zu more; -o DIR writes all of them\n", left);
+}
+
+char *strut_path_table(const strut_path *path, const strut_scene *scene) {
+  strut_buffer table = {0};
+  size_t node = farthest_node(path, scene), at = 0;
+  size_t every = (path->point_count + MOST_ROWS - 1) / MOST_ROWS;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(&table, "%s%spath %s %s, %zu points\n\n", scene->name, *scene->name ? ": " : "",
+                   path->over == STRUT_PATH_OVER_LOAD ? "of" : "over", path->name,
+                   path->point_count);
+  add_head(&table, path, scene->nodes[node].name);
+  for (size_t k = 0; k < path->point_count; k++) {
+    const strut_path_point *point = &path->points[k];
+    state here = state_of_point(point);
+    for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
+      char what[400];
+      state there = state_of_event(&path->events[at]);
+      snprintf(what, sizeof what, "%s: %s", strut_path_event_name(path->events[at].kind),
+               path->events[at].detail);
+      add_row(&table, path, scene, &there, node, what);
+    }
+    if (k % every == 0 || k + 1 == path->point_count)
+      add_row(&table, path, scene, &here, node, point->negative ? "unstable" : "stable");
+  }
+  add_force_table(&table, path, scene);
+  if (path->remark[0]) strut_buffer_add(&table, "\n%s\n", path->remark);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}
+
+/* A cell of the header; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
+static void add_cell(strut_buffer *csv, const char *name, const char *what) {
+  bool quoted = strpbrk(name, ",\"\r\n") != NULL;
+  strut_buffer_add(csv, quoted ? ",\"" : ",");
+  for (; *name; name++) strut_buffer_add(csv, *name == '"' ? "\"\"" : "%c", *name);
+  strut_buffer_add(csv, ".%s%s", what, quoted ? "\"" : "");
+}
+
+static void add_number(strut_buffer *csv, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_number_text(value, text);
+  strut_buffer_add(csv, ",%s", text);
+}
+
+static void add_header(strut_buffer *csv, const strut_path *path, const strut_scene *scene) {
+  static const char *const axes[] = {"x [m]", "y [m]"};
+  static const char *const reactions[] = {"reaction_x [N]", "reaction_y [N]"};
+  bool loads = path->over == STRUT_PATH_OVER_LOAD;
+  strut_buffer_add(csv, loads ? "factor" : *path->unit ? "value [%s]" : "value", path->unit);
+  if (loads && path->reference > 0) strut_buffer_add(csv, ",force [N]");
+  strut_buffer_add(csv, ",arc,negative_eigenvalues,event");
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    add_cell(csv, scene->nodes[i / 2].name, axes[i % 2]);
+  for (size_t j = 0; j < scene->member_count; j++)
+    add_cell(csv, scene->members[j].name, "force [N]");
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    if (is_held(path, scene, i / 2, i % 2))
+      add_cell(csv, scene->nodes[i / 2].name, reactions[i % 2]);
+  for (size_t i = 0; i < scene->contact_count; i++)
+    add_cell(csv, scene->nodes[scene->contacts[i].node].name, "ground [N]");
+  strut_buffer_add(csv, "\n");
+}
+
+static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_scene *scene,
+                        const state *at, const char *negative, const char *event) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_number_text(at->factor, text);
+  strut_buffer_add(csv, "%s", text);
+  if (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0)
+    add_number(csv, at->factor * path->reference);
+  add_number(csv, at->arc);
+  strut_buffer_add(csv, ",%s,%s", negative, event);
+  for (size_t i = 0; i < 2 * scene->node_count; i++) add_number(csv, at->q[i]);
+  for (size_t j = 0; j < scene->member_count; j++) add_number(csv, at->force[j]);
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    if (is_held(path, scene, i / 2, i % 2)) add_number(csv, at->reaction[i]);
+  for (size_t i = 0; i < scene->contact_count; i++) add_number(csv, at->contact[i]);
+  strut_buffer_add(csv, "\n");
+}
+
+char *strut_path_csv(const strut_path *path, const strut_scene *scene) {
+  strut_buffer csv = {0};
+  size_t at = 0;
+  add_header(&csv, path, scene);
+  for (size_t k = 0; k < path->point_count; k++) {
+    const strut_path_point *point = &path->points[k];
+    char negative[16];
+    state here = state_of_point(point);
+    for (; at < path->event_count && path->events[at].arc <= point->arc; at++) {
+      state there = state_of_event(&path->events[at]);
+      add_numbers(&csv, path, scene, &there, "", strut_path_event_name(path->events[at].kind));
+    }
+    snprintf(negative, sizeof negative, "%d", (int)point->negative);
+    add_numbers(&csv, path, scene, &here, negative, "");
+  }
+  return strut_buffer_take(&csv);
+}

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* To an accuracy by way of the steady orbit: cheap to come near it, accurate where it counts. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/run/accuracy/orbit_solve.h"
+
+/* From this accuracy on the cheap method's own orbit may do, if the correction confirms it. */
+static const double COARSE = 0.0099;
+/* Below this one the accurate method has the last word. */
+static const double FINE = 0.0019;
+/* Periods in which the motion must become steady, for the search of an orbit to be worth it: of a run that ends
+   when it is, and of one whose window is asked for, which repeated runs answer more surely. */
+static const double LEAST = 20.0, LEAST_OF_RUN = 60.0;
+/* A first correction is believed without a second one if it is this part of what is enough. */
+static const double SMALL = 0.15;
+/* Of the work allowed, what may be spent before runs are repeated instead. */
+static const double PART_OF_BUDGET = 0.6;
+/* Work that the whole run by the cheap method may take, over that done so far. */
+static const double WHOLE_RUN = 2.0;
+enum { MOST_CORRECTIONS = 4 };
+/* Periods in which a motion should have become steady, and those in which a method that did not at
+   first is given another chance, before it is taken to be irregular. */
+static const double FIRST = 150.0, CHANCE = 12.0;
+/*
+ * An irregular motion's mean is taken if known to so many times what is wanted, and what it is known to
+ * is said: finer steps do not help there, and to average over longer is for whoever needs it.
+ */
+static const double MEAN = 20.0;
+/* Periods in which the accurate method should be steady from where corrections failed, and where it is
+   to have the last word. */
+static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
+
+static strut_status allocate(strut_way *w, const strut_model *model) {
+  size_t length = (size_t)model->length;
+  w->end.q = strut_arena_allocate(&w->arena, length, sizeof(double));
+  w->end.v = strut_arena_allocate(&w->arena, length, sizeof(double));
+  w->base = strut_arena_allocate(&w->arena, 2 * length + 1, sizeof(double));
+  w->orbit.y = strut_arena_allocate(&w->arena, 2 * length + 1, sizeof(double));
+  if (w->end.q && w->end.v && w->base && w->orbit.y) return STRUT_OK;
+  return strut_fail(w->a->error, STRUT_NO_MEMORY, "out of memory");
+}
+
+/*
+ * The cheap method until the motion repeats itself. Its steps meet the grid here and there in
+ * another way each period, which may keep it from repeating itself very closely: then less must do.
+ * *steady is false where even that is not reached.
+ */
+static strut_status run_cheap(strut_way *w, bool *steady) {
+  strut_accuracy *a = w->a;
+  strut_model *model = NULL;
+  double periods = strut_accuracy_periods(a), first = fmin(FIRST, periods);
+  strut_status status = strut_model_compile(a->scene, &model, a->error);
+  if (!status) status = allocate(w, model);
+  /* without ground transients may well be slow, with it motions may be irregular */
+  bool may_be_slow = !status && model->contacts.count == 0;
+  strut_model_free(model);
+  if (status) return status;
+  strut_accuracy_begin_phase(a, "waiting for steady motion");
+  status = strut_way_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
+  if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow && periods > first) {
+    strut_summary more = {0};
+    status =
+        strut_way_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true, &more);
+    if (!status) strut_way_add(&w->run, &more);
+    strut_summary_free(&more);
+  }
+  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
+            strut_accuracy_orbit_answers(a, &w->run.steady);
+  return status == STRUT_DIVERGED ? STRUT_OK : status;
+}
+
+/* The end of the run so far as fixed point of the cheap map. */
+static void take_end(strut_way *w) {
+  strut_way_take_end(w);
+  memcpy(w->base, w->orbit.y, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
+  w->travel = w->run.velocity * w->cheap.period * w->cheap.repeats;
+}
+
+static strut_status make_maps(strut_way *w, int32_t repeats) {
+  strut_accuracy *a = w->a;
+  a->spent += w->cheap.evaluations + w->fine.evaluations;
+  strut_way_count(w);
+  w->counted = 0;
+  strut_period_map_free(&w->cheap);
+  strut_period_map_free(&w->fine);
+  w->accurate = a->cheap;
+  w->accurate.integrator = "adaptive";
+  w->accurate.tolerance = fmin(2.5e-6, fmax(1e-12, a->wanted * STRUT_TOLERANCE_PER_ERROR));
+  w->accurate.step = strut_scene_span(a->scene).period / 50.0;
+  strut_status status = strut_period_map_create(a->scene, &a->cheap, repeats, &w->cheap, a->error);
+  if (!status)
+    status = strut_period_map_create(a->scene, &w->accurate, repeats, &w->fine, a->error);
+  if (status) return status;
+  w->cheap.interrupt = w->fine.interrupt = a->options->interrupt;
+  w->cheap.most_evaluations = w->fine.most_evaluations = strut_accuracy_left(a);
+  w->cheap.time = w->fine.time = w->end.time;
+  take_end(w);
+  return STRUT_OK;
+}
+
+/*
+ * Corrects until the next correction is expected to be small enough: each defect should be much
+ * smaller than the one before, and the velocity follows it in proportion.
+ */
+static strut_status correct(strut_way *w, double enough, int least) {
+  double defect = HUGE_VAL;
+  w->error = HUGE_VAL;
+  for (int k = 0; k < MOST_CORRECTIONS; k++) {
+    strut_status status = strut_orbit_correct(&w->cheap, &w->fine, w->base, w->travel,
+                                              0.1 * enough * w->cheap.period, &w->orbit);
+    status = strut_way_judge(w, status);
+    if (status) return status;
+    if (!w->orbit.converged || w->orbit.defect > 0.7 * defect) return STRUT_OK;
+    /* the first correction is taken to be right to a half, later ones by what they achieved */
+    double better = k == 0 ? 0.5 : fmax(0.1, w->orbit.defect / defect);
+    defect = w->orbit.defect;
+    w->error = better * fabs(w->orbit.correction);
+    bool small = fabs(w->orbit.correction) <= SMALL * enough;
+    if ((k + 1 >= least || small) && w->error <= enough) return STRUT_OK;
+  }
+  return STRUT_OK;
+}
+
+/* The motion on the orbit, by the accurate method: for what is recorded and told of contacts. */
+static strut_status run_orbit(strut_way *w, strut_summary *summary) {
+  strut_accuracy *a = w->a;
+  strut_experiment e = w->accurate;
+  double last = e.output_last;
+  e.measure_last = 0.0;
+  strut_way_put_orbit(w);
+  e.steady.wanted = false;
+  bool ran_on = w->found > STRUT_WAY_CORRECTED && w->last.steady.repeats > 0;
+  e.periods = ran_on ? w->last.steady.repeats : w->cheap.repeats;
+  if (a->options->sink_count && last > e.periods) e.periods = last;
+  e.output_last = 0.0;
+  strut_run_options options = *a->options;
+  strut_accuracy_begin_phase(a, "running the orbit");
+  options.from = &w->end;
+  options.progress = NULL;
+  return strut_accuracy_run(a, &e, &options, summary);
+}
+
+/* What this way has cost goes to the account of the next one. */
+static void give_up(strut_way *w, strut_summary *orbit) {
+  w->a->spent += w->run.force_evaluations + w->cheap.evaluations + w->fine.evaluations +
+                 w->last.force_evaluations + orbit->force_evaluations;
+  strut_summary_free(orbit);
+}
+
+static void release(strut_way *w) {
+  strut_period_map_free(&w->cheap);
+  strut_period_map_free(&w->fine);
+  strut_summary_free(&w->run);
+  strut_summary_free(&w->last);
+  strut_arena_free(&w->arena);
+}
+
+/*
+ * From nearly steady to the fixed point of the cheap map: by extrapolation, or, where that fails, by
+ * running on. *steady is false where there is none.
+ */
+static strut_status settle_cheap(strut_way *w, bool *steady) {
+  strut_accuracy *a = w->a;
+  bool found = false;
+  double enough = 0.1 * a->wanted * strut_way_size(a, w->run.velocity) * w->cheap.period;
+  strut_status status =
+      strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel, &found);
+  status = strut_way_judge(w, status);
+  if (status) return status;
+  *steady = true;
+  if (!found) {
+    strut_summary more = {0};
+    status = strut_way_run(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, CHANCE, true, &more);
+    *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC &&
+              more.steady.repeats == w->cheap.repeats;
+    if (!status) strut_way_add(&w->run, &more);
+    strut_summary_free(&more);
+    take_end(w);
+  }
+  w->run.velocity = w->travel / (w->cheap.period * w->cheap.repeats);
+  memcpy(w->orbit.y, w->base, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
+  w->settled = (strut_way_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
+  return status;
+}
+
+/* The cheap method's orbit corrected, or what else has the answer near it. */
+static strut_status finish(strut_way *w) {
+  strut_accuracy *a = w->a;
+  double size = strut_way_size(a, w->run.velocity), all = fmax(20.0, strut_accuracy_periods(a));
+  strut_status status = STRUT_OK;
+  w->error = HUGE_VAL;
+  if (strut_way_is_stuck(w)) {
+    status = strut_way_stuck(w);
+    return status || w->found ? status : strut_way_accurate(w, false, all);
+  }
+  strut_accuracy_begin_phase(a, "correcting the orbit");
+  bool last_word = a->wanted < FINE; /* the accurate method goes on itself: come near enough */
+  double enough = (last_word ? 3.0 : 0.3) * a->wanted * size;
+  status = correct(w, enough, a->wanted >= COARSE || last_word ? 1 : 2);
+  if (status) return status;
+  double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
+  if (a->wanted >= COARSE && moved <= 0.8 * a->wanted * size)
+    w->found = STRUT_WAY_CHEAP;
+  else if (!last_word && strut_way_part(w) <= 0.8)
+    w->found = STRUT_WAY_CORRECTED;
+  if (w->found) return STRUT_OK;
+  status = strut_way_accurate(w, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
+  if (status) return status;
+  if (!w->found) return strut_way_disputed(w);
+  return strut_way_check(w);
+}
+
+/*
+ * The motion may be irregular; or it becomes periodic after all. Else the accurate method is left to
+ * go on.
+ */
+static strut_status find_without_orbit(strut_way *w) {
+  bool periodic = false;
+  strut_status status = strut_way_irregular(w, &periodic);
+  if (status || w->found) return status;
+  if (!periodic || !strut_accuracy_orbit_answers(w->a, &w->run.steady))
+    return strut_way_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
+  status = make_maps(w, w->run.steady.repeats);
+  return status ? status : finish(w);
+}
+
+/*
+ * Where the cheap method nearly repeats itself, but not quite, the accurate one may: its steps meet no
+ * grid.
+ */
+static strut_status find_without_cheap(strut_way *w) {
+  strut_status status = strut_way_accurate(w, true, CHANCE);
+  return status || w->found ? status : find_without_orbit(w);
+}
+
+/* The orbit, as accurately as is wanted. */
+static strut_status find_orbit(strut_way *w, bool steady) {
+  strut_status status = make_maps(w, steady ? w->run.steady.repeats : 1);
+  w->error = HUGE_VAL;
+  if (status) return status;
+  if (!steady) return find_without_orbit(w);
+  status = settle_cheap(w, &steady);
+  if (status) return status;
+  if (!steady && w->cheap.repeats > 1) {
+    status = make_maps(w, 1);
+    w->settled = (strut_way_cost){0};
+  }
+  if (status) return status;
+  return steady ? finish(w) : find_without_cheap(w);
+}
+
+/*
+ * Does the run that the way ended with speak for the scene's window? It has to have become steady before
+ * that begins, counted from the scene's start.
+ */
+static bool answers(const strut_way *w) {
+  const strut_accuracy *a = w->a;
+  strut_steady_summary steady = w->last.steady;
+  if (a->scene->experiment.steady.wanted) return true;
+  double periods = (double)(w->run.steady.periods + steady.periods);
+  if (periods > 2.0 * strut_accuracy_periods(a)) return false;
+  steady.periods = 0;
+  return steady.kind != STRUT_MOTION_PERIODIC || strut_accuracy_orbit_answers(a, &steady);
+}
+
+/*
+ * Orbits need not be isolated: a structure that creeps within its stick bands may drift along a family of
+ * them, more slowly than the watch for steady motion sees. Where the whole run costs the cheap method not
+ * much more than what has been done, it is made, and must be as fast in its window as on the orbit.
+ */
+static strut_status check_window(strut_way *w) {
+  strut_accuracy *a = w->a;
+  bool of_orbit = w->found >= STRUT_WAY_CHEAP && w->found <= STRUT_WAY_STUCK;
+  double periods = a->scene->experiment.periods, before = (double)w->run.steady.periods;
+  double work = (double)w->run.force_evaluations / fmax(1.0, before) * periods;
+  if (!of_orbit || a->scene->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
+    return STRUT_OK;
+  strut_experiment whole = a->cheap;
+  strut_summary run = {0};
+  strut_run_options options = {.without_ledger = true,
+                               .interrupt = a->options->interrupt,
+                               .progress = a->options->progress,
+                               .progress_context = a->options->progress_context,
+                               .from = a->options->from};
+  whole.step = w->cheap.dt;
+  strut_accuracy_begin_phase(a, "the whole run by the cheapest method");
+  strut_status status = strut_accuracy_run(a, &whole, &options, &run);
+  a->spent += run.force_evaluations;
+  double away = fabs(run.velocity - w->run.velocity);
+  if (!status && !(away <= 0.3 * a->wanted * strut_way_size(a, run.velocity)))
+    w->found = STRUT_WAY_NONE;
+  strut_summary_free(&run);
+  return status;
+}
+
+/* The motion on the orbit found, which should go as fast as that was found to. */
+static strut_status confirm(strut_way *w, strut_summary *orbit) {
+  strut_accuracy *a = w->a;
+  if (w->found > STRUT_WAY_CORRECTED && !answers(w)) w->found = STRUT_WAY_NONE;
+  strut_status status = check_window(w);
+  if (status || !w->found) return status;
+  status = run_orbit(w, orbit);
+  double away = fabs(orbit->velocity - w->orbit.velocity);
+  if (status || w->found > STRUT_WAY_CORRECTED ||
+      away <= 0.6 * a->wanted * strut_way_size(a, w->run.velocity))
+    return status;
+  w->found = STRUT_WAY_NONE;
+  a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
+  strut_summary_free(orbit);
+  *orbit = (strut_summary){0};
+  status = strut_way_accurate(w, true, a->wanted < FINE ? LONG_TRIAL : TRIAL);
+  if (!status && !w->found) status = strut_way_disputed(w);
+  return status ? status : run_orbit(w, orbit);
+}
+
+strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
+  strut_way w = {.a = a};
+  *done = false;
+  bool steady_wanted = a->scene->experiment.steady.wanted;
+  if (strut_accuracy_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
+  bool steady = false;
+  strut_summary orbit = {0};
+  const strut_experiment given = a->cheap;
+  a->allowed = (int64_t)(PART_OF_BUDGET * (double)a->budget);
+  a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
+  a->cheap.refine_memory = 3.0;
+  a->cheap.steady.mean_tolerance = MEAN * a->wanted;
+  strut_status status = run_cheap(&w, &steady);
+  bool ran = !status && w.run.status == STRUT_OK;
+  if (ran) status = find_orbit(&w, steady);
+  if (ran && !status) status = confirm(&w, &orbit);
+  *done = !status && w.found;
+  if (*done)
+    strut_way_tell(&w, &orbit);
+  else
+    give_up(&w, &orbit);
+  a->cheap = given;
+  a->allowed = a->budget;
+  release(&w);
+  return status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT ? STRUT_OK : status;
+}

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/measure/columns.h"
+
+#include <math.h>
+
+#include "engine/forces/forces.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* Rounding of positions, relative to the structure's size; and of sums over many steps. */
+static const double FINE = 1e-12, COARSE = 1e-10;
+
+bool strut_columns_create(const strut_model *model, double step, size_t most, strut_arena *arena,
+                          strut_columns *c) {
+  double slope = model->scene->ground.slope;
+  *c = (strut_columns){.model = model, .step = step, .normal = {-sin(slope), cos(slope)}};
+  c->column = strut_arena_allocate(arena, most, sizeof *c->column);
+  c->value = strut_arena_allocate(arena, most, sizeof *c->value);
+  c->before = strut_arena_allocate(arena, most, sizeof *c->before);
+  c->least = strut_arena_allocate(arena, most, sizeof *c->least);
+  c->most = strut_arena_allocate(arena, most, sizeof *c->most);
+  c->largest = strut_arena_allocate(arena, most, sizeof *c->largest);
+  return c->column && c->value && c->before && c->least && c->most && c->largest;
+}
+
+/* The scene names a contact by its node. */
+static int32_t contact_of(const strut_model *model, int32_t node) {
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    if (model->contacts.entry[i].node == node) return i;
+  return -1;
+}
+
+static void note_needs(strut_columns *c, strut_column_kind kind) {
+  bool rigid = c->model->plan & STRUT_TERM_RIGID;
+  switch (kind) {
+    case STRUT_COLUMN_NORMAL:
+    case STRUT_COLUMN_FRICTION:
+      c->forces = true;
+      break;
+    case STRUT_COLUMN_FORCE:
+      c->forces = c->forces || rigid;
+      break;
+    case STRUT_COLUMN_KINETIC:
+    case STRUT_COLUMN_ELASTIC:
+    case STRUT_COLUMN_GRAVITY:
+    case STRUT_COLUMN_GROUND:
+    case STRUT_COLUMN_TOTAL:
+      c->energies = true;
+      break;
+    case STRUT_COLUMN_NODE_VX:
+    case STRUT_COLUMN_NODE_VY:
+    case STRUT_COLUMN_CENTRE_VX:
+    case STRUT_COLUMN_CENTRE_VY:
+    case STRUT_COLUMN_RATE:
+      c->speeds = true;
+      break;
+    default:
+      break;
+  }
+}
+
+size_t strut_columns_add(strut_columns *c, strut_column column) {
+  if (column.kind == STRUT_COLUMN_NORMAL || column.kind == STRUT_COLUMN_FRICTION)
+    column.item = contact_of(c->model, column.item);
+  for (size_t i = 0; i < c->count; i++) {
+    const strut_column *other = &c->column[i];
+    if (other->kind == column.kind && other->item == column.item && other->other == column.other)
+      return i;
+  }
+  note_needs(c, column.kind);
+  c->column[c->count] = column;
+  return c->count++;
+}
+
+/* The centre of mass of one component of q or v; *size gets the mean absolute value. */
+static double centre(const strut_model *model, const double *from, double *size) {
+  double sum = 0.0, mass = 0.0;
+  *size = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    sum += model->weight[i] * from[2 * i];
+    *size += model->weight[i] * fabs(from[2 * i]);
+    mass += model->weight[i];
+  }
+  *size /= mass;
+  return sum / mass;
+}
+
+/* Above the ground's line, along its normal. */
+static double height_of(const strut_columns *c, const double q[2]) {
+  return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
+}
+
+static double of_member(const strut_columns *c, const strut_state *state, strut_column column) {
+  strut_member_values m = strut_member_measure(c->model, state, column.item);
+  switch (column.kind) {
+    case STRUT_COLUMN_LENGTH:
+      return m.length;
+    case STRUT_COLUMN_STRETCH:
+      return m.length - state->rest[column.item];
+    case STRUT_COLUMN_RATE:
+      return m.rate;
+    default:
+      return m.force;
+  }
+}
+
+/* From one node to another, in x and y. */
+static void span(const strut_columns *c, const strut_state *state, strut_column column,
+                 double d[2]) {
+  const strut_member_table *t = &c->model->members;
+  bool tilt = column.kind == STRUT_COLUMN_TILT;
+  size_t a = tilt ? t->from[column.item] : 2 * (size_t)column.item;
+  size_t b = tilt ? t->to[column.item] : 2 * (size_t)column.other;
+  for (size_t k = 0; k < 2; k++) d[k] = state->q[b + k] - state->q[a + k];
+}
+
+static double of_ledger(const strut_columns *c, const strut_state *state, strut_column_kind kind,
+                        double *size) {
+  const double *w = state->work;
+  double sum = w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
+  switch (kind) {
+    case STRUT_COLUMN_DRIVES:
+      return w[STRUT_POWER_DRIVE];
+    case STRUT_COLUMN_LOADS:
+      return w[STRUT_POWER_LOAD] + strut_energy_load_work(c->model, state);
+    case STRUT_COLUMN_BELT:
+      return w[STRUT_POWER_BELT];
+    case STRUT_COLUMN_LOST_MEMBERS:
+      return w[STRUT_POWER_MEMBERS];
+    case STRUT_COLUMN_LOST_CONTACT:
+      return w[STRUT_POWER_CONTACT];
+    case STRUT_COLUMN_LOST_FRICTION:
+      return w[STRUT_POWER_FRICTION];
+    case STRUT_COLUMN_LOST:
+      return sum;
+    default:
+      break;
+  }
+  const strut_stored *s = &c->stored;
+  *size = fabs(s->kinetic) + fabs(s->elastic) + fabs(s->gravity) + fabs(s->contact);
+  return s->kinetic + s->elastic + s->gravity + s->contact;
+}
+
+/* The value of a column; *size: the largest of the terms that it sums, where that is not the value. */
+static double value_of(const strut_columns *c, const strut_state *state, strut_column column,
+                       double *size) {
+  size_t at = 2 * (size_t)(column.item < 0 ? 0 : column.item);
+  double d[2];
+  switch (column.kind) {
+    case STRUT_COLUMN_TIME:
+      return (double)state->step * c->step + c->shorter + state->time_offset;
+    case STRUT_COLUMN_NODE_X:
+      return state->q[at];
+    case STRUT_COLUMN_NODE_Y:
+      return state->q[at + 1];
+    case STRUT_COLUMN_NODE_VX:
+      return state->v[at];
+    case STRUT_COLUMN_NODE_VY:
+      return state->v[at + 1];
+    case STRUT_COLUMN_HEIGHT:
+      return height_of(c, state->q + at);
+    case STRUT_COLUMN_NORMAL:
+      return column.item < 0 ? 0.0 : state->normal[column.item];
+    case STRUT_COLUMN_FRICTION:
+      return column.item < 0 ? 0.0 : state->friction[column.item];
+    case STRUT_COLUMN_LENGTH:
+    case STRUT_COLUMN_STRETCH:
+    case STRUT_COLUMN_RATE:
+    case STRUT_COLUMN_FORCE:
+      return of_member(c, state, column);
+    case STRUT_COLUMN_TILT:
+    case STRUT_COLUMN_ANGLE:
+      span(c, state, column, d);
+      return atan2(d[1], d[0]);
+    case STRUT_COLUMN_DISTANCE:
+      span(c, state, column, d);
+      return hypot(d[0], d[1]);
+    case STRUT_COLUMN_CENTRE_X:
+      return centre(c->model, state->q, size);
+    case STRUT_COLUMN_CENTRE_Y:
+      return centre(c->model, state->q + 1, size);
+    case STRUT_COLUMN_CENTRE_VX:
+      return centre(c->model, state->v, size);
+    case STRUT_COLUMN_CENTRE_VY:
+      return centre(c->model, state->v + 1, size);
+    case STRUT_COLUMN_KINETIC:
+      return c->stored.kinetic;
+    case STRUT_COLUMN_ELASTIC:
+      return c->stored.elastic;
+    case STRUT_COLUMN_GRAVITY:
+      return c->stored.gravity;
+    case STRUT_COLUMN_GROUND:
+      return c->stored.contact;
+    default:
+      return of_ledger(c, state, column.kind, size);
+  }
+}
+
+/* Forces and energies at the state, where a column needs them. */
+static void prepare(strut_columns *c, strut_state *state) {
+  double t = (double)state->step * c->step + c->shorter;
+  if (c->forces)
+    strut_forces_observe(c->model, state, t);
+  else
+    strut_drive_apply(c->model, state, t);
+  if (c->energies) c->stored = strut_energy_stored(c->model, state, t);
+  for (int32_t i = 0; c->speeds && i < c->model->node_count; i++)
+    c->fastest = fmax(c->fastest, hypot(state->v[2 * i], state->v[2 * i + 1]));
+}
+
+static bool is_angle(strut_column_kind kind) {
+  return kind == STRUT_COLUMN_TILT || kind == STRUT_COLUMN_ANGLE;
+}
+
+static void note_extremes(strut_columns *c, size_t i, double size) {
+  c->least[i] = fmin(c->least[i], c->value[i]);
+  c->most[i] = fmax(c->most[i], c->value[i]);
+  c->largest[i] = fmax(c->largest[i], size);
+}
+
+void strut_columns_evaluate(strut_columns *c, strut_state *state) {
+  prepare(c, state);
+  for (size_t i = 0; i < c->count; i++) {
+    double size = -1.0, last = c->value[i], now = value_of(c, state, c->column[i], &size);
+    if (is_angle(c->column[i].kind)) now += TWO_PI * round((last - now) / TWO_PI);
+    c->before[i] = last;
+    c->value[i] = now;
+    note_extremes(c, i, size < 0.0 ? fabs(now) : size);
+  }
+}
+
+void strut_columns_begin(strut_columns *c, strut_state *state) {
+  c->fastest = 0.0;
+  prepare(c, state);
+  for (size_t i = 0; i < c->count; i++) {
+    double size = -1.0;
+    c->before[i] = c->value[i] = value_of(c, state, c->column[i], &size);
+    c->least[i] = (double)INFINITY, c->most[i] = -(double)INFINITY, c->largest[i] = 0.0;
+    note_extremes(c, i, size < 0.0 ? fabs(c->value[i]) : size);
+  }
+}
+
+double strut_columns_span(const strut_columns *c, size_t index) {
+  bool sums = c->column[index].kind == STRUT_COLUMN_TOTAL; /* whose terms vary where it does not */
+  return sums ? c->largest[index] : c->most[index] - c->least[index];
+}
+
+double strut_columns_noise(const strut_columns *c, size_t index) {
+  const strut_model *m = c->model;
+  int32_t item = c->column[index].item;
+  double length = FINE * m->size;
+  switch (c->column[index].kind) {
+    case STRUT_COLUMN_NODE_X:
+    case STRUT_COLUMN_NODE_Y:
+    case STRUT_COLUMN_HEIGHT:
+    case STRUT_COLUMN_LENGTH:
+    case STRUT_COLUMN_STRETCH:
+    case STRUT_COLUMN_DISTANCE:
+    case STRUT_COLUMN_CENTRE_X:
+    case STRUT_COLUMN_CENTRE_Y:
+      return length;
+    case STRUT_COLUMN_TILT:
+    case STRUT_COLUMN_ANGLE:
+      return FINE;
+    case STRUT_COLUMN_NODE_VX:
+    case STRUT_COLUMN_NODE_VY:
+    case STRUT_COLUMN_CENTRE_VX:
+    case STRUT_COLUMN_CENTRE_VY:
+    case STRUT_COLUMN_RATE:
+      return COARSE * c->fastest;
+    case STRUT_COLUMN_FORCE:
+      return length * m->members.stiffness[item];
+    case STRUT_COLUMN_NORMAL:
+      return item < 0 ? 0.0 : length * m->contacts.entry[item].stiffness;
+    default:
+      return 0.0;
+  }
+}

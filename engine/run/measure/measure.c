@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/measure/measure.h"
+
+#include <math.h>
+
+#include "engine/run/measure/hermite.h"
+
+/* A mark this close to a step's end, in steps, counts as being there. */
+static const double MARK_TOLERANCE = 1e-6;
+
+/* A mean velocity of so little beside the nodes' own is what rounding leaves of a symmetric motion. */
+static const double CANCELLED = 1e-10;
+
+void strut_measure_track(const strut_model *model, const strut_state *state,
+                         const strut_measure *m, double *x, double *v) {
+  if (m->node >= 0) {
+    *x = state->q[2 * m->node];
+    *v = state->v[2 * m->node];
+    return;
+  }
+  double sum = 0.0, rate = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    sum += model->weight[i] * state->q[2 * i];
+    rate += model->weight[i] * state->v[2 * i];
+  }
+  *x = sum / m->total_mass;
+  *v = rate / m->total_mass;
+}
+
+static void place_marks(const strut_span *span, double begin, strut_measure *m) {
+  for (size_t i = 0; i < m->marks; i++)
+    m->time[i] = begin + (span->period > 0 ? span->window_start + (double)i * span->period
+                                           : (i ? span->duration : span->window_start));
+  m->time[m->marks - 1] = begin + span->duration;
+}
+
+void strut_measure_window(const strut_model *model, strut_state *state, double begin,
+                          double period, size_t periods, strut_measure *m) {
+  size_t contacts = (size_t)model->contacts.count;
+  m->marks = periods + 1 < m->room ? periods + 1 : m->room;
+  for (size_t i = 0; i < m->marks; i++) m->time[i] = begin + (double)i * period;
+  m->next = 0;
+  m->window_steps = 0;
+  for (size_t i = 0; i < contacts; i++) m->contact_steps[i] = 0, m->max_height[i] = -HUGE_VAL;
+  strut_measure_begin(model, state, m);
+}
+
+strut_status strut_measure_create(const strut_model *model, const strut_time_grid *grid,
+                                  double begin, size_t room, strut_measure *m) {
+  *m = (strut_measure){.grid = *grid, .node = model->scene->experiment.measure_node};
+  strut_span span = strut_scene_span(model->scene);
+  double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
+  size_t contacts = (size_t)model->contacts.count;
+  m->marks = periods < 1.5 ? 2 : (size_t)ceil(periods - 1e-9) + 1;
+  m->room = room > m->marks ? room : m->marks;
+  m->time = strut_arena_allocate(&m->arena, m->room, sizeof *m->time);
+  m->x = strut_arena_allocate(&m->arena, m->room, sizeof *m->x);
+  m->contact_steps = strut_arena_allocate(&m->arena, contacts, sizeof *m->contact_steps);
+  m->max_height = strut_arena_allocate(&m->arena, contacts, sizeof *m->max_height);
+  bool wanted = model->scene->experiment.quantity_count > 0;
+  if (wanted) m->quantities = strut_quantities_create(model, grid->step, &m->arena);
+  if (!m->time || !m->x || !m->contact_steps || !m->max_height || (wanted && !m->quantities)) {
+    strut_measure_free(m);
+    return STRUT_NO_MEMORY;
+  }
+  place_marks(&span, begin, m);
+  for (int32_t i = 0; i < model->node_count; i++) m->total_mass += model->weight[i];
+  for (size_t i = 0; i < contacts; i++) m->max_height[i] = -HUGE_VAL;
+  return STRUT_OK;
+}
+
+int64_t strut_measure_first_step(const strut_measure *m) {
+  double n = floor(m->time[0] / m->grid.step + MARK_TOLERANCE);
+  return n > 0 ? (int64_t)n : 0;
+}
+
+static double fastest_node(const strut_model *model, const strut_state *state) {
+  double most = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++)
+    most = fmax(most, hypot(state->v[2 * i], state->v[2 * i + 1]));
+  return most;
+}
+
+static strut_marks marks_of(const strut_measure *m, double length) {
+  return (strut_marks){
+      .step = m->grid.step, .length = length, .count = m->marks, .time = m->time};
+}
+
+void strut_measure_begin(const strut_model *model, strut_state *state, strut_measure *m) {
+  strut_marks marks = marks_of(m, m->grid.step);
+  m->fastest = fastest_node(model, state);
+  if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
+  strut_measure_track(model, state, m, &m->last_x, &m->last_v);
+  double position = m->time[0] / m->grid.step - (double)state->step;
+  if (fabs(position) < MARK_TOLERANCE) {
+    m->x[0] = m->last_x;
+    m->next = 1;
+  }
+}
+
+static void count_contacts(const strut_model *model, const strut_state *state, strut_measure *m) {
+  const strut_contact_table *c = &model->contacts;
+  m->window_steps++;
+  for (int32_t i = 0; i < c->count; i++) {
+    const double *q = state->q + c->at[i];
+    double up = q[1] - c->height;
+    double gap = c->normal[0] == 0.0 ? up : q[0] * c->normal[0] + up * c->normal[1];
+    if (gap < 0.0) m->contact_steps[i]++;
+    if (gap > m->max_height[i]) m->max_height[i] = gap;
+  }
+}
+
+/* Is the next mark within the latest step, which ended as step n? */
+static bool mark_reached(const strut_measure *m, double n) {
+  return m->next < m->marks && m->time[m->next] / m->grid.step <= n + MARK_TOLERANCE;
+}
+
+/* Length of the step that ended as step n: the last one of a run may be shorter. */
+static double length_of(const strut_measure *m, int64_t n) {
+  double rest = n == m->grid.last ? strut_time_grid_rest(&m->grid) : 0.0;
+  return rest > 0.0 ? rest : m->grid.step;
+}
+
+/* Apart from strut_measure_step, which most steps leave without it. */
+static __attribute__((noinline)) void pass_marks(const strut_model *model,
+                                                 const strut_state *state, strut_measure *m,
+                                                 double x, double v) {
+  double n = (double)state->step, step = m->grid.step, length = length_of(m, state->step);
+  m->fastest = fmax(m->fastest, fastest_node(model, state));
+  while (mark_reached(m, n)) {
+    double s = (m->time[m->next] / step - (n - 1.0)) * (step / length);
+    m->x[m->next++] = s > 1.0 - MARK_TOLERANCE
+                          ? x
+                          : strut_hermite(m->last_x, m->last_v, x, v, length, s);
+  }
+}
+
+void strut_measure_step(const strut_model *model, const strut_state *state, strut_measure *m) {
+  double x, v;
+  strut_measure_track(model, state, m, &x, &v);
+  count_contacts(model, state, m);
+  if (mark_reached(m, (double)state->step)) pass_marks(model, state, m, x, v);
+  m->last_x = x;
+  m->last_v = v;
+}
+
+void strut_measure_step_quantities(const strut_model *model, strut_state *state,
+                                   strut_measure *m) {
+  strut_marks marks = marks_of(m, length_of(m, state->step));
+  strut_measure_step(model, state, m);
+  strut_quantities_step(m->quantities, &marks, state);
+}
+
+bool strut_measure_is_zero(const strut_measure *m, double velocity) {
+  return fabs(velocity) <= CANCELLED * m->fastest;
+}
+
+void strut_measure_finish(const strut_model *model, const strut_measure *m,
+                          strut_summary *summary) {
+  size_t passed = m->next;
+  if (m->quantities) strut_quantities_finish(m->quantities, summary);
+  summary->velocity = summary->velocity_spread = (double)NAN;
+  summary->window_start = m->time[0] + m->grid.offset;
+  if (passed >= 2) {
+    summary->velocity = (m->x[passed - 1] - m->x[0]) / (m->time[passed - 1] - m->time[0]);
+    double sum = 0.0, count = (double)(passed - 1);
+    for (size_t i = 1; i < passed; i++) {
+      double d = (m->x[i] - m->x[i - 1]) / (m->time[i] - m->time[i - 1]) - summary->velocity;
+      sum += d * d;
+    }
+    bool by_periods = strut_scene_span(model->scene).period > 0;
+    if (by_periods && passed > 2) summary->velocity_spread = sqrt(sum / (count - 1.0));
+  }
+  for (size_t i = 0; i < summary->contact_count; i++) {
+    strut_contact_summary *c = &summary->contacts[i];
+    bool any = m->window_steps > 0;
+    c->duty = any ? (double)m->contact_steps[i] / (double)m->window_steps : (double)NAN;
+    c->max_height = any ? m->max_height[i] : (double)NAN;
+  }
+}
+
+void strut_measure_free(strut_measure *measure) { strut_arena_free(&measure->arena); }

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Measured quantities of a run: evaluated after each step of the window, reduced over it and over
+ * each of its periods.
+ *
+ * Means are integrals by the trapezoidal rule over the steps, divided by the time; the mean of a
+ * single velocity, or of the rate of a length, is displacement over time. Where a mark of the window
+ * lies within a step, values there are interpolated linearly, positions by a cubic. Largest and
+ * smallest values are those at the ends of steps, and where five of them in a row lie on a smooth
+ * curve, the vertex of the parabola through the middle three.
+ */
+#ifndef STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
+#define STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
+
+#include "engine/model/state.h"
+#include "engine/run/measure/summary.h"
+
+typedef struct strut_quantities strut_quantities;
+
+/** When the window is cut: see measure.h. */
+typedef struct strut_marks {
+  double step;        /* dt [s] */
+  double length;      /* of the latest step, which is shorter where the run ends [s] */
+  size_t count;       /* of marks */
+  const double *time; /* (count) [s] */
+} strut_marks;
+
+/** All memory for the scene's quantities, in the arena; NULL: memory is out. */
+strut_quantities *strut_quantities_create(const strut_model *model, double step,
+                                          strut_arena *arena);
+/** Does some quantity of the scene need works or losses, which only the ledger knows? */
+bool strut_quantities_need_ledger(const strut_scene *scene);
+/** Takes the values before the first step of a window. */
+void strut_quantities_begin(strut_quantities *quantities, const strut_marks *marks,
+                            strut_state *state);
+/** After each step from then on. Allocates nothing. */
+void strut_quantities_step(strut_quantities *quantities, const strut_marks *marks,
+                           strut_state *state);
+/** Fills summary->measured from the marks passed so far. */
+void strut_quantities_finish(strut_quantities *quantities, strut_summary *summary);
+
+#endif

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/measure/quantity_program.h"
+
+#include <math.h>
+
+static double apply(strut_operation operation, double a, double b) {
+  switch (operation) {
+    case STRUT_OPERATION_ADD:
+      return a + b;
+    case STRUT_OPERATION_SUBTRACT:
+      return a - b;
+    case STRUT_OPERATION_MULTIPLY:
+      return a * b;
+    case STRUT_OPERATION_DIVIDE:
+      return a / b;
+    case STRUT_OPERATION_POWER:
+      return pow(a, b);
+    case STRUT_OPERATION_NEGATE:
+      return -a;
+    case STRUT_OPERATION_SIN:
+      return sin(a);
+    case STRUT_OPERATION_COS:
+      return cos(a);
+    case STRUT_OPERATION_TAN:
+      return tan(a);
+    case STRUT_OPERATION_ASIN:
+      return asin(a);
+    case STRUT_OPERATION_ACOS:
+      return acos(a);
+    case STRUT_OPERATION_ATAN:
+      return atan(a);
+    case STRUT_OPERATION_ATAN2:
+      return atan2(a, b);
+    case STRUT_OPERATION_SQRT:
+      return sqrt(a);
+    case STRUT_OPERATION_EXP:
+      return exp(a);
+    case STRUT_OPERATION_LOG:
+      return log(a);
+    case STRUT_OPERATION_LOG10:
+      return log10(a);
+    case STRUT_OPERATION_ABS:
+      return fabs(a);
+    case STRUT_OPERATION_MIN:
+      return b < a ? b : a;
+    case STRUT_OPERATION_MAX:
+      return b > a ? b : a;
+    case STRUT_OPERATION_FLOOR:
+      return floor(a);
+    case STRUT_OPERATION_CEIL:
+      return ceil(a);
+    case STRUT_OPERATION_ROUND:
+      return round(a);
+    default:
+      return hypot(a, b);
+  }
+}
+
+static int operands(strut_operation operation) {
+  static const int counts[] = {
+#define STRUT_OPERANDS(id, count, word) count,
+      STRUT_OPERATION_TABLE(STRUT_OPERANDS)
+#undef STRUT_OPERANDS
+  };
+  return counts[operation];
+}
+
+double strut_program_evaluate(const strut_quantity_definition *d, const size_t *index,
+                              const double *value, double *stack) {
+  size_t top = 0;
+  for (size_t i = 0; i < d->length; i++) {
+    const strut_instruction *p = &d->program[i];
+    if (p->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = p->number;
+    } else if (p->operation == STRUT_OPERATION_COLUMN) {
+      stack[top++] = value[index[i]];
+    } else {
+      int count = operands(p->operation);
+      top -= (size_t)count;
+      stack[top] = apply(p->operation, stack[top], count > 1 ? stack[top + 1] : 0.0);
+      top++;
+    }
+  }
+  return stack[0];
+}
+
+/* How far the result of one operation moves where its operands move by da and db. */
+static double carried(strut_operation operation, double a, double b, double da, double db) {
+  switch (operation) {
+    case STRUT_OPERATION_MULTIPLY:
+      return a * db + b * da;
+    case STRUT_OPERATION_DIVIDE:
+      return da / b + a * db / (b * b);
+    case STRUT_OPERATION_POWER:
+      return a > 0.0 ? fabs(b) * pow(a, b) * da / a : da;
+    case STRUT_OPERATION_SQRT:
+      return a > 0.0 ? 0.5 * da / sqrt(a) : sqrt(da);
+    case STRUT_OPERATION_EXP:
+      return exp(a) * da;
+    case STRUT_OPERATION_LOG:
+    case STRUT_OPERATION_LOG10:
+    case STRUT_OPERATION_ATAN2:
+      return a > 0.0 ? da / a : 0.0;
+    default:
+      return da + db;
+  }
+}
+
+static strut_magnitude combine(strut_operation operation, strut_magnitude a, strut_magnitude b) {
+  double size;
+  switch (operation) {
+    case STRUT_OPERATION_MULTIPLY:
+    case STRUT_OPERATION_DIVIDE:
+    case STRUT_OPERATION_POWER:
+    case STRUT_OPERATION_SQRT:
+    case STRUT_OPERATION_EXP:
+      size = fabs(apply(operation, a.size, b.size));
+      break;
+    case STRUT_OPERATION_SIN:
+    case STRUT_OPERATION_COS:
+    case STRUT_OPERATION_ASIN:
+    case STRUT_OPERATION_ACOS:
+    case STRUT_OPERATION_ATAN:
+    case STRUT_OPERATION_ATAN2:
+    case STRUT_OPERATION_LOG:
+    case STRUT_OPERATION_LOG10:
+      size = 1.0;
+      break;
+    default:
+      size = fmax(a.size, b.size);
+      break;
+  }
+  return (strut_magnitude){size, carried(operation, a.size, b.size, a.span, b.span),
+                           carried(operation, a.size, b.size, a.noise, b.noise)};
+}
+
+strut_magnitude strut_program_magnitude(const strut_quantity_definition *d, const size_t *index,
+                                        const strut_magnitude *value, strut_magnitude *stack) {
+  size_t top = 0;
+  for (size_t i = 0; i < d->length; i++) {
+    const strut_instruction *p = &d->program[i];
+    if (p->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = (strut_magnitude){.size = fabs(p->number)};
+    } else if (p->operation == STRUT_OPERATION_COLUMN) {
+      stack[top++] = value[index[i]];
+    } else {
+      int count = operands(p->operation);
+      strut_magnitude none = {0};
+      top -= (size_t)count;
+      stack[top] = combine(p->operation, stack[top], count > 1 ? stack[top + 1] : none);
+      top++;
+    }
+  }
+  return stack[0];
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Evaluates the postfix program of a measured quantity; see engine/scene/quantity.h.
+ */
+#ifndef STRUT_ENGINE_RUN_MEASURE_QUANTITY_PROGRAM_H
+#define STRUT_ENGINE_RUN_MEASURE_QUANTITY_PROGRAM_H
+
+#include "engine/scene/quantity.h"
+
+/** A program with its columns found: `index` (length) into `value`. */
+double strut_program_evaluate(const strut_quantity_definition *definition, const size_t *index,
+                              const double *value, double *stack);
+
+/** The size of a term, and two uncertainties that arithmetic carries on alike. */
+typedef struct strut_magnitude {
+  double size;  /* largest absolute value of the terms */
+  double span;  /* how far it varies */
+  double noise; /* how far rounding moves it */
+} strut_magnitude;
+
+/** The same program on magnitudes: sums take the larger size and add span and noise. */
+strut_magnitude strut_program_magnitude(const strut_quantity_definition *definition,
+                                        const size_t *index, const strut_magnitude *value,
+                                        strut_magnitude *stack);
+
+#endif

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/measure/step_limit_monitor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/limit/step_limit.h"
+
+/* Force evaluations between two looks, iterations for one. */
+enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
+/* A motion at a ratio 1 + e of the limit grows by at least e times this per step, in logarithms: the
+   least of all regions; and what it has grown by when nothing is left of the true motion. */
+static const double GROWTH = 1.0, GROWTH_RK4 = 4.0, HOPELESS = 16.0;
+
+/* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
+static void apply_members(const strut_model *model, const strut_state *state, strut_guard *g,
+                          const strut_guard_watch *w) {
+  const strut_member_table *t = &model->members;
+  const double *q = state->q, *x = w->motion;
+  double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
+  for (int32_t j = 0; j < t->count; j++) {
+    uint32_t a = t->from[j], b = t->to[j];
+    double dx = q[b] - q[a], dy = q[b + 1] - q[a + 1];
+    double length = sqrt(dx * dx + dy * dy), stretch = length - state->rest[j];
+    if (!(stretch > t->slack[j]) || !(length > 0.0)) continue;
+    double ux = dx / length, uy = dy / length, c = t->stiffness[j];
+    double mx = x[b] - x[a], my = x[b + 1] - x[a + 1], along = ux * mx + uy * my;
+    double across = hk * c * stretch / length;
+    double pull = (hk * c - across + hd * t->damping[j]) * along;
+    double fx = across * mx + pull * ux, fy = across * my + pull * uy;
+    g->image[a] -= fx, g->image[a + 1] -= fy;
+    g->image[b] += fx, g->image[b + 1] += fy;
+  }
+}
+
+static void apply_contacts(const strut_model *model, const strut_state *state, strut_guard *g,
+                           const strut_guard_watch *w) {
+  const strut_contact_table *c = &model->contacts;
+  double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
+  for (int32_t i = 0; i < c->count; i++) {
+    const double *q = state->q + c->at[i], *x = w->motion + c->at[i];
+    if (!(q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1] < 0.0)) continue;
+    double in = c->normal[0] * x[0] + c->normal[1] * x[1];
+    double push = (hk * c->entry[i].stiffness + hd * c->entry[i].damping) * in;
+    g->image[c->at[i]] += push * c->normal[0];
+    g->image[c->at[i] + 1] += push * c->normal[1];
+  }
+}
+
+/* So that no motion is left out for ever. */
+static void stir(const strut_model *model, strut_guard *g, strut_guard_watch *w, double size) {
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    g->noise = g->noise * 6364136223846793005u + 1442695040888963407u;
+    if (!model->fixed[i]) w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
+  }
+}
+
+/*
+ * One step of the power iteration: the motion's quotient, which lies below the eigenvalue. The motion
+ * is the inverse mass times the last image, so that its size in the mass is known.
+ */
+static void iterate(const strut_model *model, const strut_state *state, strut_guard *g,
+                    strut_guard_watch *w) {
+  int32_t n = 2 * model->node_count;
+  double product = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
+  memset(g->image, 0, (size_t)model->length * sizeof *g->image);
+  apply_members(model, state, g, w);
+  /* where the ground's dampers are implicit, steps are refined while it is touched */
+  if (!g->method->implicit_damper) apply_contacts(model, state, g, w);
+  for (int32_t i = 0; i < n; i++)
+    if (model->fixed[i]) g->image[i] = 0.0;
+  strut_mass_solve(model, g->image, g->divided, g->scratch);
+  for (int32_t i = 0; i < n; i++) {
+    product += w->motion[i] * g->image[i];
+    square += g->divided[i] * g->image[i];
+    largest = fmax(largest, fabs(g->divided[i]));
+  }
+  if (!(largest > 0.0 && largest < HUGE_VAL)) {
+    stir(model, g, w, 1.0);
+    w->weight = w->strength = 0.0;
+    return;
+  }
+  for (int32_t i = 0; i < n; i++) w->motion[i] = g->divided[i] / largest;
+  w->weight = square / largest / largest;
+  w->strength = weight > 0.0 ? product / weight : 0.0;
+}
+
+/*
+ * A shape's own limit; none where memory is out. Where only a bound of it is to be had, and the
+ * motions watched are those of this shape, no less than they say: a bound alone is no reason to stop.
+ */
+static double limit_at(const strut_model *model, const strut_guard *g, const double *q,
+                       const double *rest, bool watched) {
+  strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
+  strut_step_limit limit;
+  if (strut_step_limit_at(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
+  double bound = limit.of[g->method->region], seen = HUGE_VAL;
+  if (!limit.bound || !watched) return bound;
+  for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->watch[i].strength);
+  return fmax(bound, seen);
+}
+
+static void compute(const strut_model *model, const strut_state *state, strut_guard *g) {
+  g->known_limit = limit_at(model, g, state->q, state->rest, true);
+  for (int i = 0; i < g->count; i++) {
+    strut_guard_watch *w = &g->watch[i];
+    w->known = w->strength;
+    /* the limit goes down with 1/strength at most: so far it must rise to bring it to the step */
+    w->alarm = fmax(1.0, w->strength * fmax(1.01, 0.99 * g->known_limit / g->step));
+  }
+}
+
+/* The step is too large now, and has been for so many steps. */
+static void note_below(strut_guard *g, double time, int64_t steps) {
+  double limit = g->known_limit;
+  double growth = g->method->region == STRUT_REGION_RK4 ? GROWTH_RK4 : GROWTH;
+  if (!(g->lowest > 0.0)) g->first_time = time;
+  if (!(g->lowest > 0.0) || limit < g->lowest) g->lowest = limit, g->lowest_time = time;
+  g->grown = g->below ? g->grown + growth * fmin(g->step / limit - 1.0, 1.0) * (double)steps : 0.0;
+  g->steps_below += steps;
+  g->below = true;
+  g->hopeless = g->hopeless || g->grown > HOPELESS;
+}
+
+void strut_guard_look(const strut_model *model, const strut_state *state, strut_guard *g) {
+  int64_t steps = state->step - g->last;
+  bool again = false;
+  g->last = state->step;
+  g->next = state->step + g->every;
+  for (int i = 0; i < g->count; i++) {
+    strut_guard_watch *w = &g->watch[i];
+    stir(model, g, w, 1e-6);
+    for (int k = 0; k < LOOK; k++) iterate(model, state, g, w);
+    again = again || w->strength >= w->alarm || (g->below && w->strength < 0.99 * w->known);
+  }
+  if (g->count > 0) {
+    memcpy(g->shape, state->q, (size_t)model->length * sizeof *g->shape);
+    memcpy(g->rest, state->rest, (size_t)model->members.slots * sizeof *g->rest);
+  }
+  if (again) compute(model, state, g);
+  if (g->known_limit < g->step)
+    note_below(g, (double)state->step * g->step, steps);
+  else
+    g->below = false;
+}
+
+double strut_guard_last_limit(const strut_model *model, const strut_guard *g) {
+  return g->count > 0 ? limit_at(model, g, g->shape, g->rest, false) : HUGE_VAL;
+}
+
+void strut_guard_blame(const strut_model *model, const strut_state *state, strut_guard *g) {
+  if (g->count == 0) return;
+  double before = strut_guard_last_limit(model, g);
+  g->known_limit = fmin(before, limit_at(model, g, state->q, state->rest, false));
+  if (g->known_limit < g->step) note_below(g, (double)g->last * g->step, 0);
+}
+
+bool strut_guard_create(const strut_model *model, strut_state *state,
+                        const strut_integrator *method, double step, strut_guard *guard) {
+  bool rk4 = method->region == STRUT_REGION_RK4, euler = method->region == STRUT_REGION_EULER;
+  *guard = (strut_guard){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
+  if (method->region == STRUT_REGION_ALL || (model->plan & STRUT_TERM_RIGID)) return true;
+  guard->known_limit = HUGE_VAL;
+  guard->count = rk4 ? 2 : 1;
+  /* RK4 bears every complex eigenvalue below 2.6 / h, and every real one below 2.785 / h */
+  guard->watch[0].stiff = rk4 ? 1.0 / (2.6 * 2.6) : 0.25;
+  guard->watch[0].damp = rk4 ? 0.0 : euler ? 0.5 : 1.0;
+  guard->watch[1].damp = 1.0 / 2.7852935634;
+  double **const all[] = {&guard->watch[0].motion, &guard->watch[1].motion, &guard->image,
+                          &guard->divided, &guard->scratch};
+  guard->shape = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+  guard->rest = strut_arena_allocate(&state->arena, (size_t)model->members.slots, sizeof(double));
+  if (!guard->shape || !guard->rest) return false;
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    if (!(*all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double))))
+      return false;
+  guard->every = EVALUATIONS / method->evaluations;
+  guard->last = guard->next = state->step;
+  for (int i = 0; i < guard->count; i++) {
+    guard->watch[i].alarm = 1.0;
+    stir(model, guard, &guard->watch[i], 1.0);
+    for (int k = 0; k < FIRST; k++) iterate(model, state, guard, &guard->watch[i]);
+  }
+  return true;
+}
+
+strut_status strut_guard_fail(const strut_guard *g, const strut_state *state, double start_limit,
+                              strut_error *error) {
+  const char *name = g->method->name;
+  if (g->lowest > 0.0)
+    return strut_fail(error, STRUT_DIVERGED,
+                      "the structure has become stiffer: at t = %.9g s the largest stable step of "
+                      "%s, %.4g s at the start, fell below the step %g s, then to %.4g s, and the "
+                      "motion since is not the structure's; use solver.step <= %.2g s, or --force "
+                      "to run on all the same",
+                      g->first_time, name, start_limit, g->step, g->lowest, 0.9 * g->lowest);
+  return strut_fail(error, STRUT_DIVERGED,
+                    "by t = %.9g s most of the energy has come from nowhere: shapes on the way are "
+                    "stiffer than the start, whose largest stable step of %s is %.4g s, and do not "
+                    "bear the step %g s; use solver.step <= %.2g s, or --force to run on all the "
+                    "same",
+                    (double)state->step * g->step, name, start_limit, g->step, 0.75 * g->step);
+}

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/measure/stick_band.h"
+
+#include <math.h>
+
+/* Accelerations are asked for at every so many looks. */
+enum { EVERY = 4, LEAST = 4 };
+/*
+ * Parts of |a| dt below which a band matters. The band reaches as far on both sides of zero, so that
+ * one of half of |a| dt is always met. Where what holds is no stronger than what slows down, a node
+ * that passes over it is turned back until it is met, and stays where it is; not so once it takes a
+ * hundred turns. Where static friction is the stronger, it holds only what was caught at once.
+ */
+static const double SURE = 0.5, ACCIDENT = 0.01;
+
+/* Part of the static friction of a node that creeping may use up before it matters. */
+static const double STRAINED = 0.1;
+
+static bool is_stronger_at_rest(const strut_contact_entry *e) {
+  return e->law == STRUT_FRICTION_KARNOPP && e->mu_static > e->mu_kinetic;
+}
+
+/* Contact of a node's x coordinate, or -1; contacts stand in the order of their nodes. */
+static int32_t contact_at(const strut_contact_table *c, uint32_t coordinate) {
+  int32_t low = 0, high = c->count;
+  while (low < high) {
+    int32_t middle = low + (high - low) / 2;
+    if (c->at[middle] < coordinate)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  bool found = low < c->count && c->at[low] == coordinate;
+  return found && is_stronger_at_rest(&c->entry[low]) ? low : -1;
+}
+
+/* Counts the ties, or fills them where there is room. */
+static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
+  const strut_member_table *t = &model->members;
+  int32_t count = 0;
+  for (int32_t j = 0; j < t->count; j++) {
+    int32_t a = contact_at(&model->contacts, t->from[j]),
+            b = contact_at(&model->contacts, t->to[j]);
+    if (a < 0 || b < 0) continue;
+    if (ties) ties[count] = (strut_band_tie){.member = j, .contact = {a, b}};
+    count++;
+  }
+  return count;
+}
+
+/* Does a contact touch within its band? Its normal force goes to *normal. */
+static bool is_stuck(const strut_model *model, const strut_state *state, int32_t i,
+                     double *normal) {
+  const strut_contact_table *c = &model->contacts;
+  const double *q = state->q + c->at[i], *v = state->v + c->at[i];
+  double gap = q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1];
+  double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
+  *normal = -gap * c->entry[i].stiffness;
+  return gap < 0.0 && fabs(slip) < c->entry[i].stick_velocity;
+}
+
+static void look_at_tie(const strut_model *model, const strut_state *state, double time,
+                        strut_band_tie *tie) {
+  const strut_member_table *t = &model->members;
+  const strut_contact_entry *e = model->contacts.entry;
+  const double *a = state->q + t->from[tie->member], *b = state->q + t->to[tie->member];
+  double length = hypot(b[0] - a[0], b[1] - a[1]), change = length - tie->length, normal[2];
+  double creep = 0.0, holds = HUGE_VAL;
+  bool held = true;
+  for (int k = 0; k < 2; k++) {
+    const strut_contact_entry *one = &e[tie->contact[k]];
+    held = is_stuck(model, state, tie->contact[k], &normal[k]) && held;
+    creep += one->stick_velocity * time;
+    holds = fmin(holds, one->mu_static * normal[k]);
+  }
+  /* more than they can creep: one of them has slid in between */
+  if (held && tie->held && fabs(change) <= creep)
+    tie->force += t->stiffness[tie->member] * change;
+  else
+    tie->force = 0.0;
+  if (held && fabs(tie->force) > tie->worst * holds) tie->worst = fabs(tie->force) / holds;
+  tie->held = held, tie->length = length;
+}
+
+double strut_stick_band_needed(const strut_model *model, const strut_integrator *method,
+                               int32_t contact, double step) {
+  const strut_contact_table *c = &model->contacts;
+  const strut_contact_entry *e = &c->entry[contact];
+  const double *g = model->scene->gravity;
+  if (method->events || e->law != STRUT_FRICTION_KARNOPP || !(e->mu_kinetic > 0.0)) return 0.0;
+  double down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
+  return down > 0.0 && step > 0.0 ? e->mu_kinetic * down * step : 0.0;
+}
+
+bool strut_stick_band_create(const strut_model *model, strut_state *state,
+                             const strut_integrator *method, double step, strut_stick_band *band) {
+  bool any = false;
+  *band = (strut_stick_band){.step = step};
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    any = any || (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP &&
+                  model->contacts.entry[i].mu_kinetic > 0.0);
+  if (!any || method->events) return true;
+  size_t length = (size_t)model->length, contacts = (size_t)model->contacts.count;
+  band->a = strut_arena_allocate(&state->arena, length, sizeof(double));
+  band->scratch = strut_arena_allocate(&state->arena, length, sizeof(double));
+  band->watch = strut_arena_allocate(&state->arena, contacts, sizeof *band->watch);
+  band->tie_count = list_ties(model, NULL);
+  band->ties = strut_arena_allocate(&state->arena, (size_t)band->tie_count, sizeof *band->ties);
+  if (band->ties) list_ties(model, band->ties);
+  return band->a && band->scratch && band->watch && band->ties;
+}
+
+void strut_stick_band_look(const strut_model *model, const strut_state *state,
+                           strut_stick_band *band) {
+  const strut_contact_table *c = &model->contacts;
+  if (!band->watch) return;
+  double time = (double)(state->step - band->last) * band->step;
+  for (int32_t k = 0; k < band->tie_count; k++) look_at_tie(model, state, time, &band->ties[k]);
+  band->last = state->step;
+  bool ask = band->looks++ % EVERY == 0 && state->evaluations > 0;
+  if (ask) strut_mass_solve(model, state->force, band->a, band->scratch);
+  for (int32_t i = 0; i < c->count; i++) {
+    const double *q = state->q + c->at[i], *v = state->v + c->at[i], *a = band->a + c->at[i];
+    strut_band_watch *w = &band->watch[i];
+    if (!(q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1] < 0.0)) continue;
+    double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
+    if (!ask || fabs(slip) < c->entry[i].stick_velocity) continue;
+    w->sliding++;
+    w->change += band->step * fabs(a[0] * c->tangent[0] + a[1] * c->tangent[1]);
+  }
+}
+
+double strut_stick_band_missed(const strut_model *model, const strut_stick_band *band,
+                               int32_t contact) {
+  const strut_contact_entry *e = &model->contacts.entry[contact];
+  if (!band->watch || e->law != STRUT_FRICTION_KARNOPP) return 0.0;
+  const strut_band_watch *w = &band->watch[contact];
+  double needed = w->sliding >= LEAST ? w->change / w->sliding : 0.0;
+  double least = e->mu_static > e->mu_kinetic ? SURE : ACCIDENT;
+  return e->stick_velocity < least * needed ? needed : 0.0;
+}
+
+const strut_band_tie *strut_stick_band_strained(const strut_stick_band *band) {
+  const strut_band_tie *most = NULL;
+  for (int32_t k = 0; k < band->tie_count; k++)
+    if (band->ties[k].worst > STRAINED && (!most || band->ties[k].worst > most->worst))
+      most = &band->ties[k];
+  return most;
+}

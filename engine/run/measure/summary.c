@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/measure/summary.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+
+void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...) {
+  size_t i = 0;
+  while (i < summary->warning_count && strcmp(summary->warnings[i].code, code) != 0) i++;
+  if (i == STRUT_MOST_WARNINGS) return;
+  if (i == summary->warning_count) summary->warning_count++;
+  strut_warning *warning = &summary->warnings[i];
+  warning->code = code;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(warning->text, sizeof warning->text, format, arguments);
+  va_end(arguments);
+}
+
+void strut_summary_free(strut_summary *summary) {
+  strut_release(summary->node_names);
+  strut_release(summary->positions);
+  strut_release(summary->contacts);
+  strut_release(summary->measured);
+  summary->node_names = NULL;
+  summary->positions = NULL;
+  summary->contacts = NULL;
+  summary->measured = NULL;
+  summary->node_count = summary->contact_count = summary->measured_count = 0;
+}
+
+void strut_summary_warn_of_start(strut_summary *summary) {
+  char text[300];
+  if (strut_settle_warning(&summary->settle, text, sizeof text))
+    strut_summary_warn(summary, "unstable_start", "%s", text);
+}
+
+bool strut_settle_warning(const strut_settle_summary *how, char *text, size_t size) {
+  if (!how->unstable) return false;
+  char remedy[80] = "initial.settle.perturb: yes pushes it off";
+  if (how->perturbations)
+    snprintf(remedy, sizeof remedy, "it was pushed off one %d times already", how->perturbations);
+  snprintf(text, size,
+           "the settled start is an unstable equilibrium: any push grows, e-fold in %.3g s, and "
+           "moves node '%.60s' most; %s",
+           1.0 / how->growth_rate, how->node, remedy);
+  return true;
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/orbit/period_map.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double TURN = 6.28318530717958647692;
+/* Members and nodes times steps between two looks at the interrupt flag. */
+static const int64_t STRETCH = 200000;
+
+strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
+                                     int32_t repeats, strut_period_map *map, strut_error *error) {
+  *map = (strut_period_map){.scene = *scene, .repeats = repeats};
+  map->scene.experiment = *experiment;
+  map->period = strut_scene_span(&map->scene).period;
+  map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
+  map->dt = map->period / (double)map->steps;
+  const strut_time_grid grid = {.step = map->dt, .last = -1};
+  map->method = strut_integrator_find(experiment->integrator);
+  strut_status status = strut_model_compile(&map->scene, &map->model, error);
+  if (!status) status = strut_state_create(map->model, &map->state, error);
+  if (!status) map->workspace = map->method->create(map->model, map->state);
+  if (!status &&
+      (!map->workspace || strut_measure_create(map->model, &grid, 0, 0, &map->measure)))
+    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status) {
+    strut_period_map_free(map);
+    return status;
+  }
+  map->travels = map->model->contacts.count > 0;
+  for (int32_t i = 0; i < 2 * map->model->node_count; i++)
+    map->travels = map->travels && !map->model->fixed[i];
+  return STRUT_OK;
+}
+
+static double mean_along(const strut_model *model, const double *q) {
+  const double *t = model->contacts.tangent;
+  double sum = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) sum += q[2 * i] * t[0] + q[2 * i + 1] * t[1];
+  return sum / model->node_count;
+}
+
+bool strut_period_map_interrupted(const strut_period_map *map) {
+  return map->interrupt && *map->interrupt;
+}
+
+bool strut_period_map_spent(const strut_period_map *map) {
+  return map->most_evaluations > 0 && map->evaluations > map->most_evaluations;
+}
+
+/* Of the application under way. */
+static bool used_up(const strut_period_map *map) {
+  return map->most_evaluations > 0 &&
+         map->evaluations + map->state->evaluations > map->most_evaluations;
+}
+
+/* In stretches so long that looking around costs nothing, and so short that nobody waits. */
+static void advance(strut_period_map *map) {
+  const strut_model *model = map->model;
+  strut_state *state = map->state;
+  int64_t most = STRETCH / (model->members.count + model->node_count + 1) + 1;
+  int64_t left = map->steps * map->repeats;
+  state->interrupt = map->interrupt;
+  if (map->most_evaluations > 0)
+    state->most_evaluations = map->most_evaluations > map->evaluations
+                                  ? map->most_evaluations - map->evaluations
+                                  : 1;
+  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !used_up(map)) {
+    int64_t count = left < most ? left : most;
+    map->method->advance(model, state, map->workspace, map->dt, count);
+    left -= count;
+  }
+}
+
+double strut_period_map_apply(strut_period_map *map, double *y) {
+  const strut_model *model = map->model;
+  strut_state *state = map->state;
+  size_t bytes = (size_t)model->length * sizeof(double);
+  double from, to, speed, before = mean_along(model, y);
+  strut_state_reset(model, state);
+  state->step = llround(map->time / map->dt);
+  memcpy(state->q, y, bytes);
+  memcpy(state->v, y + model->length, bytes);
+  state->refined_until = map->time + y[2 * model->length];
+  strut_measure_track(model, state, &map->measure, &from, &speed);
+  if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
+  advance(map);
+  map->evaluations += state->evaluations;
+  map->events += state->events;
+  map->applied += map->repeats;
+  strut_measure_track(model, state, &map->measure, &to, &speed);
+  memcpy(y, state->q, bytes);
+  memcpy(y + model->length, state->v, bytes);
+  y[2 * model->length] = fmax(0.0, state->refined_until - (double)state->step * map->dt);
+  double shift = map->travels ? mean_along(model, y) - before : 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    y[i] -= shift * model->contacts.tangent[i % 2];
+  bool whole = !state->trouble && !strut_period_map_interrupted(map) && !strut_period_map_spent(map);
+  return whole ? to - from : (double)NAN;
+}
+
+double strut_period_map_size(const strut_period_map *map, const double *d) {
+  const strut_model *model = map->model;
+  double speed = model->size * TURN / map->period, most = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    most = fmax(most, fabs(d[i]) / model->size);
+    most = fmax(most, fabs(d[model->length + i]) / speed);
+  }
+  return most;
+}
+
+void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
+                               double *d) {
+  const strut_model *model = map->model;
+  const double *t = model->contacts.tangent;
+  double along = 0.0;
+  for (int32_t i = 0; i <= 2 * model->length; i++) d[i] = to[i] - from[i];
+  for (int32_t i = 0; i < model->node_count && map->travels; i++)
+    along += (d[2 * i] * t[0] + d[2 * i + 1] * t[1]) / model->node_count;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) d[i] -= along * t[i % 2];
+}
+
+void strut_period_map_free(strut_period_map *map) {
+  strut_measure_free(&map->measure);
+  strut_state_free(map->state);
+  strut_model_free(map->model);
+  *map = (strut_period_map){.model = NULL};
+}

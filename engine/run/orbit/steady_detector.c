@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/run/orbit/steady_detector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Repetitions looked for, in drive periods; the first that holds is reported. */
+static const int32_t repeats[STRUT_REPEATS] = {1, 2, 3, 4, 6, 8};
+/* Velocities below this part of size times frequency are not told from standing still. */
+static const double STANDING = 1e-3;
+/* A shape that repeats itself so well, relative to its motion, differs by rounding. */
+static const double ROUNDING = 1e-11;
+
+/* Nothing but one period alike is believed before: oscillating transients look so. */
+enum { SLOW = 24 };
+/* Batches of an irregular motion's mean; the least periods that may be called irregular. */
+enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
+static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
+
+/* As many factors alike are growth. */
+enum { GROWTH = 3 };
+
+static const double TURN = 6.28318530717958647692;
+
+/* When the last signal has begun, ended or run through: before that nothing can be called steady. */
+static double last_change(const strut_scene *scene) {
+  double last = 0.0;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    last = fmax(last, s->start);
+    if (isfinite(s->stop)) last = fmax(last, s->stop);
+    if (s->kind == STRUT_HALF_SINE) last = fmax(last, s->start + 0.5 / s->frequency);
+    if (s->kind == STRUT_TABLE) last = fmax(last, s->start + s->time[s->point_count - 1]);
+  }
+  return last;
+}
+
+/* Do all signals that go on for ever repeat themselves after n drive periods? */
+static bool drives_repeat(const strut_watch *w, int32_t n) {
+  const strut_scene *scene = w->model->scene;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    if ((s->kind != STRUT_SINE && s->kind != STRUT_SQUARE) || isfinite(s->stop)) continue;
+    double turns = n * w->period * s->frequency;
+    if (fabs(turns - round(turns)) > 1e-9 * fmax(1.0, turns)) return false;
+  }
+  return true;
+}
+
+strut_status strut_watch_create(const strut_model *model, double period, double begin,
+                                strut_watch *w) {
+  const strut_steady *wanted = &model->scene->experiment.steady;
+  size_t both = 2 * (size_t)model->length;
+  *w = (strut_watch){
+      .model = model,
+      .period = period,
+      .tolerance = wanted->tolerance,
+      .floor = wanted->floor,
+      .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance : wanted->tolerance,
+      .successive = wanted->successive,
+      .stride = 1};
+  w->not_before = (last_change(model->scene) - begin) / period;
+  if (w->successive < 2) w->successive = 2;
+  if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
+  if (!(w->floor > 0.0)) w->floor = STANDING * model->size / period * w->tolerance;
+  w->travels = model->contacts.count > 0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) w->travels = w->travels && !model->fixed[i];
+  bool ready = (w->middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  for (int k = 0; k < STRUT_RING && ready; k++)
+    ready = (w->state[k] = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  w->least_irregular = wanted->mean_tolerance > 0.0 ? LEAST_IRREGULAR / 2 : LEAST_IRREGULAR;
+  w->result.kind = STRUT_MOTION_TRANSIENT;
+  if (ready) return STRUT_OK;
+  strut_watch_free(w);
+  return STRUT_NO_MEMORY;
+}
+
+static void take(const strut_state *state, const strut_watch *w, double *out) {
+  size_t length = (size_t)w->model->length;
+  memcpy(out, state->q, length * sizeof *out);
+  memcpy(out + length, state->v, length * sizeof *out);
+}
+
+/* Mean shift along the ground between two states; 0 where there is no such freedom. */
+static double travel(const strut_watch *w, const double *from, const double *to) {
+  const double *t = w->model->contacts.tangent;
+  double sum = 0.0;
+  int32_t n = w->model->node_count;
+  for (int32_t i = 0; i < n && w->travels; i++)
+    sum += (to[2 * i] - from[2 * i]) * t[0] + (to[2 * i + 1] - from[2 * i + 1]) * t[1];
+  return n > 0 ? sum / n : 0.0;
+}
+
+/* Largest difference of two shapes: positions over the size, velocities over size times 2 pi f. */
+static double distance(const strut_watch *w, const double *a, const double *b) {
+  const double *t = w->model->contacts.tangent;
+  double along = travel(w, a, b), shift[2] = {along * t[0], along * t[1]};
+  double size = w->model->size, speed = size * TURN / w->period, most = 0.0;
+  int32_t length = w->model->length;
+  for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
+    most = fmax(most, fabs(b[i] - a[i] - (w->travels ? shift[i % 2] : 0.0)) / size);
+    most = fmax(most, fabs(b[length + i] - a[length + i]) / speed);
+  }
+  return most;
+}
+
+void strut_watch_middle(const strut_state *state, strut_watch *w) { take(state, w, w->middle); }
+
+/*
+ * What is left of a decay: the sum of the geometric series that goes on from the latest change. It is
+ * compared with that of whole repetitions before: within one, changes differ from period to period.
+ */
+static double remaining(const double *residual, int64_t now, int32_t n, int32_t over,
+                        double amplitude) {
+  int32_t rounds = (over + n - 1) / n;
+  double last = residual[now % STRUT_RING], first = residual[(now - n * rounds) % STRUT_RING];
+  if (last <= ROUNDING * amplitude) return 0.0;
+  if (!(first > 0.0)) return HUGE_VAL;
+  double rate = pow(last / first, 1.0 / rounds);
+  return rate < 0.9999 ? rate / (1.0 - rate) : HUGE_VAL;
+}
+
+/* From b to a along coordinate i, without the travel `along`, in sizes and sizes times 2 pi f. */
+static double step_of(const strut_watch *w, const double *a, const double *b, double along,
+                      int32_t i, double *speed) {
+  int32_t length = w->model->length;
+  double shift = w->travels ? along * w->model->contacts.tangent[i % 2] : 0.0;
+  *speed = (a[length + i] - b[length + i]) * w->period / (w->model->size * TURN);
+  return (a[i] - b[i] - shift) / w->model->size;
+}
+
+/*
+ * How far the present state is from where its repetitions go, if each is the same combination of the
+ * two before: so is a decay, and so is a slow beat, whose changes may fall for a while and come back.
+ */
+static double way_to_go(const strut_watch *w, int64_t now, int32_t n) {
+  const double *at[4];
+  double along[3], sum[2][3] = {{0.0}};
+  int32_t coordinates = 2 * w->model->node_count;
+  for (int k = 0; k < 4; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < 3; k++) along[k] = travel(w, at[k + 1], at[k]);
+  for (int32_t i = 0; i < coordinates; i++) {
+    double d[3], v[3];
+    for (int k = 0; k < 3; k++) d[k] = step_of(w, at[k], at[k + 1], along[k], i, &v[k]);
+    for (int r = 0; r < 2; r++)
+      for (int c = 0; c < 3; c++) sum[r][c] += d[r + 1] * d[c] + v[r + 1] * v[c];
+  }
+  double both = sum[0][1] * sum[1][2], mixed = sum[0][2] * sum[1][1], det = both - mixed;
+  double p = sum[0][1] > 0.0 ? sum[0][0] / sum[0][1] : 0.0, q = 0.0;
+  if (det > 1e-14 * both) {
+    p = (sum[0][0] * sum[1][2] - sum[1][0] * sum[0][2]) / det;
+    q = (sum[1][0] * sum[0][1] - sum[0][0] * sum[1][1]) / det;
+  }
+  double most = 0.0;
+  for (int32_t i = 0; i < coordinates; i++) {
+    double v0, v1, d0 = step_of(w, at[0], at[1], along[0], i, &v0);
+    double d1 = step_of(w, at[1], at[2], along[1], i, &v1);
+    most = fmax(most, fmax(fabs((p + q) * d0 + q * d1), fabs((p + q) * v0 + q * v1)));
+  }
+  return most / fabs(1.0 - p - q);
+}
+
+/*
+ * Does something small grow under the motion that looks steady, in one coordinate or more? Its changes
+ * then are each time larger by the same factor; what merely varies keeps no factor.
+ */
+static bool something_grows(const strut_watch *w, int64_t now, int32_t n) {
+  const double *at[GROWTH + 2];
+  double along[GROWTH + 1];
+  if (now < (GROWTH + 1) * n || (GROWTH + 1) * n >= STRUT_RING) return false;
+  for (int k = 0; k < GROWTH + 2; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < GROWTH + 1; k++) along[k] = travel(w, at[k + 1], at[k]);
+  for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
+    double d[GROWTH + 1], v, least = HUGE_VAL, most = 0.0;
+    for (int k = 0; k < GROWTH + 1; k++) d[k] = fabs(step_of(w, at[k], at[k + 1], along[k], i, &v));
+    for (int k = 0; k < GROWTH; k++) {
+      double factor = d[k + 1] > 0.0 ? d[k] / d[k + 1] : 0.0;
+      least = fmin(least, factor), most = fmax(most, factor);
+    }
+    bool above_rounding = d[GROWTH] > ROUNDING * w->amplitude;
+    if (above_rounding && least > 1.0 && most - 1.0 < 1.25 * (least - 1.0)) return true;
+  }
+  return false;
+}
+
+static double mean_velocity(const strut_watch *w, int64_t now, int32_t periods) {
+  double dx = w->place[now % STRUT_RING] - w->place[(now - periods) % STRUT_RING];
+  return dx / (periods * w->period);
+}
+
+/* Neighbouring periods still grow alike: a transient may look as if it came back after n of them. */
+static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
+  int32_t over = 2 * n > w->successive ? 2 * n : w->successive;
+  if (now <= over + n) return true;
+  double last = 0.0,
+         first = 0.0; /* means over n periods, so that the order within them is no matter */
+  for (int32_t j = 0; j < n; j++) {
+    last += w->residual[0][(now - j) % STRUT_RING];
+    first += w->residual[0][(now - over - j) % STRUT_RING];
+  }
+  return last < pow(0.99, over) * first;
+}
+
+/* Does the motion repeat itself every n periods? */
+static bool repeats_itself(strut_watch *w, int64_t now, int k) {
+  int32_t n = repeats[k], over = w->successive;
+  if (now < 2 * n + over || (double)now < w->not_before + n + over) return false;
+  if (!drives_repeat(w, n)) return false;
+  if (n > 1 && (now < SLOW + 4 * n || still_decays(w, now, n))) return false;
+  int32_t rounds = n * ((over + n - 1) / n);
+  double velocity = mean_velocity(w, now, rounds), change = 0.0;
+  for (int64_t j = now - over + 1; j <= now; j++)
+    change = fmax(change, w->change[k][j % STRUT_RING]);
+  double rest = remaining(w->residual[k], now, n, over, w->amplitude);
+  double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
+  double residual = w->residual[k][now % STRUT_RING];
+  double still = w->floor * w->period / w->model->size;
+  if (!(change <= allowed && change * rest <= allowed)) return false;
+  /* of n > 1, where the transient itself may seem to repeat, more is asked */
+  double alike = (n > 1 ? 1.0 : 4.0) * fmax(w->tolerance * w->amplitude, still);
+  if (!(residual * fmax(rest, 1.0) <= alike)) return false;
+  if (residual > ROUNDING * w->amplitude) {
+    if (something_grows(w, now, n)) return false;
+    rest = fmax(rest, way_to_go(w, now, n) / residual);
+    if (!(change * rest <= allowed && residual * rest <= alike)) return false;
+  }
+  /* irregular motion comes back by chance, but not again and again */
+  int32_t often = n > 1 && 2 * n > over ? 2 * n : over;
+  for (int64_t j = now - often + 1; j <= now; j++)
+    if (w->residual[k][j % STRUT_RING] > (n > 1 ? alike : 4.0 * alike)) return false;
+  w->result.kind = STRUT_MOTION_PERIODIC;
+  w->result.repeats = n;
+  w->result.periods = now;
+  w->result.interval = change * (1.0 + rest);
+  w->result.residual = w->amplitude > 0.0 ? residual / w->amplitude : 0.0;
+  return true;
+}
+
+/* Of the whole run, in stretches of equal length that double when there is no more room. */
+static void mark(strut_watch *w, int64_t now, double x) {
+  w->wander += now > 0 ? w->residual[0][now % STRUT_RING] : 0.0;
+  if (now % w->stride != 0) return;
+  if (w->marks == STRUT_MARKS) {
+    for (int32_t i = 0; 2 * i < STRUT_MARKS; i++)
+      w->mark[i] = w->mark[2 * i], w->wandered[i] = w->wandered[2 * i];
+    w->marks = (STRUT_MARKS + 1) / 2;
+    w->stride *= 2;
+    if (now % w->stride != 0) return;
+  }
+  w->mark[w->marks] = x;
+  w->wandered[w->marks++] = w->wander;
+}
+
+/* Mean velocity over the latest 8 batches of `each` stretches, and its interval by Student's t. */
+static double batch_mean(const strut_watch *w, int32_t each, double *interval, double *trend) {
+  double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
+  double time = each * (double)w->stride * w->period;
+  for (int i = 0; i < BATCHES; i++) {
+    int32_t to = w->marks - 1 - i * each;
+    speed[i] = (w->mark[to] - w->mark[to - each]) / time;
+    mean += speed[i] / BATCHES;
+  }
+  for (int i = 0; i < BATCHES; i++) {
+    square += (speed[i] - mean) * (speed[i] - mean);
+    slope += speed[i] * (0.5 * (BATCHES - 1) - i) / 42.0;
+  }
+  double rest = fmax(square - 42.0 * slope * slope, 0.0) / (BATCHES - 2);
+  *trend = rest > 0.0 ? fabs(slope) / sqrt(rest / 42.0) : slope != 0.0 ? HUGE_VAL : 0.0;
+  *interval = STUDENT_7 * sqrt(square / (BATCHES - 1) / BATCHES);
+  return mean;
+}
+
+/*
+ * Do periods differ from their neighbours as much in the latest 8 batches of `each` stretches as in the
+ * 8 before: to a fiftieth, or as nearly as the batches' own scatter lets one say?
+ */
+static bool wanders_evenly(const strut_watch *w, int32_t each) {
+  double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
+  for (int i = 0; i < 2 * BATCHES; i++) {
+    int32_t to = w->marks - 1 - i * each;
+    double part = w->wandered[to] - w->wandered[to - each];
+    sum[i / BATCHES] += part, square[i / BATCHES] += part * part;
+  }
+  double scatter = 0.0;
+  for (int k = 0; k < 2; k++)
+    scatter += fmax(0.0, square[k] - sum[k] * sum[k] / BATCHES) * BATCHES / (BATCHES - 1);
+  double differ = fabs(sum[0] - sum[1]);
+  return sum[1] > 0.0 && (differ <= 0.02 * sum[1] || differ <= STUDENT_7 * sqrt(scatter));
+}
+
+/*
+ * A motion that never agreed, but whose mean is known: over the last half and the last quarter of
+ * the run alike, without trend, while periods differ from their neighbours as much as before.
+ */
+static void judge_irregular(strut_watch *w) {
+  int32_t stretches = w->marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
+  int64_t seen = w->seen - 1;
+  if (quarter < 1 || seen < w->least_irregular || (double)seen < 2.0 * w->not_before) return;
+  double wide, narrow, trend, other;
+  double mean = batch_mean(w, half, &wide, &trend), late = batch_mean(w, quarter, &narrow, &other);
+  double times = w->mean_tolerance / w->tolerance;
+  double allowed = fmax(w->mean_tolerance * fabs(mean), w->floor * times);
+  if (wide > allowed || narrow > 2.0 * allowed || trend > STUDENT_6) return;
+  if (fabs(mean - late) > wide + narrow) return;
+  if (!wanders_evenly(w, quarter)) return;
+  w->result.kind = STRUT_MOTION_IRREGULAR;
+  w->result.interval = wide + fabs(mean - late);
+  w->velocity = mean;
+}
+
+bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
+  int64_t now = w->seen++;
+  double *latest = w->state[now % STRUT_RING];
+  take(state, w, latest);
+  w->place[now % STRUT_RING] = x;
+  if (now > 0) w->amplitude = distance(w, w->middle, latest);
+  for (int k = 0; k < STRUT_REPEATS && now >= repeats[k]; k++) {
+    int32_t n = repeats[k];
+    w->residual[k][now % STRUT_RING] = distance(w, w->state[(now - n) % STRUT_RING], latest);
+    if (now < 2 * n) continue;
+    w->change[k][now % STRUT_RING] = fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
+  }
+  if (!w->known) mark(w, now, x);
+  for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);
+  int32_t n = w->known ? w->result.repeats : 1;
+  int32_t rounds = n * ((w->successive + n - 1) / n);
+  if (now >= rounds && !w->result.shot) w->velocity = mean_velocity(w, now, rounds);
+  return w->known;
+}
+
+void strut_watch_finish(strut_watch *w, strut_summary *summary) {
+  if (!w->known) judge_irregular(w);
+  summary->steady = w->result;
+  if (!w->known) {
+    summary->steady.periods = w->seen > 0 ? w->seen - 1 : 0;
+    if (w->result.kind == STRUT_MOTION_IRREGULAR) summary->velocity = w->velocity;
+    return;
+  }
+  int64_t now = w->seen - 1;
+  double square = 0.0;
+  for (int32_t j = 0; j < w->successive; j++) {
+    double d = mean_velocity(w, now - j, 1) - w->velocity;
+    square += d * d;
+  }
+  summary->velocity = w->velocity;
+  summary->velocity_spread = sqrt(square / (w->successive - 1));
+}
+
+void strut_watch_free(strut_watch *w) { strut_arena_free(&w->arena); }

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/equilibria/rest_state.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/settle.h"
+#include "engine/statics/equilibria/equilibrium_search.h"
+#include "engine/statics/equilibria/naming.h"
+
+/* A start that has less far to go is at rest but for the ground's compliance, in model sizes. */
+static const double NEAR = 0.01;
+/* The residual of a drawn shape that counts as at rest, in weights. */
+static const double AT_REST = 1e-8;
+
+static double largest(const double *x, int32_t n) {
+  double most = 0.0;
+  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  return most;
+}
+
+static double member_forces(const strut_model *model, const double *q) {
+  const strut_member_table *t = &model->members;
+  double sum = 0.0;
+  for (int32_t j = 0; j < t->count; j++) {
+    const double *a = q + t->from[j], *b = q + t->to[j];
+    double dx = b[0] - a[0], dy = b[1] - a[1];
+    double stretch = sqrt(dx * dx + dy * dy) - t->rest[j];
+    if (stretch > t->slack[j]) sum += fabs(t->stiffness[j] * stretch);
+  }
+  return sum;
+}
+
+static bool find_closed(const strut_model *model, strut_arena *arena, strut_stand *stand) {
+  const strut_contact_table *c = &model->contacts;
+  stand->closed = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->closed);
+  stand->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->normal);
+  if (!stand->closed || !stand->normal) return false;
+  for (int32_t i = 0; i < c->count; i++) {
+    const double *at = stand->q + c->at[i];
+    double gap = at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
+    if (!(gap < 0)) continue;
+    stand->closed[stand->closed_count] = c->entry[i].node;
+    stand->normal[stand->closed_count++] = -c->entry[i].stiffness * gap;
+  }
+  return true;
+}
+
+/* All but name and q from q. */
+static strut_status judge(const strut_model *model, strut_arena *arena, strut_stand *stand,
+                          strut_error *error) {
+  strut_potential *potential = NULL;
+  strut_status status = strut_potential_create(model, NULL, true, &potential, error);
+  if (status) return status;
+  double *g = strut_allocate((size_t)potential->n, sizeof *g);
+  if (g && find_closed(model, arena, stand)) {
+    strut_potential_gradient(potential, stand->q, g);
+    stand->residual = largest(g, potential->n);
+    stand->scale = potential->force_scale;
+    if (!(stand->scale > 0)) stand->scale = member_forces(model, stand->q);
+    double rounding = 4 * strut_potential_rounding(potential, stand->q);
+    stand->at_rest = stand->residual <= fmax(AT_REST * stand->scale, rounding);
+  } else {
+    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  }
+  strut_release(g);
+  strut_potential_free(potential);
+  return status;
+}
+
+/* A relaxation by itself: the rooms of a hunt without the searches. */
+static strut_status prepare(strut_hunt *h, const strut_model *model) {
+  strut_status status = strut_flat_create(model->scene, &h->flat, h->error);
+  if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
+  if (!status) {
+    h->on_ground = h->model->contacts.count > 0;
+    status = strut_potential_create(h->model, NULL, h->on_ground, &h->world, h->error);
+  }
+  if (!status && strut_hunt_look_for_unrest(h) != STRUT_UNREST_NONE)
+    status = strut_fail(h->error, STRUT_NOT_SETTLED, "%s", h->out->remark);
+  if (!status && h->world->n > 0) status = strut_relaxer_create(h->world, &h->relaxer, h->error);
+  return status;
+}
+
+static void clean_up(strut_hunt *h) {
+  strut_relaxer_free(h->relaxer);
+  strut_potential_free(h->world);
+  strut_model_free(h->model);
+  strut_flat_free(&h->flat);
+  strut_arena_free(&h->out->arena);
+}
+
+/* The node that moved most from one shape to the other. */
+static const char *farthest(const strut_hunt *h, const double *from, const double *to) {
+  int32_t node = 0;
+  double most = -1.0;
+  for (int32_t i = 0; i < h->model->node_count; i++) {
+    double moved = hypot(to[2 * i] - from[2 * i], to[2 * i + 1] - from[2 * i + 1]);
+    if (moved > most) most = moved, node = i;
+  }
+  return h->flat.scene.nodes[node].name;
+}
+
+/* q (level coordinates) goes where the structure comes to rest from it. */
+static strut_status relax(strut_hunt *h, const char *what, double *q) {
+  size_t bytes = (size_t)h->model->length * sizeof *q;
+  strut_relaxed relaxed;
+  strut_status status = STRUT_OK;
+  if (h->world->n == 0) return STRUT_OK;
+  double *near = strut_arena_allocate(&h->out->arena, 1, bytes);
+  double *from = strut_arena_allocate(&h->out->arena, 1, bytes);
+  if (!near || !from) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  memcpy(near, q, bytes);
+  memcpy(from, q, bytes);
+  strut_relax_down(h->relaxer, near, &relaxed);
+  bool close = relaxed.end == STRUT_RELAXED_RESTS &&
+               strut_shape_distance(h->model, q, near, false, NULL) < NEAR * h->model->size;
+  if (close || !strut_relaxer_simulates(h->relaxer))
+    memcpy(q, near, bytes);
+  else
+    status = strut_relax(h->relaxer, q, NULL, NULL, NULL, &relaxed, h->error);
+  if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
+  return strut_fail(h->error, STRUT_NOT_SETTLED,
+                    relaxed.end == STRUT_RELAXED_LEAVES
+                        ? "from %s the structure moves off without end, %s farthest: nothing "
+                          "holds it there"
+                        : "from %s the structure does not come to rest within "
+                          "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
+                          "larger limit, or more damping",
+                    what, farthest(h, from, q));
+}
+
+static strut_status from_start(strut_hunt *h, double *q) {
+  memcpy(q, h->model->start, (size_t)h->model->length * sizeof *q);
+  return relax(h, "the scene's start", q);
+}
+
+/* True where q rests on one of the configuration's contact sets, in about its shape. */
+static bool fits(strut_hunt *h, const strut_configuration *c, const double *shape, const double *q,
+                 strut_node_set *rests_on) {
+  strut_equilibrium e = {0};
+  if (strut_hunt_contacts(h, q, &e)) return false;
+  *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
+  bool on_set = c->set_count == 0;
+  for (size_t k = 0; k < c->set_count; k++)
+    on_set = on_set || strut_same_nodes(&c->sets[k], e.contacts, e.contact_count);
+  return on_set && strut_shape_distance(h->model, shape, q, false, NULL) <
+                       STRUT_NAMED_WITHIN * h->model->size;
+}
+
+/* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
+static strut_status from_shape(strut_hunt *h, const strut_configuration *c, double *q, bool *found,
+                               strut_node_set *rests_on) {
+  size_t nodes = h->flat.scene.node_count;
+  double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
+  if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  memcpy(shape, c->position[0], 2 * nodes * sizeof *shape);
+  for (size_t i = 0; i < nodes; i++) /* what is held stays where it is held */
+    for (size_t k = 0; k < 2; k++)
+      if (h->flat.scene.nodes[i].fixed[k]) shape[2 * i + k] = h->flat.scene.nodes[i].start[k];
+  memcpy(q, shape, (size_t)h->model->length * sizeof *q);
+  strut_status status = relax(h, "the configuration's shape", q);
+  if (status == STRUT_NOT_SETTLED) return STRUT_OK;
+  *found = !status && fits(h, c, shape, q, rests_on);
+  return status;
+}
+
+static strut_status take_named(const strut_model *model, const strut_node_set *set,
+                               const char *name, double *q, bool *found, strut_error *error) {
+  strut_equilibria_options options = {.standing_only = true, .supports = set};
+  strut_equilibria all;
+  strut_status status = strut_equilibria_find(model, &options, &all, error);
+  for (size_t i = 0; i < all.count && !status && !*found; i++) {
+    const strut_equilibrium *e = &all.list[i];
+    if (e->fate != STRUT_FATE_STANDS || strcmp(e->name, name) != 0) continue;
+    memcpy(q, e->rest, (size_t)model->length * sizeof *q);
+    *found = true;
+  }
+  strut_equilibria_free(&all);
+  return status;
+}
+
+/* On its contact sets in turn, else on all supports. In the original's coordinates. */
+static strut_status by_search(const strut_model *model, const strut_configuration *c, double *q,
+                              const strut_node_set *rests_on, strut_error *error) {
+  bool found = false;
+  strut_status status = STRUT_OK;
+  for (size_t k = 0; k < c->set_count && !status && !found; k++)
+    status =
+        take_named(model, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q, &found, error);
+  if (!status && !found && c->set_count == 0)
+    status = take_named(model, NULL, c->name, q, &found, error);
+  if (status || found) return status;
+  char instead[200] = "";
+  size_t used = 0;
+  for (size_t i = 0; i < rests_on->count && used < sizeof instead; i++) {
+    int n = snprintf(instead + used, sizeof instead - used, "%s%s",
+                     i ? ", " : "; from its shape it comes to rest on ",
+                     model->scene->nodes[rests_on->node[i]].name);
+    if (n < 0) break;
+    used += (size_t)n;
+  }
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut "
+                    "equilibria' lists what there is",
+                    c->name, c->set_count ? " on its contacts" : "",
+                    c->shaped ? " in about its shape" : "", instead);
+}
+
+static const strut_configuration *find_configuration(const strut_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->configuration_count; i++)
+    if (strcmp(scene->configurations[i].name, name) == 0) return &scene->configurations[i];
+  return NULL;
+}
+
+static strut_status unknown(const strut_scene *scene, const char *name, strut_error *error) {
+  char names[300] = "";
+  size_t used = 0;
+  for (size_t i = 0; i < scene->configuration_count && used < sizeof names; i++) {
+    int n = snprintf(names + used, sizeof names - used, ", %s", scene->configurations[i].name);
+    if (n < 0) break;
+    used += (size_t)n;
+  }
+  return strut_fail(error, STRUT_USAGE,
+                    "there is no configuration '%.100s'; choose among: start, drawn%s", name,
+                    names);
+}
+
+/* Names that only a search gives: unnamed-3, or III-2 where a configuration has several. */
+static bool is_listed(const strut_scene *scene, const char *name) {
+  const char *dash = strrchr(name, '-');
+  if (!dash || dash[1] == 0 || dash[1 + strspn(dash + 1, "0123456789")] != 0) return false;
+  size_t stem = (size_t)(dash - name);
+  if (stem == strlen("unnamed") && strncmp(name, "unnamed", stem) == 0) return true;
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const char *own = scene->configurations[i].name;
+    if (strlen(own) == stem && strncmp(own, name, stem) == 0) return true;
+  }
+  return false;
+}
+
+/* The equilibrium of that name in the list that the scene's own search makes. */
+static strut_status from_list(const strut_model *model, const char *name, strut_arena *arena,
+                              strut_stand *stand, strut_error *error) {
+  strut_equilibria_options options = {0};
+  strut_equilibria all;
+  strut_status status = strut_equilibria_find(model, &options, &all, error);
+  bool found = false;
+  for (size_t i = 0; i < all.count && !status && !found; i++) {
+    const strut_equilibrium *e = &all.list[i];
+    if (strcmp(e->name, name) != 0) continue;
+    found = true;
+    stand->name = strut_arena_text(arena, name, strlen(name));
+    if (!stand->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    bool stands = e->fate == STRUT_FATE_STANDS && e->rest;
+    memcpy(stand->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *stand->q);
+  }
+  strut_equilibria_free(&all);
+  if (status || found) return status;
+  return strut_fail(error, STRUT_USAGE,
+                    "there is no equilibrium '%.100s'; 'strut equilibria' lists what there is",
+                    name);
+}
+
+static strut_status seek(const strut_model *model, const strut_configuration *c, double *q,
+                         strut_error *error) {
+  strut_equilibria scratch = {0};
+  strut_hunt h = {.out = &scratch, .error = error};
+  strut_node_set rests_on = {0};
+  bool found = !c, turned = true;
+  strut_status status = prepare(&h, model);
+  if (!status && !c) status = from_start(&h, q);
+  if (!status && c && c->shaped)
+    status = from_shape(&h, &h.flat.scene.configurations[c - model->scene->configurations], q,
+                        &found, &rests_on);
+  if (!status && !found) {
+    turned = false;
+    status = by_search(model, c, q, &rests_on, error);
+  }
+  if (!status && turned) strut_flat_to_original(&h.flat, (size_t)model->node_count, q);
+  clean_up(&h);
+  return status;
+}
+
+/* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
+static strut_status from_settling(const strut_model *model, strut_arena *arena, strut_stand *stand,
+                                  strut_error *error) {
+  double time;
+  strut_status status =
+      strut_settle_experiment(model, NULL, NULL, stand->q, &time, &stand->settle, error);
+  if (!status) status = judge(model, arena, stand, error);
+  if (!model->scene->settle.friction) stand->at_rest = true;
+  return status;
+}
+
+strut_status strut_stand_find(const strut_model *model, const char *name, strut_arena *arena,
+                              strut_stand *stand, strut_error *error) {
+  const strut_scene *scene = model->scene;
+  const strut_configuration *c = NULL;
+  bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
+  *stand = (strut_stand){.name = start ? "start" : "drawn"};
+  stand->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *stand->q);
+  if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
+  if (!c && !start && !drawn) {
+    if (!is_listed(scene, name)) return unknown(scene, name, error);
+    strut_status status = from_list(model, name, arena, stand, error);
+    return status ? status : judge(model, arena, stand, error);
+  }
+  if (!c && start && scene->start_equilibrium >= 0)
+    c = &scene->configurations[scene->start_equilibrium];
+  if (c) stand->name = c->name;
+  if (drawn) {
+    for (size_t i = 0; i < scene->node_count; i++)
+      memcpy(stand->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
+    return judge(model, arena, stand, error);
+  }
+  if (!c && scene->settle.wanted && model->mass)
+    return from_settling(model, arena, stand, error);
+  strut_status status = seek(model, c, stand->q, error);
+  if (!status) status = judge(model, arena, stand, error);
+  stand->at_rest = true;
+  return status;
+}
+
+strut_status strut_stand_resolve(strut_scene *scene, strut_error *error) {
+  if (scene->start_equilibrium < 0) return STRUT_OK;
+  const char *name = scene->configurations[scene->start_equilibrium].name;
+  strut_model *model = NULL;
+  strut_arena arena = {0};
+  strut_stand stand;
+  strut_status status = strut_model_compile(scene, &model, error);
+  if (!status) status = strut_stand_find(model, name, &arena, &stand, error);
+  for (size_t i = 0; i < scene->node_count && !status; i++)
+    for (size_t c = 0; c < 2; c++)
+      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = stand.q[2 * i + c];
+  if (!status) scene->start_equilibrium = -1;
+  strut_arena_free(&arena);
+  strut_model_free(model);
+  return status;
+}

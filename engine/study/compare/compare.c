@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/compare/compare.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/plan.h"
+#include "engine/study/compare/compare_parts.h"
+
+static const double USUAL_ACCURACY = 0.005;
+
+static const strut_compare_row rows[STRUT_COMPARE_QUANTITIES] = {
+    [STRUT_COMPARE_NODES] = {"structure", "nodes", "nodes", ""},
+    [STRUT_COMPARE_MEMBERS] = {"structure", "members", "members", ""},
+    [STRUT_COMPARE_BARS] = {"structure", "bars", "bars", ""},
+    [STRUT_COMPARE_SPRINGS] = {"structure", "springs", "springs", ""},
+    [STRUT_COMPARE_CABLES] = {"structure", "cables", "cables", ""},
+    [STRUT_COMPARE_CONTACTS] = {"structure", "contacts", "nodes that may touch", ""},
+    [STRUT_COMPARE_ACTUATORS] = {"structure", "actuators", "actuators", ""},
+    [STRUT_COMPARE_MASS] = {"structure", "mass", "mass", "kg"},
+    [STRUT_COMPARE_FREEDOMS] = {"structure", "degrees_of_freedom", "degrees of freedom", ""},
+    [STRUT_COMPARE_SELF_STRESSES] = {"as drawn", "self_stress_states", "self-stress states", ""},
+    [STRUT_COMPARE_MECHANISMS] = {"as drawn", "mechanisms", "mechanisms", ""},
+    [STRUT_COMPARE_FINITE] = {"as drawn", "finite_mechanisms", "finite ones of them", ""},
+    [STRUT_COMPARE_RIGID_MOTIONS] = {"as drawn", "rigid_body_motions", "rigid-body motions", ""},
+    [STRUT_COMPARE_STATES] = {"states", "stable_states", "stable states", ""},
+    [STRUT_COMPARE_LOWEST_ENERGY] = {"states", "lowest_energy", "lowest energy", "J"},
+    [STRUT_COMPARE_ENERGY_SPAN] = {"states", "energy_span", "up to the highest", "J"},
+    [STRUT_COMPARE_LOWEST_BARRIER] = {"states", "lowest_barrier", "lowest way out", "J"},
+    [STRUT_COMPARE_PRESTRESS] = {"at rest", "prestress", "prestress, mean", "N"},
+    [STRUT_COMPARE_TENSION] = {"at rest", "largest_tension", "largest tension", "N"},
+    [STRUT_COMPARE_COMPRESSION] = {"at rest", "largest_compression", "largest compression", "N"},
+    [STRUT_COMPARE_FREQUENCY_1] = {"at rest", "frequency_1", "lowest frequency", "Hz"},
+    [STRUT_COMPARE_FREQUENCY_2] = {"at rest", "frequency_2", "second", "Hz"},
+    [STRUT_COMPARE_FREQUENCY_3] = {"at rest", "frequency_3", "third", "Hz"},
+    [STRUT_COMPARE_STIFFNESS_X] = {"at rest", "stiffness_x", "softest node in x", "N/m"},
+    [STRUT_COMPARE_STIFFNESS_Y] = {"at rest", "stiffness_y", "softest node in y", "N/m"},
+    [STRUT_COMPARE_STEP_LIMIT] = {"at rest", "step_limit", "largest step, rk4", "s"},
+    [STRUT_COMPARE_FRICTION] = {"drive", "friction", "friction", "1"},
+    [STRUT_COMPARE_DRIVE_FREQUENCY] = {"drive", "drive_frequency", "drive frequency", "Hz"},
+    [STRUT_COMPARE_DRIVE_AMPLITUDE] = {"drive", "drive_amplitude", "drive amplitude", "m"},
+    [STRUT_COMPARE_VELOCITY] = {"motion", "velocity", "velocity", "m/s"},
+    [STRUT_COMPARE_VELOCITY_ERROR] = {"motion", "velocity_error", "its relative error", "1"},
+    [STRUT_COMPARE_TRAVEL] = {"motion", "travel_per_period", "travel per period", "m"},
+    [STRUT_COMPARE_DRIVE_ENERGY] = {"motion", "drive_energy_per_period", "energy per period", "J"},
+    [STRUT_COMPARE_DRIVE_POWER] = {"motion", "drive_power", "drive power", "W"},
+    [STRUT_COMPARE_TRANSPORT] = {"motion", "cost_of_transport", "cost of transport", "1"},
+    [STRUT_COMPARE_DUTY] = {"motion", "contact_duty", "contact duty", "1"},
+    [STRUT_COMPARE_EVALUATIONS] = {"cost of a second", "evaluations_per_second", "evaluations",
+                                   "1/s"},
+    [STRUT_COMPARE_CPU] = {"cost of a second", "cpu_per_second", "CPU time", "s/s"},
+};
+
+strut_compare_row strut_compare_row_of(strut_compare_quantity quantity) { return rows[quantity]; }
+
+void strut_compare_put(strut_compare_work *work, strut_compare_quantity quantity, double value) {
+  bool there = isfinite(value);
+  work->column->cell[quantity] =
+      (strut_compare_cell){there ? value : (double)NAN, there ? NULL : "not finite"};
+}
+
+void strut_compare_leave(strut_compare_work *work, strut_compare_quantity first,
+                         strut_compare_quantity last, const char *reason) {
+  for (int i = (int)first; i <= (int)last; i++)
+    work->column->cell[i] = (strut_compare_cell){(double)NAN, reason};
+}
+
+strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_quantity first,
+                                        strut_compare_quantity last, const strut_error *error,
+                                        strut_status status, bool failed) {
+  if (status == STRUT_NO_MEMORY || status == STRUT_INTERRUPTED) return status;
+  const char *text = error->message[0] ? error->message : strut_status_text(status);
+  const char *kept = strut_arena_format(work->arena, "%s", text);
+  if (!kept) return STRUT_NO_MEMORY;
+  strut_compare_leave(work, first, last, kept);
+  if (failed && work->column->status == STRUT_OK) {
+    work->column->status = status;
+    snprintf(work->column->message, sizeof work->column->message, "%s", text);
+  }
+  return STRUT_OK;
+}
+
+/* Where it stands; without that the drawn shape is shown, and what is told at rest is left out. */
+static strut_status find_stand(strut_compare_work *work, const strut_model *model) {
+  strut_error error = {0};
+  strut_compare_column *column = work->column;
+  strut_status status = strut_stand_find(model, NULL, work->arena, &work->stand, &error);
+  if (status == STRUT_OK) {
+    column->shape = work->stand.name;
+    column->q = work->stand.q;
+    return STRUT_OK;
+  }
+  work->stand = (strut_stand){0};
+  status = strut_compare_leave_failed(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_STIFFNESS_Y,
+                                      &error, status, false);
+  double *q = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *q);
+  if (!q) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < model->scene->node_count; i++)
+    memcpy(q + 2 * i, model->scene->nodes[i].position, 2 * sizeof *q);
+  column->shape = "drawn";
+  column->q = q;
+  return status;
+}
+
+static strut_status find_limit(strut_compare_work *work, const strut_model *model) {
+  strut_plan plan;
+  strut_error error = {0};
+  strut_status status = strut_plan_describe(model, &plan, &error);
+  if (status != STRUT_OK)
+    return strut_compare_leave_failed(work, STRUT_COMPARE_STEP_LIMIT, STRUT_COMPARE_STEP_LIMIT,
+                                      &error, status, false);
+  if (!plan.runnable)
+    strut_compare_leave(work, STRUT_COMPARE_STEP_LIMIT, STRUT_COMPARE_STEP_LIMIT,
+                        "some node that can move has no mass");
+  else if (isinf(plan.step_limit))
+    strut_compare_leave(work, STRUT_COMPARE_STEP_LIMIT, STRUT_COMPARE_STEP_LIMIT,
+                        "nothing limits the step");
+  else
+    strut_compare_put(work, STRUT_COMPARE_STEP_LIMIT, plan.step_limit);
+  return STRUT_OK;
+}
+
+static strut_status look_at_rest(strut_compare_work *work, const strut_model *model) {
+  strut_status status = strut_compare_things(work, model);
+  if (status == STRUT_OK) status = find_stand(work, model);
+  if (status == STRUT_OK) status = strut_compare_rigidity(work, model);
+  if (status == STRUT_OK) status = strut_compare_states(work, model);
+  if (status == STRUT_OK && work->stand.q) status = strut_compare_frequencies(work, model);
+  if (status == STRUT_OK && work->stand.q) status = strut_compare_stiffness(work, model);
+  return status;
+}
+
+/* The motion starts at an equilibrium where the scene wishes one, which is found here. */
+static strut_status look_at_motion(strut_compare_work *work) {
+  strut_scene *scene = work->column->input->scene;
+  strut_error error = {0};
+  strut_status status = strut_stand_resolve(scene, &error);
+  bool resolved = status == STRUT_OK;
+  if (!resolved)
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, &error,
+                                        status, true);
+  if (status == STRUT_OK) status = strut_model_compile(scene, &work->column->model, &error);
+  if (status == STRUT_OK) status = find_limit(work, work->column->model);
+  if (status == STRUT_OK && resolved) status = strut_compare_motion(work, work->column->model);
+  return status;
+}
+
+static strut_status fill(const strut_compare_input *input, const strut_compare_options *options,
+                         strut_compare_column *column, strut_arena *arena, strut_error *error) {
+  strut_compare_work work = {.options = options, .column = column, .arena = arena};
+  strut_model *model = NULL;
+  *column = (strut_compare_column){.input = input, .softest = {-1, -1}};
+  strut_compare_leave(&work, 0, STRUT_COMPARE_QUANTITIES - 1, "not computed");
+  strut_status status = strut_model_compile(input->scene, &model, error);
+  if (status == STRUT_OK) status = look_at_rest(&work, model);
+  strut_model_free(model);
+  if (status == STRUT_OK) status = look_at_motion(&work);
+  return status;
+}
+
+strut_status strut_compare_make(const strut_compare_input *inputs, size_t count,
+                                const strut_compare_options *options, strut_compare *result,
+                                strut_error *error) {
+  strut_compare_options wanted = *options;
+  if (!(wanted.accuracy > 0.0)) wanted.accuracy = USUAL_ACCURACY;
+  *result = (strut_compare){.count = count,
+                            .accuracy = wanted.accuracy,
+                            .no_motion = wanted.no_motion,
+                            .no_states = wanted.no_states};
+  result->columns = strut_arena_allocate(&result->arena, count, sizeof *result->columns);
+  strut_status status = result->columns ? STRUT_OK : STRUT_NO_MEMORY;
+  for (size_t i = 0; i < count && status == STRUT_OK; i++) {
+    status = fill(&inputs[i], &wanted, &result->columns[i], &result->arena, error);
+    if (wanted.interrupt && *wanted.interrupt) status = STRUT_INTERRUPTED;
+    if (wanted.progress) wanted.progress(wanted.progress_context, (double)(i + 1) / (double)count);
+  }
+  if (status != STRUT_OK && error && error->status != status)
+    strut_fail(error, status, "%s", strut_status_text(status));
+  return status;
+}
+
+void strut_compare_free(strut_compare *result) {
+  for (size_t i = 0; result->columns && i < result->count; i++)
+    strut_model_free(result->columns[i].model);
+  strut_arena_free(&result->arena);
+  *result = (strut_compare){0};
+}

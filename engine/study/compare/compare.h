@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Structures side by side: what each consists of, how it stands, and how it moves.
+ *
+ * Every number is what the command for it alone would say: `strut check`, `rigidity`, `equilibria`,
+ * `modes`, `run --accuracy --steady`. What a structure does not have is an empty cell with a reason.
+ */
+#ifndef STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
+#define STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
+
+#include <signal.h>
+#include <stdbool.h>
+
+#include "engine/model/model.h"
+#include "engine/run/measure/summary.h"
+#include "engine/scene/difference.h"
+
+enum { STRUT_COMPARE_MOST = 100, STRUT_COMPARE_FREQUENCIES = 3 };
+
+/** The rows, in the order in which they are told. */
+typedef enum strut_compare_quantity {
+  STRUT_COMPARE_NODES,
+  STRUT_COMPARE_MEMBERS,
+  STRUT_COMPARE_BARS,
+  STRUT_COMPARE_SPRINGS,
+  STRUT_COMPARE_CABLES,
+  STRUT_COMPARE_CONTACTS,
+  STRUT_COMPARE_ACTUATORS,
+  STRUT_COMPARE_MASS,
+  STRUT_COMPARE_FREEDOMS,
+  STRUT_COMPARE_SELF_STRESSES, /* as drawn, like the next three */
+  STRUT_COMPARE_MECHANISMS,    /* all that stretch no member but rigid-body motions */
+  STRUT_COMPARE_FINITE,        /* of them */
+  STRUT_COMPARE_RIGID_MOTIONS,
+  STRUT_COMPARE_STATES,         /* equilibria that stand */
+  STRUT_COMPARE_LOWEST_ENERGY,  /* of those */
+  STRUT_COMPARE_ENERGY_SPAN,    /* from the lowest to the highest */
+  STRUT_COMPARE_LOWEST_BARRIER, /* out of the state that a run starts in */
+  STRUT_COMPARE_PRESTRESS,      /* root of the mean square of member forces at rest */
+  STRUT_COMPARE_TENSION,        /* largest, at rest */
+  STRUT_COMPARE_COMPRESSION,    /* largest, at rest; positive */
+  STRUT_COMPARE_FREQUENCY_1,    /* lowest elastic ones, contacts sliding */
+  STRUT_COMPARE_FREQUENCY_2,
+  STRUT_COMPARE_FREQUENCY_3,
+  STRUT_COMPARE_STIFFNESS_X, /* of the softest node under a unit load */
+  STRUT_COMPARE_STIFFNESS_Y,
+  STRUT_COMPARE_STEP_LIMIT, /* rk4's */
+  STRUT_COMPARE_FRICTION,   /* sliding, where all contacts agree */
+  STRUT_COMPARE_DRIVE_FREQUENCY,
+  STRUT_COMPARE_DRIVE_AMPLITUDE,
+  STRUT_COMPARE_VELOCITY,
+  STRUT_COMPARE_VELOCITY_ERROR, /* expected, as a part of it */
+  STRUT_COMPARE_TRAVEL,         /* per period */
+  STRUT_COMPARE_DRIVE_ENERGY,   /* per period */
+  STRUT_COMPARE_DRIVE_POWER,
+  STRUT_COMPARE_TRANSPORT,   /* drive power over weight times speed */
+  STRUT_COMPARE_DUTY,        /* mean over the contacts that touch at all */
+  STRUT_COMPARE_EVALUATIONS, /* of the forces, per simulated second */
+  STRUT_COMPARE_CPU,         /* seconds per simulated second: a measurement */
+  STRUT_COMPARE_QUANTITIES
+} strut_compare_quantity;
+
+/** What a row is. */
+typedef struct strut_compare_row {
+  const char *group; /* such as "at rest" */
+  const char *key;   /* in JSON and CSV: "self_stress_states" */
+  const char *label; /* for people */
+  const char *unit;  /* "kg", "Hz"; "" for counts and "1" for ratios */
+} strut_compare_row;
+STRUT_API strut_compare_row strut_compare_row_of(strut_compare_quantity quantity);
+
+typedef struct strut_compare_cell {
+  double value;       /* [unit of its row]; NAN where there is none */
+  const char *reason; /* why there is none; NULL where there is a value */
+} strut_compare_cell;
+
+/** A state in which a structure stands. */
+typedef struct strut_compare_state {
+  const char *name;
+  double energy; /* (13) at rest on the real ground [J] */
+} strut_compare_state;
+
+/** The lowest pass known from one state to another. */
+typedef struct strut_compare_barrier {
+  const char *from, *to;
+  double height; /* [J] above `from` */
+} strut_compare_barrier;
+
+/** What is compared. Scenes are checked for any purpose; a start equilibrium may remain a wish. */
+typedef struct strut_compare_input {
+  const char *label;                   /* unique */
+  strut_scene *scene;                  /* its start is resolved here, and its accuracy is set */
+  const strut_difference *differences; /* (difference_count) from the first input */
+  size_t difference_count;
+  const char *const *without; /* (without_count) parameters that were set and it does not have */
+  size_t without_count;
+} strut_compare_input;
+
+/** One structure's column. */
+typedef struct strut_compare_column {
+  const strut_compare_input *input;
+  strut_compare_cell cell[STRUT_COMPARE_QUANTITIES];
+  strut_model *model; /* as run; owned */
+  const char *shape;  /* name of the equilibrium that is told and drawn, or "drawn" */
+  const double *q;    /* (length) its positions [m] */
+  size_t state_count, barrier_count, contact_count;
+  strut_compare_state *states;     /* by energy */
+  strut_compare_barrier *barriers; /* as strut_equilibria lists them */
+  double (*stiffness)[2]; /* (nodes) under unit loads in x and y [N/m]; NAN: none. Or NULL */
+  int32_t softest[2];     /* node of STIFFNESS_X and _Y, or -1 */
+  strut_contact_summary *contacts; /* (contact_count) in the steady motion */
+  bool still;                      /* its velocity is 0 within its error */
+  const char *motion;              /* "periodic", "irregular", ... or NULL */
+  int32_t repeats;                 /* drive periods of a periodic one */
+  const char *how;                 /* how the velocity was found, in words; or NULL */
+  strut_status status; /* the worst of what was computed: STRUT_OK unless something failed */
+  char message[600];
+} strut_compare_column;
+
+typedef struct strut_compare_options {
+  double accuracy;                                  /* of velocities, relative; 0: 0.005 */
+  bool no_motion;                                   /* leave out runs */
+  bool no_states;                                   /* leave out the search for stable states */
+  const volatile sig_atomic_t *interrupt;           /* may be NULL */
+  void (*progress)(void *context, double fraction); /* may be NULL */
+  void *progress_context;
+} strut_compare_options;
+
+/** All columns; strut_compare_free. The inputs outlive it. */
+typedef struct strut_compare {
+  size_t count;
+  strut_compare_column *columns;
+  double accuracy;
+  bool no_motion, no_states;
+  strut_arena arena;
+} strut_compare;
+
+/**
+ * Fills a column for each of 1 to STRUT_COMPARE_MOST inputs. What cannot be computed for one of them is
+ * told in its column, and the others go on. STRUT_OK, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_compare_make(const strut_compare_input *inputs, size_t count,
+                                          const strut_compare_options *options,
+                                          strut_compare *result, strut_error *error);
+/** A zeroed struct is allowed. */
+STRUT_API void strut_compare_free(strut_compare *result);
+
+#endif

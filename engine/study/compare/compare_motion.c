@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * How a structure moves: its run to a wanted accuracy, which for a driven one ends when the motion is
+ * steady; then whole periods of that motion, for energies and contacts.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/accuracy/accuracy.h"
+#include "engine/study/compare/compare_parts.h"
+#include "engine/study/tradeoff/tradeoff_parts.h"
+
+enum { LONG_WINDOW = 20 }; /* periods of a motion that does not repeat itself */
+static const double WINDOW_TOLERANCE = 1e-6, STEPS = 50.0;
+
+static const char *word_of(strut_motion kind) {
+  static const char *const words[] = {NULL, "periodic", "irregular", "transient"};
+  return words[kind];
+}
+
+/* The steady motion over whole periods, from where the run ended. */
+static strut_status run_window(const strut_compare_work *work, const strut_summary *run,
+                               const strut_snapshot *end, double *seconds, strut_summary *window,
+                               strut_error *error) {
+  strut_scene scene = *work->column->input->scene;
+  strut_experiment *e = &scene.experiment;
+  strut_model *model = NULL;
+  double period = strut_scene_span(&scene).period;
+  bool periodic = run->steady.kind == STRUT_MOTION_PERIODIC;
+  if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not keep */
+    e->step = run->step;
+  } else {
+    e->integrator = "adaptive";
+    e->tolerance = WINDOW_TOLERANCE;
+    e->step = period / STEPS;
+  }
+  e->accuracy = 0.0;
+  e->refine = e->refine_time = 0.0;
+  e->steady.wanted = false;
+  e->periods = periodic ? run->steady.repeats : LONG_WINDOW;
+  e->measure_last = 0.0;
+  e->output_last = 0.0;
+  *seconds = e->periods * period;
+  const strut_run_options wanted = {.interrupt = work->options->interrupt, .from = end};
+  strut_status status = strut_model_compile(&scene, &model, error);
+  if (status == STRUT_OK) status = strut_simulate(model, &wanted, window, error);
+  strut_model_free(model);
+  return status;
+}
+
+static strut_status put_contacts(strut_compare_work *work, const strut_summary *s) {
+  strut_compare_column *c = work->column;
+  double sum = 0.0, touching = 0.0;
+  c->contacts = strut_arena_allocate(work->arena, s->contact_count + 1, sizeof *c->contacts);
+  if (!c->contacts) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < s->contact_count; i++) {
+    c->contacts[c->contact_count++] = s->contacts[i];
+    if (s->contacts[i].duty > 0.0) touching++;
+    sum += s->contacts[i].duty;
+  }
+  if (touching > 0.0)
+    strut_compare_put(work, STRUT_COMPARE_DUTY, sum / touching);
+  else
+    strut_compare_leave(work, STRUT_COMPARE_DUTY, STRUT_COMPARE_DUTY, "nothing touches a ground");
+  return STRUT_OK;
+}
+
+/* What the drives do, and what that is for the way. */
+static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period) {
+  const strut_compare_cell *cell = work->column->cell;
+  const strut_scene *scene = work->column->input->scene;
+  if (scene->actuator_count == 0) {
+    strut_compare_leave(work, STRUT_COMPARE_DRIVE_ENERGY, STRUT_COMPARE_TRANSPORT,
+                        "there is no drive");
+    return;
+  }
+  double power = drive_work / seconds;
+  strut_compare_put(work, STRUT_COMPARE_DRIVE_POWER, power);
+  if (period > 0.0)
+    strut_compare_put(work, STRUT_COMPARE_DRIVE_ENERGY, power * period);
+  else
+    strut_compare_leave(work, STRUT_COMPARE_DRIVE_ENERGY, STRUT_COMPARE_DRIVE_ENERGY,
+                        "the run is not given in periods");
+  double gravity = hypot(scene->gravity[0], scene->gravity[1]);
+  double weight = cell[STRUT_COMPARE_MASS].value * gravity;
+  double speed = fabs(cell[STRUT_COMPARE_VELOCITY].value);
+  if (weight > 0.0 && !work->column->still && speed > 0.0 && power > 0.0)
+    strut_compare_put(work, STRUT_COMPARE_TRANSPORT, power / (weight * speed));
+  else
+    strut_compare_leave(work, STRUT_COMPARE_TRANSPORT, STRUT_COMPARE_TRANSPORT,
+                        !(weight > 0.0)       ? "there is no weight"
+                        : work->column->still ? "the velocity may as well be 0"
+                                              : "the drives do no work");
+}
+
+static void put_velocity(strut_compare_work *work, const strut_summary *s, double period) {
+  strut_compare_put(work, STRUT_COMPARE_VELOCITY, s->velocity);
+  strut_compare_put(work, STRUT_COMPARE_VELOCITY_ERROR, s->accuracy.expected);
+  if (period > 0.0)
+    strut_compare_put(work, STRUT_COMPARE_TRAVEL, s->velocity * period);
+  else
+    strut_compare_leave(work, STRUT_COMPARE_TRAVEL, STRUT_COMPARE_TRAVEL,
+                        "the run is not given in periods");
+}
+
+static void put_cost(strut_compare_work *work, const strut_summary *s, double cpu) {
+  double spent = (double)(s->force_evaluations + s->accuracy.check_evaluations);
+  strut_compare_put(work, STRUT_COMPARE_EVALUATIONS, spent / s->duration);
+  strut_compare_put(work, STRUT_COMPARE_CPU, cpu / s->duration);
+}
+
+static strut_status tell(strut_compare_work *work, const strut_summary *run,
+                         const strut_snapshot *end, double cpu) {
+  strut_compare_column *c = work->column;
+  strut_error error = {0};
+  double period = strut_scene_span(c->input->scene).period, seconds = run->duration;
+  c->motion = word_of(run->steady.kind);
+  c->repeats = run->steady.kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
+  c->how = strut_arena_format(work->arena, "%s", run->accuracy.why);
+  if (!c->how) return STRUT_NO_MEMORY;
+  double uncertain = run->accuracy.expected * fmax(fabs(run->velocity), run->accuracy.scale);
+  c->still = fabs(run->velocity) <= uncertain;
+  put_velocity(work, run, period);
+  put_cost(work, run, cpu);
+  strut_summary window = {0};
+  strut_status status = STRUT_OK;
+  if (period > 0.0) status = run_window(work, run, end, &seconds, &window, &error);
+  if (status != STRUT_OK) {
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_DRIVE_ENERGY, STRUT_COMPARE_DUTY,
+                                        &error, status, true);
+  } else {
+    const strut_summary *told = period > 0.0 ? &window : run;
+    put_energy(work, told->energy.drive_work, seconds, period);
+    status = put_contacts(work, told);
+  }
+  strut_summary_free(&window);
+  return status;
+}
+
+strut_status strut_compare_motion(strut_compare_work *work, const strut_model *model) {
+  strut_scene *scene = work->column->input->scene;
+  strut_experiment *e = &scene->experiment;
+  const char *none = work->options->no_motion               ? "not asked for"
+                     : !(e->duration > 0 || e->periods > 0) ? "the model says nothing of a run"
+                                                            : NULL;
+  if (none) {
+    strut_compare_leave(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, none);
+    return STRUT_OK;
+  }
+  strut_error error = {0};
+  strut_summary summary = {0};
+  strut_snapshot end = {
+      .q = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.q),
+      .v = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.v)};
+  if (!end.q || !end.v) return STRUT_NO_MEMORY;
+  e->accuracy = work->options->accuracy;
+  e->steady.wanted = e->periods > 0.0;
+  const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};
+  double began = strut_study_clock();
+  strut_status status = strut_simulate_accurately(scene, &wanted, &summary, &error);
+  double cpu = strut_study_clock() - began;
+  if (status == STRUT_OK)
+    status = tell(work, &summary, &end, cpu);
+  else
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, &error,
+                                        status, true);
+  strut_summary_free(&summary);
+  return status;
+}

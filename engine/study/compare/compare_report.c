@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table and the CSV of a comparison. */
+#include "engine/study/compare/compare_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/quantity_text.h"
+
+enum {
+  LABELS = 24, /* width of the column of labels */
+  NARROWEST = 11,
+  WIDEST = 26,
+  DIGITS = 4,
+  CELL = 80,
+  MOST_STATES = 8,
+  MOST_DIFFERENCES = 30,
+  MOST_TEXT = 60
+};
+
+/* ---- cells ---- */
+
+static void cell_text(strut_compare_quantity quantity, const strut_compare_cell *cell,
+                      char text[CELL]) {
+  const char *unit = strut_compare_row_of(quantity).unit;
+  double v = cell->value;
+  if (!isfinite(v))
+    snprintf(text, CELL, "-");
+  else if (!*unit)
+    snprintf(text, CELL, "%.0f", v);
+  else if (quantity == STRUT_COMPARE_DUTY || quantity == STRUT_COMPARE_VELOCITY_ERROR)
+    snprintf(text, CELL, "%.3g %%", 100.0 * v);
+  else if (strcmp(unit, "1") == 0)
+    snprintf(text, CELL, "%.4g", v);
+  else if (strcmp(unit, "kg") == 0)
+    snprintf(text, CELL, "%s", strut_quantity_of(1000.0 * v, DIGITS, "g").text);
+  else if (strcmp(unit, "1/s") == 0)
+    snprintf(text, CELL, "%s", strut_quantity_of(v, 3, "").text);
+  else
+    snprintf(text, CELL, "%s",
+             strut_quantity_of(v, quantity == STRUT_COMPARE_CPU ? 2 : DIGITS,
+                               strcmp(unit, "s/s") == 0 ? "s" : unit)
+                 .text);
+}
+
+/* Letters of a UTF-8 text, as a terminal's columns. */
+static int letters(const char *text) {
+  int count = 0;
+  for (; *text; text++) count += ((unsigned char)*text & 0xC0) != 0x80;
+  return count;
+}
+
+/* Cut to `most` letters, the last a dot where that is not all; padded on the left to `width`. */
+static void add_right(strut_buffer *to, const char *text, int width) {
+  int count = letters(text), most = width - 1;
+  strut_buffer_add(to, "%*s", count > most ? 1 : width - count, "");
+  for (int shown = 0; *text; text++) {
+    bool first = ((unsigned char)*text & 0xC0) != 0x80;
+    if (first && count > most && shown == most - 1) {
+      strut_buffer_add(to, "~");
+      return;
+    }
+    shown += first;
+    strut_buffer_add(to, "%c", *text);
+  }
+}
+
+static int column_width(const strut_compare_column *c) {
+  int width = letters(c->input->label) + 2;
+  for (int i = 0; i < STRUT_COMPARE_QUANTITIES; i++) {
+    char text[CELL];
+    cell_text((strut_compare_quantity)i, &c->cell[i], text);
+    if (letters(text) + 2 > width) width = letters(text) + 2;
+  }
+  return width < NARROWEST ? NARROWEST : width > WIDEST ? WIDEST : width;
+}
+
+/* A row is told where some structure has it. */
+static bool is_told(const strut_compare *r, int row) {
+  for (size_t i = 0; i < r->count; i++)
+    if (isfinite(r->columns[i].cell[row].value)) return true;
+  return false;
+}
+
+static void add_block(strut_buffer *to, const strut_compare *r, size_t first, size_t end) {
+  const char *group = "";
+  strut_buffer_add(to, "%-*s", LABELS, "");
+  for (size_t i = first; i < end; i++)
+    add_right(to, r->columns[i].input->label, column_width(&r->columns[i]));
+  strut_buffer_add(to, "\n");
+  for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
+    strut_compare_row told = strut_compare_row_of((strut_compare_quantity)row);
+    if (!is_told(r, row)) continue;
+    if (strcmp(group, told.group) != 0) strut_buffer_add(to, "%s\n", told.group);
+    group = told.group;
+    strut_buffer_add(to, "  %-*s", LABELS - 2, told.label);
+    for (size_t i = first; i < end; i++) {
+      char text[CELL];
+      cell_text((strut_compare_quantity)row, &r->columns[i].cell[row], text);
+      add_right(to, text, column_width(&r->columns[i]));
+    }
+    strut_buffer_add(to, "\n");
+  }
+}
+
+/* ---- what has no place in the table ---- */
+
+static void add_states(strut_buffer *to, const strut_compare_column *c) {
+  if (c->state_count == 0) return;
+  strut_buffer_add(to, "  %s stands as", c->input->label);
+  for (size_t i = 0; i < c->state_count && i < MOST_STATES; i++)
+    strut_buffer_add(to, "%s %s (%s)", i ? "," : "", c->states[i].name,
+                     strut_quantity_of(c->states[i].energy, 6, "J").text);
+  if (c->state_count > MOST_STATES)
+    strut_buffer_add(to, " and %zu more", c->state_count - MOST_STATES);
+  strut_buffer_add(to, "\n");
+}
+
+static void add_motion(strut_buffer *to, const strut_compare_column *c) {
+  if (!c->motion) return;
+  strut_buffer_add(to, "  %s moves %s", c->input->label,
+                   c->motion[0] == 'p'   ? "periodically"
+                   : c->motion[0] == 'i' ? "irregularly"
+                                         : "and is not steady yet");
+  if (c->repeats > 1) strut_buffer_add(to, ", every %d periods alike", (int)c->repeats);
+  if (c->still) strut_buffer_add(to, ", on the spot");
+  const char *between = "; touches the ground with";
+  for (size_t i = 0; i < c->contact_count; i++) {
+    if (!(c->contacts[i].duty > 0.0)) continue;
+    strut_buffer_add(to, "%s %s %.3g %%", between, c->contacts[i].node,
+                     100.0 * c->contacts[i].duty);
+    between = ",";
+  }
+  strut_buffer_add(to, "\n");
+}
+
+static void add_remarks(strut_buffer *to, const strut_compare_column *c) {
+  for (size_t i = 0; i < c->input->without_count; i++)
+    strut_buffer_add(to, "  %s has no parameter '%s': it is as its file says\n", c->input->label,
+                     c->input->without[i]);
+  if (c->status != STRUT_OK) strut_buffer_add(to, "  %s: %s\n", c->input->label, c->message);
+}
+
+static void add_value(strut_buffer *to, const char *text) {
+  bool long_text = strlen(text) > MOST_TEXT;
+  int bytes = (int)strlen(text);
+  if (long_text)
+    for (bytes = MOST_TEXT; bytes > 0 && ((unsigned char)text[bytes] & 0xC0) == 0x80; bytes--) {
+    }
+  strut_buffer_add(to, "%.*s%s", bytes, text, long_text ? "..." : "");
+}
+
+static void add_differences(strut_buffer *to, const strut_compare *r,
+                            const strut_compare_column *c) {
+  const strut_compare_input *in = c->input;
+  strut_buffer_add(to, "\n%s against %s: ", in->label, r->columns[0].input->label);
+  if (in->difference_count == 0) strut_buffer_add(to, "no difference");
+  strut_buffer_add(to, "\n");
+  for (size_t i = 0; i < in->difference_count && i < MOST_DIFFERENCES; i++) {
+    const strut_difference *d = &in->differences[i];
+    strut_buffer_add(to, "  %c %s: ", !d->was ? '+' : !d->is ? '-' : '~', d->where);
+    if (d->was) add_value(to, d->was);
+    if (d->was && d->is) strut_buffer_add(to, " -> ");
+    if (d->is) add_value(to, d->is);
+    strut_buffer_add(to, "\n");
+  }
+  if (in->difference_count > MOST_DIFFERENCES)
+    strut_buffer_add(to, "  ... and %zu more; --json lists all\n",
+                     in->difference_count - MOST_DIFFERENCES);
+}
+
+char *strut_compare_table(const strut_compare *r, int columns) {
+  strut_buffer table = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  for (size_t first = 0, end; first < r->count; first = end) {
+    int used = LABELS;
+    for (end = first; end < r->count; end++) {
+      used += column_width(&r->columns[end]);
+      if (used > columns && end > first) break;
+    }
+    if (first) strut_buffer_add(&table, "\n");
+    add_block(&table, r, first, end);
+  }
+  strut_buffer_add(&table, "\n");
+  for (size_t i = 0; i < r->count; i++) add_states(&table, &r->columns[i]);
+  for (size_t i = 0; i < r->count; i++) add_motion(&table, &r->columns[i]);
+  for (size_t i = 0; i < r->count; i++) add_remarks(&table, &r->columns[i]);
+  for (size_t i = 1; i < r->count; i++) add_differences(&table, r, &r->columns[i]);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}
+
+/* ---- CSV ---- */
+
+static void add_quoted(strut_buffer *csv, const char *text) {
+  if (!strpbrk(text, ",\"\r\n")) {
+    strut_buffer_add(csv, "%s", text);
+    return;
+  }
+  strut_buffer_add(csv, "\"");
+  for (; *text; text++) strut_buffer_add(csv, *text == '"' ? "\"\"" : "%c", *text);
+  strut_buffer_add(csv, "\"");
+}
+
+char *strut_compare_csv(const strut_compare *r) {
+  strut_buffer csv = {0};
+  strut_buffer_add(&csv, "model,name");
+  for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
+    strut_compare_row told = strut_compare_row_of((strut_compare_quantity)row);
+    strut_buffer_add(&csv, ",%s", told.key);
+    if (*told.unit && strcmp(told.unit, "1") != 0) strut_buffer_add(&csv, " [%s]", told.unit);
+  }
+  strut_buffer_add(&csv, "\n");
+  for (size_t i = 0; i < r->count; i++) {
+    const strut_compare_column *c = &r->columns[i];
+    add_quoted(&csv, c->input->label);
+    strut_buffer_add(&csv, ",");
+    add_quoted(&csv, c->input->scene->name);
+    for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
+      char text[STRUT_NUMBER_TEXT] = "";
+      if (isfinite(c->cell[row].value)) strut_number_text(c->cell[row].value, text);
+      strut_buffer_add(&csv, ",%s", text);
+    }
+    strut_buffer_add(&csv, "\n");
+  }
+  return strut_buffer_take(&csv);
+}

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How a structure is at rest: rigidity, forces, states, frequencies. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/rigidity/rigidity.h"
+#include "engine/study/compare/compare_parts.h"
+
+static const double TURN = 6.283185307179586476925;
+
+static void put_counts(strut_compare_work *work, const strut_rigidity *r) {
+  const strut_mechanisms *m = &r->mechanisms;
+  strut_compare_put(work, STRUT_COMPARE_SELF_STRESSES, r->states.count);
+  strut_compare_put(work, STRUT_COMPARE_MECHANISMS, m->count - m->rigid_body);
+  strut_compare_put(work, STRUT_COMPARE_FINITE, m->finite);
+  strut_compare_put(work, STRUT_COMPARE_RIGID_MOTIONS, m->rigid_body);
+}
+
+static void put_forces(strut_compare_work *work, const strut_rigidity *r, size_t count) {
+  double squares = 0.0, tension = 0.0, compression = 0.0;
+  if (count == 0) {
+    strut_compare_leave(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_COMPRESSION,
+                        "there are no members");
+    return;
+  }
+  for (size_t j = 0; j < count; j++) {
+    squares += r->force[j] * r->force[j];
+    tension = fmax(tension, r->force[j]);
+    compression = fmax(compression, -r->force[j]);
+  }
+  strut_compare_put(work, STRUT_COMPARE_PRESTRESS, sqrt(squares / (double)count));
+  strut_compare_put(work, STRUT_COMPARE_TENSION, tension);
+  strut_compare_put(work, STRUT_COMPARE_COMPRESSION, compression);
+}
+
+/* As drawn, whatever it stands in: the shape that `strut rigidity` looks at. */
+static strut_status look_as_drawn(strut_compare_work *work, const strut_model *model) {
+  strut_error error = {0};
+  strut_arena scratch = {0};
+  strut_stand drawn;
+  strut_rigidity r = {0};
+  strut_status status = strut_stand_find(model, "drawn", &scratch, &drawn, &error);
+  if (status == STRUT_OK) status = strut_rigidity_find(model, drawn.q, &r, &error);
+  if (status == STRUT_OK)
+    put_counts(work, &r);
+  else
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_SELF_STRESSES,
+                                        STRUT_COMPARE_RIGID_MOTIONS, &error, status, true);
+  strut_rigidity_free(&r);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+strut_status strut_compare_rigidity(strut_compare_work *work, const strut_model *model) {
+  strut_error error = {0};
+  strut_rigidity r = {0};
+  strut_status status = look_as_drawn(work, model);
+  if (status != STRUT_OK || !work->stand.q) return status;
+  status = strut_rigidity_find(model, work->stand.q, &r, &error);
+  if (status == STRUT_OK)
+    put_forces(work, &r, model->scene->member_count);
+  else
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_COMPRESSION,
+                                        &error, status, true);
+  strut_rigidity_free(&r);
+  return status;
+}
+
+/* ---- states ---- */
+
+static int by_energy(const void *a, const void *b) {
+  const strut_compare_state *x = a, *y = b;
+  return (x->energy > y->energy) - (x->energy < y->energy);
+}
+
+static double rest_energy(const strut_equilibrium *e) {
+  return e->rest ? e->rest_energy : e->energy;
+}
+
+static strut_status keep_states(strut_compare_work *work, const strut_equilibria *all) {
+  strut_compare_column *c = work->column;
+  c->states = strut_arena_allocate(work->arena, all->count + 1, sizeof *c->states);
+  c->barriers = strut_arena_allocate(work->arena, all->barrier_count + 1, sizeof *c->barriers);
+  const char **names = strut_arena_allocate(work->arena, all->count + 1, sizeof *names);
+  if (!c->states || !c->barriers || !names) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < all->count; i++) {
+    names[i] = strut_arena_format(work->arena, "%s", all->list[i].name);
+    if (!names[i]) return STRUT_NO_MEMORY;
+    if (all->list[i].fate == STRUT_FATE_STANDS)
+      c->states[c->state_count++] = (strut_compare_state){names[i], rest_energy(&all->list[i])};
+  }
+  for (size_t i = 0; i < all->barrier_count; i++)
+    c->barriers[c->barrier_count++] = (strut_compare_barrier){
+        names[all->barriers[i].from], names[all->barriers[i].to], all->barriers[i].height};
+  qsort(c->states, c->state_count, sizeof *c->states, by_energy);
+  return STRUT_OK;
+}
+
+/* The name under which the list has the equilibrium that a run starts in, or NULL. */
+static const char *start_name(const strut_compare_work *work, const strut_model *model,
+                              const strut_equilibria *all) {
+  const double *q = work->stand.q;
+  if (!q) return NULL;
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    const double *p = e->rest ? e->rest : e->point.q;
+    double shift = p[0] - q[0], apart = 0.0; /* along the ground it may lie anywhere */
+    if (e->fate != STRUT_FATE_STANDS) continue;
+    for (int32_t k = 0; k < 2 * model->node_count; k++)
+      apart = fmax(apart, fabs(p[k] - q[k] - (k % 2 || !model->contacts.count ? 0.0 : shift)));
+    if (apart <= 1e-3 * model->size) return e->name;
+  }
+  return NULL;
+}
+
+static void put_barrier(strut_compare_work *work, const char *from, const strut_equilibria *all) {
+  const strut_compare_quantity at = STRUT_COMPARE_LOWEST_BARRIER;
+  double lowest = HUGE_VAL;
+  for (size_t i = 0; from && i < all->barrier_count; i++)
+    if (all->list[all->barriers[i].from].name == from)
+      lowest = fmin(lowest, all->barriers[i].height);
+  if (isfinite(lowest))
+    strut_compare_put(work, at, lowest);
+  else
+    strut_compare_leave(
+        work, at, at,
+        from ? "no way to another state is known" : "it starts in no state of the list");
+}
+
+static void put_states(strut_compare_work *work, const char *from, const strut_equilibria *all) {
+  const strut_compare_column *c = work->column;
+  strut_compare_put(work, STRUT_COMPARE_STATES, (double)c->state_count);
+  if (c->state_count == 0) {
+    const char *why = strut_arena_format(
+        work->arena, "%s", all->remark[0] ? all->remark : "there is no state in which it stands");
+    strut_compare_leave(work, STRUT_COMPARE_LOWEST_ENERGY, STRUT_COMPARE_LOWEST_BARRIER,
+                        why ? why : "there is none");
+    return;
+  }
+  double low = c->states[0].energy, high = c->states[c->state_count - 1].energy;
+  strut_compare_put(work, STRUT_COMPARE_LOWEST_ENERGY, low);
+  strut_compare_put(work, STRUT_COMPARE_ENERGY_SPAN, high - low);
+  put_barrier(work, from, all);
+}
+
+strut_status strut_compare_states(strut_compare_work *work, const strut_model *model) {
+  const strut_equilibria_options wanted = {.interrupt = work->options->interrupt};
+  strut_error error = {0};
+  strut_equilibria all = {0};
+  if (work->options->no_states) {
+    strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not asked for");
+    return STRUT_OK;
+  }
+  strut_status status = strut_equilibria_find(model, &wanted, &all, &error);
+  if (status == STRUT_OK) {
+    status = keep_states(work, &all);
+    if (status == STRUT_OK) put_states(work, start_name(work, model, &all), &all);
+  } else {
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER,
+                                        &error, status, true);
+  }
+  strut_equilibria_free(&all);
+  return status;
+}
+
+/* ---- frequencies ---- */
+
+strut_status strut_compare_frequencies(strut_compare_work *work, const strut_model *model) {
+  const strut_modes_options wanted = {.at = NULL};
+  strut_error error = {0};
+  strut_modes modes = {0};
+  strut_status status = strut_modes_find(model, &wanted, &modes, &error);
+  if (status == STRUT_OK) {
+    int found = 0;
+    strut_compare_leave(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
+                        "there are fewer elastic modes");
+    for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
+      if (modes.list[i].kind == STRUT_MODE_ELASTIC)
+        strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
+                          modes.list[i].angular_frequency / TURN);
+  } else {
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
+                                        &error, status, false);
+  }
+  strut_modes_free(&modes);
+  return status;
+}

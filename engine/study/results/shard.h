@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Parts of a study that are computed apart, on as many machines: shard k of n, counted from 0.
+ *
+ * Shard k has the points k, k + n, k + 2n, ...: what costs more at one end of an axis is spread over
+ * all of them, and half of the shards are a coarser map of the whole. The file of a shard is
+ * DIR/shards/shard-KKKK-of-NNNN.slots, that of a study in one piece DIR/points.slots.
+ */
+#ifndef STRUT_ENGINE_STUDY_RESULTS_SHARD_H
+#define STRUT_ENGINE_STUDY_RESULTS_SHARD_H
+
+#include "engine/base/memory.h"
+#include "engine/study/results/slots.h"
+
+enum { STRUT_MOST_SHARDS = 9999 };
+
+/** One of `count` shards; count 0: the study in one piece. */
+typedef struct strut_shard {
+  int64_t index, count;
+} strut_shard;
+
+/** What Slurm tells a task of a job array: SLURM_ARRAY_TASK_ID, ... NULL where it is not set. */
+typedef struct strut_array_task {
+  const char *id, *min, *max, *step, *count;
+} strut_array_task;
+
+/**
+ * Reads "k/n"; "slurm/n", where k is the task's number; or "slurm", where the array has a task for
+ * each shard and numbers them without gaps. STRUT_USAGE with the reason otherwise: a part of an array
+ * that is sent again must not be taken for the whole.
+ */
+STRUT_API strut_status strut_shard_read(const char *text, const strut_array_task *task,
+                                        strut_shard *shard, strut_error *error);
+/** Sets the plan's first, count and stride to the points of a shard. */
+STRUT_API void strut_shard_points(strut_shard shard, strut_slots_plan *plan);
+/** The path of a shard's file, in the arena; NULL when memory is out. */
+STRUT_API char *strut_shard_path(const char *directory, strut_shard shard, strut_arena *arena);
+/**
+ * Creates the directories of a shard's file. STRUT_USAGE where `directory` holds shards of another
+ * count, or the study in one piece beside shards: they could never be merged.
+ */
+STRUT_API strut_status strut_shard_begin(const char *directory, strut_shard shard,
+                                         strut_error *error);
+
+/** What files of slots are in a directory. */
+typedef struct strut_shards_found {
+  bool whole;     /* DIR/points.slots is there */
+  int64_t count;  /* the study has that many shards; 0: none is there */
+  int64_t other;  /* another such number that was found, or 0 */
+  uint8_t *there; /* (count) 1 where the file is there; owned by the arena */
+} strut_shards_found;
+
+/** Looks what there is; a directory that is not there holds nothing. */
+STRUT_API strut_status strut_shards_find(const char *directory, strut_shards_found *found,
+                                         strut_arena *arena, strut_error *error);
+
+#endif

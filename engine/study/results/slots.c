@@ -1,0 +1,344 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/results/slots.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "engine/base/checksum.h"
+#include "engine/study/results/slots_parts.h"
+
+enum { BLOCK_BYTES = 1 << 14, BITS = 64 };
+
+struct strut_slots {
+  int descriptor;
+  bool writes;
+  atomic_bool unsynced; /* something was put since the last sync */
+  char *path;
+  strut_slots_plan plan;
+  strut_slots_layout layout;
+  uint64_t seed; /* of the checksums: a slot of another study is none of this one */
+  atomic_uint_fast64_t *done;
+  atomic_int_fast64_t missing, failed;
+  unsigned char *block; /* (block_slots * slot_bytes) slots as read last */
+  int64_t block_slots, block_first, block_count;
+  double *numbers;
+  char (*words)[STRUT_SLOT_WORD];
+  char message[STRUT_SLOT_MESSAGE];
+  strut_arena arena;
+};
+
+/* What a slot begins with. */
+typedef struct slot_head {
+  uint64_t checksum; /* of all behind it; never 0, so that a hole in the file is no slot */
+  int64_t point;
+  uint32_t status, reserved;
+} slot_head;
+
+_Static_assert(sizeof(slot_head) == STRUT_SLOT_HEAD, "no gaps in what is written");
+
+static strut_status no_memory(strut_error *error, const char *path) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the results in '%s'", path);
+}
+
+static int64_t offset_of(const strut_slots *s, int64_t i) {
+  return (int64_t)s->layout.header_bytes + i * (int64_t)s->layout.slot_bytes;
+}
+
+/* The slot of a point, or -1. */
+static int64_t slot_of(const strut_slots *s, int64_t point) {
+  int64_t from = point - s->plan.first;
+  if (from < 0) return -1;
+  if (s->plan.stride == 1) return from < s->plan.count ? from : -1;
+  int64_t i = from / s->plan.stride;
+  return i * s->plan.stride == from && i < s->plan.count ? i : -1;
+}
+
+static uint64_t checksum_of(const strut_slots *s, const unsigned char *slot) {
+  size_t head = sizeof(uint64_t);
+  uint64_t sum = strut_checksum(slot + head, s->layout.slot_bytes - head, s->seed);
+  return sum ? sum : 1;
+}
+
+/* Whether these bytes are the whole slot i. */
+static bool is_whole(const strut_slots *s, int64_t i, const unsigned char *slot) {
+  slot_head head;
+  memcpy(&head, slot, sizeof head);
+  return head.checksum && head.point == strut_slots_point(s, i) &&
+         head.status < STRUT_STATUS_COUNT && head.checksum == checksum_of(s, slot);
+}
+
+static void mark(strut_slots *s, int64_t i, uint32_t status) {
+  atomic_fetch_or_explicit(&s->done[i / BITS], (uint64_t)1 << i % BITS, memory_order_release);
+  atomic_fetch_sub_explicit(&s->missing, 1, memory_order_relaxed);
+  if (status != STRUT_OK) atomic_fetch_add_explicit(&s->failed, 1, memory_order_relaxed);
+}
+
+/* Reads the block of slots from i on; slots behind the end of the file are none. */
+static strut_status load(strut_slots *s, int64_t i, strut_error *error) {
+  int64_t count = s->plan.count - i < s->block_slots ? s->plan.count - i : s->block_slots;
+  s->block_count = 0;
+  int64_t got = strut_slots_pread(s->descriptor, s->block, (size_t)count * s->layout.slot_bytes,
+                                  offset_of(s, i));
+  if (got < 0) return strut_slots_trouble(error, "read", s->path, errno);
+  s->block_first = i;
+  s->block_count = got / (int64_t)s->layout.slot_bytes;
+  return STRUT_OK;
+}
+
+/* Finds out which slots are there. */
+static strut_status scan(strut_slots *s, strut_error *error) {
+  strut_status status = STRUT_OK;
+  for (int64_t at = 0; at < s->plan.count && status == STRUT_OK; at += s->block_count) {
+    status = load(s, at, error);
+    if (status == STRUT_OK && s->block_count == 0) break; /* the end of the file */
+    for (int64_t i = 0; i < s->block_count; i++) {
+      const unsigned char *slot = s->block + (size_t)i * s->layout.slot_bytes;
+      slot_head head;
+      memcpy(&head, slot, sizeof head);
+      if (is_whole(s, at + i, slot)) mark(s, at + i, head.status);
+    }
+  }
+  return status;
+}
+
+/* All memory that the slots of a plan need. */
+static strut_status prepare(strut_slots *s, strut_error *error) {
+  size_t words = (size_t)(s->plan.count / BITS + 1);
+  s->block_slots = BLOCK_BYTES / (int64_t)s->layout.slot_bytes;
+  s->done = strut_allocate(words, sizeof *s->done);
+  s->block = strut_arena_allocate(&s->arena, (size_t)s->block_slots, s->layout.slot_bytes);
+  s->numbers = strut_arena_allocate(&s->arena, s->layout.number_count + 1, sizeof *s->numbers);
+  s->words = strut_arena_allocate(&s->arena, s->layout.word_count + 1, sizeof *s->words);
+  if (!s->done || !s->block || !s->numbers || !s->words) return no_memory(error, s->path);
+  atomic_store(&s->missing, s->plan.count);
+  memcpy(&s->seed, s->plan.hash, sizeof s->seed);
+  return STRUT_OK;
+}
+
+/* Keeps others from writing. Where the file system knows no locks, both would write the same. */
+static strut_status lock(const strut_slots *s, strut_error *error) {
+  struct flock wanted = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+  if (fcntl(s->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN))
+    return STRUT_OK;
+  char who[48] = "another process";
+  if (fcntl(s->descriptor, F_GETLK, &wanted) == 0 && wanted.l_type != F_UNLCK && wanted.l_pid > 0)
+    snprintf(who, sizeof who, "another process (%ld)", (long)wanted.l_pid);
+  return strut_fail(error, STRUT_FILE_TROUBLE,
+                    "%s is at work on '%s': wait for it, or stop it first", who, s->path);
+}
+
+/* The header of a new file, or of one whose header was never finished. */
+static strut_status begin(strut_slots *s, const strut_slots_plan *plan, strut_error *error) {
+  s->plan = *plan;
+  if (!strut_slots_own(&s->plan, &s->arena)) return no_memory(error, s->path);
+  strut_status status = strut_slots_lay_out(&s->plan, &s->layout, error);
+  if (status != STRUT_OK) return status;
+  unsigned char *header = strut_slots_header(&s->plan, &s->layout, &s->arena);
+  if (!header) return no_memory(error, s->path);
+  if (ftruncate(s->descriptor, 0) != 0 ||
+      !strut_slots_pwrite(s->descriptor, header, s->layout.header_bytes, 0) ||
+      (fsync(s->descriptor) != 0 && errno != EINVAL))
+    return strut_slots_trouble(error, "write", s->path, errno);
+  return STRUT_OK;
+}
+
+/* The header that is there, which must be of this plan. */
+static strut_status resume(strut_slots *s, const strut_slots_plan *plan, strut_error *error) {
+  bool torn = false;
+  strut_slots_plan own = *plan;
+  strut_status status = strut_slots_lay_out(&own, &s->layout, error);
+  size_t header = s->layout.header_bytes;
+  if (status == STRUT_OK) status = lock(s, error);
+  if (status == STRUT_OK)
+    status = strut_slots_read_header(s->descriptor, s->path, header, &s->plan, &s->layout,
+                                     &s->arena, &torn, error);
+  if (status == STRUT_OK && torn) return begin(s, plan, error);
+  return status == STRUT_OK ? strut_slots_compare(s->path, &s->plan, plan, error) : status;
+}
+
+static strut_status look(strut_slots *s, strut_error *error) {
+  bool torn = false; /* never: of an unfinished header nothing can be read */
+  return strut_slots_read_header(s->descriptor, s->path, 0, &s->plan, &s->layout, &s->arena, &torn,
+                                 error);
+}
+
+/* Opens for writing where there is a plan, and for reading only otherwise. */
+static strut_status open_file(const char *path, const strut_slots_plan *plan, strut_slots **slots,
+                              strut_error *error) {
+  *slots = NULL;
+  strut_slots *s = strut_allocate(1, sizeof *s);
+  if (!s) return no_memory(error, path);
+  s->writes = plan != NULL;
+  s->descriptor = -1;
+  s->path = strut_arena_text(&s->arena, path, strlen(path));
+  strut_status status = s->path ? STRUT_OK : no_memory(error, path);
+  if (status == STRUT_OK) {
+    s->descriptor = open(path, plan ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0666);
+    if (s->descriptor < 0)
+      status = strut_slots_trouble(error, plan ? "write" : "read", path, errno);
+  }
+  if (status == STRUT_OK) status = plan ? resume(s, plan, error) : look(s, error);
+  if (status == STRUT_OK) status = prepare(s, error);
+  if (status == STRUT_OK) status = scan(s, error);
+  if (status == STRUT_OK) {
+    *slots = s;
+  } else {
+    strut_slots_close(s);
+  }
+  return status;
+}
+
+strut_status strut_slots_open(const char *path, const strut_slots_plan *plan, strut_slots **slots,
+                              strut_error *error) {
+  strut_slots_plan wanted = *plan;
+  strut_slots_layout layout;
+  *slots = NULL;
+  strut_status status = strut_slots_lay_out(&wanted, &layout, error); /* before a file is made */
+  return status == STRUT_OK ? open_file(path, &wanted, slots, error) : status;
+}
+
+strut_status strut_slots_read(const char *path, strut_slots **slots, strut_slots_plan *plan,
+                              strut_error *error) {
+  strut_status status = open_file(path, NULL, slots, error);
+  if (status == STRUT_OK) *plan = (*slots)->plan;
+  return status;
+}
+
+void strut_slots_close(strut_slots *slots) {
+  if (!slots) return;
+  if (slots->descriptor >= 0) {
+    strut_slots_sync(slots, NULL);
+    close(slots->descriptor);
+  }
+  strut_release(slots->done);
+  strut_arena_free(&slots->arena);
+  strut_release(slots);
+}
+
+const strut_slots_plan *strut_slots_plan_of(const strut_slots *slots) { return &slots->plan; }
+
+int64_t strut_slots_point(const strut_slots *slots, int64_t i) {
+  return slots->plan.first + i * slots->plan.stride;
+}
+
+bool strut_slots_holds(const strut_slots *slots, int64_t point) {
+  return slot_of(slots, point) >= 0;
+}
+
+static bool is_done(const strut_slots *s, int64_t i) {
+  return atomic_load_explicit(&s->done[i / BITS], memory_order_acquire) >> i % BITS & 1;
+}
+
+bool strut_slots_done(const strut_slots *slots, int64_t point) {
+  int64_t i = slot_of(slots, point);
+  return i >= 0 && is_done(slots, i);
+}
+
+int64_t strut_slots_missing(const strut_slots *slots) { return atomic_load(&slots->missing); }
+int64_t strut_slots_failed(const strut_slots *slots) { return atomic_load(&slots->failed); }
+
+/* Copies a text without control characters into a field of zeros, cut between two characters. */
+static void fill_text(unsigned char *field, size_t room, const char *text) {
+  size_t length = 0;
+  for (; text && length < room && text[length]; length++) {
+    unsigned char c = (unsigned char)text[length];
+    field[length] = c < ' ' || c == 0x7F ? ' ' : c;
+  }
+  if (length < room) return;
+  do {
+    length--;
+  } while (length > 0 && (field[length] & 0xC0) == 0x80);
+  memset(field + length, 0, room - length);
+}
+
+/* The bytes of a slot; all NANs are the same one. */
+static void fill_slot(const strut_slots *s, int64_t point, const strut_slot *row,
+                      unsigned char *slot) {
+  slot_head head = {.point = point, .status = (uint32_t)row->status};
+  unsigned char *at = slot + sizeof head;
+  memset(slot, 0, s->layout.slot_bytes);
+  for (size_t i = 0; i < s->layout.number_count; i++, at += sizeof(double)) {
+    double number = isnan(row->numbers[i]) ? (double)NAN : row->numbers[i];
+    memcpy(at, &number, sizeof number);
+  }
+  for (size_t i = 0; i < s->layout.word_count; i++, at += STRUT_SLOT_WORD)
+    fill_text(at, STRUT_SLOT_WORD, row->words[i]);
+  fill_text(at, STRUT_SLOT_MESSAGE, row->message);
+  memcpy(slot, &head, sizeof head);
+  head.checksum = checksum_of(s, slot);
+  memcpy(slot, &head, sizeof head);
+}
+
+strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_slot *row,
+                             strut_error *error) {
+  unsigned char slot[STRUT_SLOT_MOST];
+  int64_t i = slot_of(slots, point);
+  if (i < 0 || !slots->writes || is_done(slots, i))
+    return strut_fail(error, STRUT_USAGE, "point %lld: '%s' %s", (long long)point, slots->path,
+                      i < 0           ? "is not for it"
+                      : slots->writes ? "has its result already"
+                                      : "is open for reading only");
+  fill_slot(slots, point, row, slot);
+  if (!strut_slots_pwrite(slots->descriptor, slot, slots->layout.slot_bytes, offset_of(slots, i)))
+    return strut_slots_trouble(error, "write", slots->path, errno);
+  atomic_store_explicit(&slots->unsynced, true, memory_order_relaxed);
+  mark(slots, i, (uint32_t)row->status);
+  return STRUT_OK;
+}
+
+strut_status strut_slots_sync(strut_slots *slots, strut_error *error) {
+  if (!atomic_exchange(&slots->unsynced, false)) return STRUT_OK;
+  if (fsync(slots->descriptor) == 0 || errno == EINVAL) return STRUT_OK;
+  return strut_slots_trouble(error, "write", slots->path, errno);
+}
+
+/* The bytes of slot i, from the block read last or the file; NULL where it is missing. */
+static const unsigned char *find(strut_slots *s, int64_t i) {
+  for (int pass = 0; pass < 2; pass++) { /* it may have been written since the block was read */
+    int64_t at = i - s->block_first;
+    if (at >= 0 && at < s->block_count) {
+      const unsigned char *slot = s->block + (size_t)at * s->layout.slot_bytes;
+      if (is_whole(s, i, slot)) return slot;
+    }
+    if (pass == 0 && load(s, i, NULL) != STRUT_OK) return NULL;
+  }
+  return NULL;
+}
+
+bool strut_slots_get(strut_slots *slots, int64_t point, strut_slot *row) {
+  int64_t i = slot_of(slots, point);
+  const unsigned char *slot = i < 0 ? NULL : find(slots, i);
+  if (!slot) return false;
+  slot_head head;
+  size_t numbers = slots->layout.number_count * sizeof *slots->numbers;
+  size_t words = slots->layout.word_count * sizeof *slots->words;
+  memcpy(&head, slot, sizeof head);
+  memcpy(slots->numbers, slot + sizeof head, numbers);
+  memcpy(slots->words, slot + sizeof head + numbers, words);
+  memcpy(slots->message, slot + sizeof head + numbers + words, sizeof slots->message);
+  *row = (strut_slot){.status = (strut_status)head.status,
+                      .numbers = slots->numbers,
+                      .words = (const char(*)[STRUT_SLOT_WORD])slots->words,
+                      .message = slots->message};
+  return true;
+}
+
+strut_status strut_slots_retry(strut_slots *slots, strut_error *error) {
+  for (int64_t i = 0; i < slots->plan.count && strut_slots_failed(slots) > 0; i++) {
+    strut_slot row;
+    if (!is_done(slots, i)) continue;
+    if (!strut_slots_get(slots, strut_slots_point(slots, i), &row))
+      return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' has changed while it was read",
+                        slots->path);
+    if (row.status == STRUT_OK) continue;
+    atomic_fetch_and(&slots->done[i / BITS], ~((uint64_t)1 << i % BITS));
+    atomic_fetch_add(&slots->missing, 1);
+    atomic_fetch_sub(&slots->failed, 1);
+  }
+  return STRUT_OK;
+}

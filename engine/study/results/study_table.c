@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/results/study_table.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/number_text.h"
+#include "engine/output/file.h"
+
+/* PART: what is written at a time. Behind it there is room for any one cell of a row. */
+enum { PART = 1 << 16, MOST_CELL = 2 * STRUT_SLOT_MESSAGE + 2 };
+
+/* Text on its way into the file. */
+typedef struct writer {
+  strut_file file;
+  size_t used;
+  bool failed;
+  char buffer[PART + MOST_CELL];
+} writer;
+
+_Static_assert((int)STRUT_SLOT_WORD <= (int)STRUT_SLOT_MESSAGE &&
+                   (int)STRUT_NUMBER_TEXT <= (int)MOST_CELL,
+               "room for any one cell");
+
+static void flush(writer *w) {
+  if (!w->failed) {
+    errno = 0;
+    w->failed = fwrite(w->buffer, 1, w->used, w->file.stream) != w->used;
+  }
+  w->used = 0;
+}
+
+/* Ends a cell. */
+static void end_cell(writer *w, char mark) {
+  w->buffer[w->used++] = mark;
+  if (w->used >= PART) flush(w);
+}
+
+static void put(writer *w, const char *bytes, size_t length) {
+  while (length > 0) {
+    size_t part = length < PART ? length : PART;
+    if (w->used + part > PART) flush(w);
+    memcpy(w->buffer + w->used, bytes, part);
+    w->used += part;
+    bytes += part;
+    length -= part;
+  }
+}
+
+static strut_status finish(writer *w, strut_error *error) {
+  flush(w);
+  if (!w->failed) return strut_file_commit(&w->file, error);
+  strut_status status = strut_file_trouble(&w->file, error);
+  strut_file_abandon(&w->file);
+  return status;
+}
+
+/* A name with its unit; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
+static void put_name(writer *w, const char *text, const char *unit) {
+  bool quoted = strpbrk(text, ",\"\r\n") || strpbrk(unit, ",\"\r\n");
+  if (quoted) put(w, "\"", 1);
+  const char *parts[] = {text, *unit ? " [" : "", unit, *unit ? "]" : ""};
+  for (int i = 0; i < 4; i++)
+    for (const char *at = parts[i]; *at;) {
+      size_t length = strcspn(at, "\"");
+      put(w, at, length);
+      at += length;
+      if (*at) {
+        put(w, "\"\"", 2);
+        at++;
+      }
+    }
+  if (quoted) put(w, "\"", 1);
+}
+
+static void put_header(writer *w, const strut_slots_plan *plan) {
+  put(w, "point,", 6);
+  for (size_t i = 0; i < plan->column_count; i++) {
+    const strut_slot_column *column = &plan->columns[i];
+    put_name(w, column->name, strcmp(column->unit, "1") == 0 ? "" : column->unit);
+    put(w, ",", 1);
+  }
+  put(w, "status,message\n", 15);
+}
+
+static void put_number(writer *w, double value) {
+  if (!isnan(value)) w->used += strut_number_text(value, w->buffer + w->used);
+  end_cell(w, ',');
+}
+
+/* A short text: copied as it stands, and then once more if it needs quotes. */
+static void put_text(writer *w, const char *text, size_t room, char mark) {
+  char *at = w->buffer + w->used;
+  size_t length = 0;
+  bool plain = true;
+  for (; length + 1 < room && text[length]; length++) {
+    char c = text[length];
+    plain = plain && c != ',' && c != '"' && c != '\r' && c != '\n';
+    at[length] = c;
+  }
+  if (!plain) {
+    char *to = at;
+    *to++ = '"';
+    for (size_t i = 0; i < length; i++) {
+      if (text[i] == '"') *to++ = '"';
+      *to++ = text[i];
+    }
+    *to++ = '"';
+    length = (size_t)(to - at);
+  }
+  w->used += length;
+  end_cell(w, mark);
+}
+
+static void put_row(writer *w, const strut_slots_plan *plan, int64_t point, const strut_slot *row) {
+  size_t numbers = 0, words = 0;
+  put_number(w, (double)point);
+  for (size_t i = 0; i < plan->column_count; i++) {
+    if (plan->columns[i].word)
+      put_text(w, row->words[words++], STRUT_SLOT_WORD, ',');
+    else
+      put_number(w, row->numbers[numbers++]);
+  }
+  put_text(w, strut_status_text(row->status), STRUT_SLOT_MESSAGE, ',');
+  put_text(w, row->message, STRUT_SLOT_MESSAGE, '\n');
+}
+
+strut_status strut_study_table_write(const char *directory, const char *name,
+                                     strut_slots *const *sources, size_t count,
+                                     strut_error *error) {
+  writer w = {.used = 0};
+  const strut_slots_plan *plan = strut_slots_plan_of(sources[0]);
+  strut_status status = strut_file_open(&w.file, directory, name, error);
+  if (status != STRUT_OK) return status;
+  put_header(&w, plan);
+  for (int64_t point = 0; point < plan->points && !w.failed; point++) {
+    strut_slot row;
+    if (!strut_slots_get(sources[(size_t)point % count], point, &row)) {
+      strut_file_abandon(&w.file);
+      return strut_fail(error, STRUT_USAGE, "no table yet: point %lld is missing",
+                        (long long)point);
+    }
+    put_row(&w, plan, point, &row);
+  }
+  return finish(&w, error);
+}

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/sweep/equilibrium_cache.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/search/critical.h"
+
+/* Structures kept at once; beyond that each point looks for itself. */
+enum { MOST_KEPT = 256 };
+static const double NEAR = 0.1; /* of the structure's size */
+
+/* The equilibrium of one configuration. */
+typedef struct found {
+  bool known;
+  strut_status status;
+  strut_error error;
+  double *q; /* (2 node_count) of strut_allocate */
+} found;
+
+/* One structure, by all numbers that decide where it stands. */
+typedef struct structure {
+  double *key; /* of strut_allocate */
+  size_t length, room;
+  bool failed; /* memory was out */
+  size_t count;
+  found *configurations; /* (count) */
+  pthread_mutex_t lock;  /* of configurations */
+} structure;
+
+struct strut_standing {
+  pthread_mutex_t lock;
+  size_t count;
+  structure *kept[MOST_KEPT];
+};
+
+static void add(structure *s, double value) {
+  if (s->length == s->room && !s->failed) {
+    size_t room = s->room ? 2 * s->room : 256;
+    double *key = strut_reallocate(s->key, room, sizeof *key);
+    if (key) {
+      s->key = key;
+      s->room = room;
+    }
+    s->failed = !key;
+  }
+  if (!s->failed) s->key[s->length++] = value;
+}
+
+static void add_all(structure *s, const double *values, size_t count) {
+  for (size_t i = 0; i < count; i++) add(s, values[i]);
+}
+
+static void add_set(structure *s, const strut_node_set *set) {
+  add(s, (double)set->count);
+  for (size_t i = 0; i < set->count; i++) add(s, set->node[i]);
+}
+
+static void add_nodes(structure *s, const strut_scene *scene) {
+  add(s, (double)scene->node_count);
+  for (size_t i = 0; i < scene->node_count; i++) {
+    const strut_node *n = &scene->nodes[i];
+    add_all(s, n->position, 2);
+    add_all(s, n->start, 2);
+    add(s, n->mass);
+    add(s, n->fixed[0] + 2 * n->fixed[1]);
+  }
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const strut_configuration *c = &scene->configurations[i];
+    add(s, c->shaped);
+    if (c->position) add_all(s, c->position[0], 2 * scene->node_count);
+    add(s, (double)c->set_count);
+    for (size_t k = 0; k < c->set_count; k++) add_set(s, &c->sets[k]);
+  }
+}
+
+static void add_forces(structure *s, const strut_scene *scene) {
+  add(s, (double)scene->member_count);
+  for (size_t i = 0; i < scene->member_count; i++) {
+    const strut_member *m = &scene->members[i];
+    const double values[] = {m->node[0], m->node[1], m->kind,      m->stiffness, m->axial_stiffness,
+                             m->damping, m->mass,    m->rest_kind, m->rest_value};
+    add_all(s, values, sizeof values / sizeof values[0]);
+  }
+  add(s, (double)scene->contact_count);
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *c = &scene->contacts[i];
+    const double values[] = {c->node, c->stiffness, c->damping, c->dissipation};
+    add_all(s, values, sizeof values / sizeof values[0]);
+  }
+  for (size_t i = 0; i < scene->load_count; i++) {
+    const strut_load *l = &scene->loads[i];
+    if (l->signal >= 0) continue;
+    const double values[] = {l->node, l->force[0], l->force[1]};
+    add_all(s, values, sizeof values / sizeof values[0]);
+  }
+}
+
+static void add_rest(structure *s, const strut_scene *scene) {
+  const strut_ground *g = &scene->ground;
+  const strut_settle *settle = &scene->settle;
+  const double values[] = {scene->mass_model,
+                           scene->bar_model,
+                           scene->gravity[0],
+                           scene->gravity[1],
+                           g->present,
+                           g->height,
+                           g->slope,
+                           g->damping_law,
+                           settle->wanted,
+                           settle->friction,
+                           settle->speed,
+                           settle->acceleration,
+                           settle->limit,
+                           settle->evaluations,
+                           settle->step,
+                           settle->perturb,
+                           (double)scene->search.starts,
+                           (double)scene->search.seed};
+  add_all(s, values, sizeof values / sizeof values[0]);
+  for (size_t i = 0; i < scene->search.support_count; i++) add_set(s, &scene->search.supports[i]);
+}
+
+static void free_structure(structure *s) {
+  for (size_t i = 0; s->configurations && i < s->count; i++) strut_release(s->configurations[i].q);
+  if (s->configurations) pthread_mutex_destroy(&s->lock);
+  strut_release(s->configurations);
+  strut_release(s->key);
+  strut_release(s);
+}
+
+/* NULL: memory is out. */
+static structure *describe(const strut_scene *scene) {
+  structure *s = strut_allocate(1, sizeof *s);
+  if (!s) return NULL;
+  s->count = scene->configuration_count;
+  add_nodes(s, scene);
+  add_forces(s, scene);
+  add_rest(s, scene);
+  if (!s->failed) s->configurations = strut_allocate(s->count, sizeof *s->configurations);
+  if (s->configurations && pthread_mutex_init(&s->lock, NULL) == 0) return s;
+  strut_release(s->configurations);
+  s->configurations = NULL;
+  free_structure(s);
+  return NULL;
+}
+
+static bool alike(const structure *a, const structure *b) {
+  return a->count == b->count && a->length == b->length &&
+         memcmp(a->key, b->key, a->length * sizeof *a->key) == 0;
+}
+
+/* The structure of a scene, kept or new; *own: the caller frees it. NULL: memory is out. */
+static structure *structure_of(strut_standing *standing, const strut_scene *scene, bool *own) {
+  structure *s = describe(scene), *same = NULL;
+  *own = false;
+  if (!s) return NULL;
+  pthread_mutex_lock(&standing->lock);
+  for (size_t i = 0; i < standing->count && !same; i++)
+    if (alike(standing->kept[i], s)) same = standing->kept[i];
+  if (!same && standing->count < MOST_KEPT)
+    standing->kept[standing->count++] = s;
+  else
+    *own = !same;
+  pthread_mutex_unlock(&standing->lock);
+  if (same) free_structure(s);
+  return same ? same : s;
+}
+
+static void look(const strut_scene *scene, size_t configuration, found *f) {
+  strut_model *model = NULL;
+  strut_arena arena = {0};
+  strut_stand stand;
+  size_t size = 2 * scene->node_count;
+  f->known = true;
+  f->status = strut_model_compile(scene, &model, &f->error);
+  if (!f->status)
+    f->status = strut_stand_find(model, scene->configurations[configuration].name, &arena, &stand,
+                                 &f->error);
+  if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
+    f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
+  if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
+  if (f->status == STRUT_NO_MEMORY) f->known = false; /* not for ever */
+  strut_arena_free(&arena);
+  strut_model_free(model);
+}
+
+/* The equilibrium of a configuration; what it says is good as long as the structure. */
+static const found *find(structure *s, const strut_scene *scene, size_t configuration) {
+  found *f = &s->configurations[configuration];
+  pthread_mutex_lock(&s->lock);
+  if (!f->known) look(scene, configuration, f);
+  pthread_mutex_unlock(&s->lock);
+  return f;
+}
+
+strut_standing *strut_standing_create(void) {
+  strut_standing *standing = strut_allocate(1, sizeof *standing);
+  if (standing && pthread_mutex_init(&standing->lock, NULL) == 0) return standing;
+  strut_release(standing);
+  return NULL;
+}
+
+void strut_standing_free(strut_standing *standing) {
+  if (!standing) return;
+  for (size_t i = 0; i < standing->count; i++) free_structure(standing->kept[i]);
+  pthread_mutex_destroy(&standing->lock);
+  strut_release(standing);
+}
+
+strut_status strut_standing_resolve(strut_standing *standing, strut_scene *scene,
+                                    strut_error *error) {
+  bool own;
+  if (scene->start_equilibrium < 0) return STRUT_OK;
+  structure *s = structure_of(standing, scene, &own);
+  if (!s) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  const found *f = find(s, scene, (size_t)scene->start_equilibrium);
+  strut_status status = f->status;
+  if (status) strut_fail(error, status, "%s", f->error.message);
+  for (size_t i = 0; i < scene->node_count && !status; i++)
+    for (size_t c = 0; c < 2; c++)
+      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = f->q[2 * i + c];
+  if (!status) scene->start_equilibrium = -1;
+  if (own) free_structure(s);
+  return status;
+}
+
+static double extent(const double *q, size_t nodes) {
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < 2 * nodes; i++) {
+    low[i % 2] = fmin(low[i % 2], q[i]);
+    high[i % 2] = fmax(high[i % 2], q[i]);
+  }
+  return fmax(high[0] - low[0], high[1] - low[1]);
+}
+
+static int32_t nearest(structure *s, const strut_scene *scene, const double *positions) {
+  const strut_model shape = {.node_count =
+                                 (int32_t)scene->node_count}; /* all that is asked of it */
+  double least = HUGE_VAL;
+  int32_t index = -1;
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const found *f = find(s, scene, i);
+    if (f->status) continue;
+    double d =
+        strut_shape_distance(&shape, f->q, positions, !scene->configurations[i].shaped, NULL);
+    if (!(d < least) || d > NEAR * extent(f->q, scene->node_count)) continue;
+    least = d;
+    index = (int32_t)i;
+  }
+  return index;
+}
+
+/* What the nearest configuration is must not depend on where the run began. */
+strut_status strut_standing_nearest(strut_standing *standing, const strut_scene *scene,
+                                    const double *positions, int32_t *index, strut_error *error) {
+  bool own = false;
+  strut_scene drawn = *scene;
+  *index = -1;
+  if (scene->configuration_count == 0) return STRUT_OK;
+  drawn.start_equilibrium = -1;
+  drawn.nodes = strut_allocate(scene->node_count, sizeof *drawn.nodes);
+  for (size_t i = 0; drawn.nodes && i < scene->node_count; i++) {
+    drawn.nodes[i] = scene->nodes[i];
+    for (size_t c = 0; c < 2; c++)
+      if (!drawn.nodes[i].fixed[c]) drawn.nodes[i].start[c] = drawn.nodes[i].position[c];
+  }
+  structure *s = drawn.nodes ? structure_of(standing, &drawn, &own) : NULL;
+  if (s) *index = nearest(s, &drawn, positions);
+  strut_release(drawn.nodes);
+  if (own) free_structure(s);
+  return s ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+}

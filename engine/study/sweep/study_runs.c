@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runs of a study opened again, and their motion as one table. See study_runs.h. */
+#include "engine/study/sweep/study_runs.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "engine/base/number_text.h"
+#include "engine/study/sweep/grid.h"
+
+static const struct {
+  const char *name, *unit;
+} columns[] = {{"node", ""}, {"time", "s"}, {"elapsed", "s"}, {"x", "m"},
+               {"y", "m"},   {"dx", "m"},   {"dy", "m"}};
+enum { COLUMNS = sizeof columns / sizeof columns[0], NUMBERS = COLUMNS - 1 };
+static const size_t MOST_ROWS = 20000000;
+
+const char *strut_study_motion_column(size_t i) { return i < COLUMNS ? columns[i].name : NULL; }
+
+static strut_status no_memory(strut_error *error) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+}
+
+bool strut_study_shows(const strut_study_figure *figure, const char *column, const char *text) {
+  if (!figure->only) return true;
+  size_t length = strcspn(figure->only, "=");
+  if (strlen(column) != length || memcmp(column, figure->only, length) != 0) return true;
+  return strcmp(figure->only + length + 1, text) == 0;
+}
+
+/* What the axes say at a point. */
+static strut_status read_values(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                                int64_t point, strut_study_opened *o, bool *shown,
+                                strut_error *error) {
+  size_t count = plan->axis_columns;
+  o->values = strut_arena_allocate(&o->arena, count + 1, sizeof *o->values);
+  o->texts = strut_arena_allocate(&o->arena, count + 1, sizeof *o->texts);
+  if (!o->values || !o->texts) return no_memory(error);
+  strut_grid_values(plan->study, point, o->values);
+  for (size_t i = 0; i < count; i++) {
+    char number[STRUT_NUMBER_TEXT];
+    strut_number_text(o->values[i].number, number);
+    o->texts[i] =
+        o->values[i].word ? o->values[i].word : strut_arena_text(&o->arena, number, strlen(number));
+    if (!o->texts[i]) return no_memory(error);
+    *shown = *shown && strut_study_shows(figure, plan->columns[i].name, o->texts[i]);
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *directory,
+                                  const strut_study_figure *figure, int64_t point,
+                                  strut_study_opened *o, bool *there, strut_error *error) {
+  struct stat found;
+  *o = (strut_study_opened){.motion = {0}};
+  *there = false;
+  bool shown = true;
+  strut_status status = read_values(plan, figure, point, o, &shown, error);
+  if (status || !shown) return status;
+  const char *folder = strut_arena_format(&o->arena, "%s/runs/%09lld", directory, (long long)point);
+  const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
+  if (!file) return no_memory(error);
+  if (stat(file, &found) != 0) return STRUT_OK; /* it failed before it moved */
+  status = plan->scenes.scene(plan->scenes.context, o->values, &o->scene, error);
+  if (!status)
+    status = strut_trajectory_read(folder, &o->scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
+  if (!status && !o->motion.position)
+    status = strut_fail(error, STRUT_USAGE,
+                        "figure '%.60s' of the study: the runs recorded no "
+                        "positions ('output: {channels: [position]}')",
+                        figure->name);
+  o->run = (strut_study_run){.point = point,
+                             .values = o->values,
+                             .texts = o->texts,
+                             .scene = &o->scene,
+                             .motion = &o->motion};
+  *there = !status && o->motion.frames > 0;
+  return status;
+}
+
+void strut_study_run_close(strut_study_opened *o) {
+  strut_trajectory_free(&o->motion);
+  strut_scene_free(&o->scene);
+  strut_arena_free(&o->arena);
+  *o = (strut_study_opened){.motion = {0}};
+}
+
+/* The table while it grows. */
+typedef struct builder {
+  const strut_sweep_plan *plan;
+  const strut_study_figure *figure;
+  strut_table *table;
+  const char **texts[64]; /* (axis columns and node) in blocks of strut_allocate */
+  double *axes[64];       /* (axis columns) of numbers */
+  double *numbers[NUMBERS];
+  size_t rows, room;
+} builder;
+
+static bool grow_texts(const char ***column, size_t room) {
+  const char **more = strut_reallocate(*column, room, sizeof *more);
+  if (more) *column = more;
+  return more != NULL;
+}
+
+static bool grow_numbers(double **column, size_t room) {
+  double *more = strut_reallocate(*column, room, sizeof *more);
+  if (more) *column = more;
+  return more != NULL;
+}
+
+static bool reserve(builder *b, size_t rows) {
+  if (rows <= b->room) return true;
+  size_t room = rows + rows / 2, axes = b->plan->axis_columns;
+  bool fine = true;
+  for (size_t i = 0; i <= axes && fine; i++) fine = grow_texts(&b->texts[i], room);
+  for (size_t i = 0; i < axes && fine; i++) fine = grow_numbers(&b->axes[i], room);
+  for (size_t i = 0; i < NUMBERS && fine; i++) fine = grow_numbers(&b->numbers[i], room);
+  if (fine) b->room = room;
+  return fine;
+}
+
+static void add_row(builder *b, const strut_study_run *run, const char *const *texts, size_t frame,
+                    size_t node, const char *name) {
+  const strut_trajectory *m = run->motion;
+  const double *at = m->position + 2 * (frame * m->node_count + node);
+  const double *from = m->position + 2 * node;
+  const double numbers[NUMBERS] = {
+      m->time[frame], m->time[frame] - m->time[0], at[0], at[1], at[0] - from[0], at[1] - from[1]};
+  size_t row = b->rows++;
+  for (size_t i = 0; i < b->plan->axis_columns; i++) {
+    b->texts[i][row] = texts[i];
+    b->axes[i][row] = run->values[i].number;
+  }
+  b->texts[b->plan->axis_columns][row] = name;
+  for (size_t i = 0; i < NUMBERS; i++) b->numbers[i][row] = numbers[i];
+}
+
+/* Texts that outlive the run, in the table's arena. */
+static const char *kept(builder *b, const char *text) {
+  return strut_arena_text(&b->table->arena, text, strlen(text));
+}
+
+static strut_status add_run(builder *b, const strut_study_run *run, strut_error *error) {
+  const strut_trajectory *m = run->motion;
+  const char *texts[64];
+  for (size_t i = 0; i < b->plan->axis_columns; i++) {
+    texts[i] = kept(b, run->texts[i]);
+    if (!texts[i]) return no_memory(error);
+  }
+  if (m->frames > MOST_ROWS / m->node_count || b->rows > MOST_ROWS - m->frames * m->node_count)
+    return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: more than %zu rows",
+                      b->figure->name, MOST_ROWS);
+  for (size_t node = 0; node < m->node_count; node++) {
+    if (!strut_study_shows(b->figure, "node", run->scene->nodes[node].name)) continue;
+    const char *name = kept(b, run->scene->nodes[node].name);
+    if (!name || !reserve(b, b->rows + m->frames)) return no_memory(error);
+    for (size_t f = 0; f < m->frames; f++)
+      if (m->time[f] >= b->figure->from && m->time[f] <= b->figure->to)
+        add_row(b, run, texts, f, node, name);
+  }
+  return STRUT_OK;
+}
+
+/* Copies into the table's arena, which owns all of it. */
+static const void *owned(builder *b, const void *block, size_t size) {
+  void *copy = strut_arena_allocate(&b->table->arena, b->rows, size);
+  if (copy) memcpy(copy, block, b->rows * size);
+  return copy;
+}
+
+static strut_status finish(builder *b, strut_error *error) {
+  strut_table *t = b->table;
+  size_t axes = b->plan->axis_columns;
+  t->row_count = b->rows;
+  t->columns = strut_arena_allocate(&t->arena, axes + COLUMNS, sizeof *t->columns);
+  if (!t->columns) return no_memory(error);
+  for (size_t i = 0; i < axes + COLUMNS; i++) {
+    bool axis = i < axes, word = axis ? b->plan->columns[i].word : i == axes;
+    strut_table_column *c = &t->columns[t->column_count++];
+    const char *unit = axis ? b->plan->columns[i].unit : columns[i - axes].unit;
+    c->name = axis ? b->plan->columns[i].name : columns[i - axes].name;
+    c->unit = strcmp(unit, "1") == 0 ? "" : unit;
+    if (i <= axes) c->text = owned(b, b->texts[i], sizeof(char *));
+    if (!word) c->value = owned(b, axis ? b->axes[i] : b->numbers[i - axes - 1], sizeof(double));
+    if ((i <= axes && !c->text) || (!word && !c->value)) return no_memory(error);
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_study_motion(const strut_sweep_plan *plan, const char *directory,
+                                const strut_study_figure *figure, strut_table *table,
+                                strut_error *error) {
+  builder b = {.plan = plan, .figure = figure, .table = table};
+  strut_status status = STRUT_OK;
+  *table = (strut_table){0};
+  if (plan->axis_columns >= 64)
+    return strut_fail(error, STRUT_USAGE, "motion is drawn of studies with up to 63 axes");
+  for (int64_t point = 0; point < plan->points && !status; point++) {
+    strut_study_opened opened;
+    bool there;
+    status = strut_study_run_open(plan, directory, figure, point, &opened, &there, error);
+    if (!status && there) status = add_run(&b, &opened.run, error);
+    strut_study_run_close(&opened);
+  }
+  if (!status && !b.rows)
+    status = strut_fail(error, STRUT_USAGE,
+                        "figure '%.60s' of the study: no run recorded any of it", figure->name);
+  if (!status) status = finish(&b, error);
+  for (size_t i = 0; i <= plan->axis_columns; i++) strut_release(b.texts[i]);
+  for (size_t i = 0; i < plan->axis_columns; i++) strut_release(b.axes[i]);
+  for (size_t i = 0; i < NUMBERS; i++) strut_release(b.numbers[i]);
+  if (status) strut_arena_free(&table->arena);
+  return status;
+}

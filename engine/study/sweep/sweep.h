@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The points of a study run side by side, each into its slot.
+ */
+#ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_H
+#define STRUT_ENGINE_STUDY_SWEEP_SWEEP_H
+
+#include <signal.h>
+
+#include "engine/base/memory.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/study.h"
+#include "engine/study/results/slots.h"
+
+/** Makes scenes of points; called from several threads at once. */
+typedef struct strut_sweep_scenes {
+  /** The scene where the axes have these values; strut_scene_free releases it. */
+  strut_status (*scene)(void *context, const strut_study_value *values, strut_scene *scene,
+                        strut_error *error);
+  /** A scene as a text, in a block of strut_allocate; NULL: memory is out. */
+  char *(*text)(const strut_scene *scene);
+  void *context;
+} strut_sweep_scenes;
+
+/** What the table of a study holds. Constant once made. */
+typedef struct strut_sweep_plan {
+  const strut_study *study;
+  strut_sweep_scenes scenes;
+  int64_t points;
+  unsigned keep;       /* bits 1 << strut_keep */
+  size_t quantity_count;
+  const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
+  bool check, flips;   /* each point is run twice; and outcomes are compared */
+  size_t axis_columns; /* the first columns */
+  size_t column_count;
+  strut_slot_column *columns; /* of the axes, of what is kept, of the check */
+  strut_arena arena;
+} strut_sweep_plan;
+
+/**
+ * Decides the columns, by the scene of the first point. Release with strut_sweep_plan_free, after a
+ * failure too. STRUT_USAGE where there are more columns than a slot holds; what the scene gives.
+ */
+STRUT_API strut_status strut_sweep_plan_make(const strut_study *study,
+                                             const strut_sweep_scenes *scenes,
+                                             strut_sweep_plan *plan, strut_error *error);
+STRUT_API void strut_sweep_plan_free(strut_sweep_plan *plan);
+
+/** How far a sweep is. */
+typedef struct strut_sweep_state {
+  int64_t points, done, failed; /* of the file's; done: with those before, failed too */
+  int64_t computed;             /* now */
+  double seconds;               /* since it began, or went on */
+  int64_t last;                 /* the latest point */
+  const strut_slot *row;        /* and its row */
+} strut_sweep_state;
+
+typedef struct strut_sweep_options {
+  int threads;                            /* 0: strut_sweep_threads */
+  int lanes; /* points at a time on one processor, where they are alike; 0: as it is good for */
+  const volatile sig_atomic_t *interrupt; /* may be NULL */
+  const char *directory;                  /* of runs, where trajectories are wanted */
+  /** A few times a second, one thread at a time; may be NULL. */
+  void (*progress)(void *context, const strut_sweep_state *state);
+  void *progress_context;
+} strut_sweep_options;
+
+/**
+ * Runs every point of the file that has no result yet. A point that fails gets a row that says why.
+ * STRUT_INTERRUPTED: what was under way is lost, the rest is kept. STRUT_NO_MEMORY, STRUT_FILE_TROUBLE:
+ * the same. The bits of a row depend on its point alone. `state` is filled at the end.
+ */
+STRUT_API strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
+                                       const strut_sweep_options *options, strut_sweep_state *state,
+                                       strut_error *error);
+
+/** OMP_NUM_THREADS; else the processors that this process may use, SLURM_CPUS_PER_TASK at most. */
+STRUT_API int strut_sweep_threads(void);
+
+#endif

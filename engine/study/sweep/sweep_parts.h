@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the parts of the sweep share. Internal to engine/study.
+ */
+#ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
+#define STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
+
+#include "engine/run/simulate.h"
+#include "engine/study/sweep/equilibrium_cache.h"
+#include "engine/study/sweep/sweep.h"
+
+/** The room of one thread, taken once. */
+typedef struct strut_sweep_room {
+  strut_study_value *values;       /* (axis columns) */
+  double *numbers;                 /* (columns) */
+  char (*words)[STRUT_SLOT_WORD];  /* (columns) */
+  size_t number_count, word_count; /* filled so far */
+  char message[STRUT_SLOT_MESSAGE];
+  strut_slot row;
+} strut_sweep_room;
+
+/* sweep_columns.c */
+
+/** Appends what is kept of a run; summary NULL: nothing of it is known. outcome may be "". */
+void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
+                      const strut_summary *summary, const char *outcome, strut_sweep_room *room);
+void strut_sweep_number(strut_sweep_room *room, double value);
+void strut_sweep_word(strut_sweep_room *room, const char *word);
+
+/* sweep_point.c */
+
+typedef struct strut_sweep_worker {
+  const strut_sweep_plan *plan;
+  const strut_sweep_options *options;
+  strut_standing *standing;
+} strut_sweep_worker;
+
+typedef enum strut_sweep_stage {
+  STRUT_SWEEP_IDLE,    /* no point */
+  STRUT_SWEEP_WAITING, /* for the run of `scene` with `options` */
+  STRUT_SWEEP_RUNNING
+} strut_sweep_stage;
+
+/** A point on its way. It stays where it is while it has one. */
+typedef struct strut_sweep_job {
+  strut_sweep_stage stage;
+  int64_t point;
+  strut_sweep_room room;
+  strut_scene scene;
+  strut_model *model; /* of the scene, where someone has compiled it */
+  strut_run_options options;
+  strut_sink *sinks[1];
+  struct strut_sweep_record *files;
+  char first[STRUT_SLOT_WORD]; /* what the first run came to, while the second is made */
+  bool second;
+  strut_status status; /* at the end: STRUT_OK, and room.row is filled; else what stops the sweep */
+  strut_error error;
+} strut_sweep_job;
+
+/** An idle job gets a point. True: it waits for its run. False: it is over already. */
+bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
+/** Takes what the run came to, and frees the summary. True: it waits for another run. */
+bool strut_sweep_job_take(const strut_sweep_worker *worker, strut_sweep_job *job,
+                          strut_status status, strut_summary *summary, const strut_error *error);
+/** The model of a waiting job, if it has none yet. */
+strut_status strut_sweep_job_compile(strut_sweep_job *job);
+/** All runs that a waiting job wants, one after the other. */
+void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *job);
+
+/* sweep_lanes.c */
+
+/** Where one thread's points come from and go to. */
+typedef struct strut_sweep_queue {
+  void *context;
+  bool (*next)(void *context, int64_t *point);
+  void (*over)(void *context, const strut_sweep_job *job);
+} strut_sweep_queue;
+
+/** Works on the queue until it is empty, `lanes` points at a time where they can go side by side. */
+void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
+                      strut_sweep_job *jobs, int32_t lanes);
+
+/* sweep_record.c */
+
+/** A directory of results for a run of a sweep. Zero-initialise. */
+typedef struct strut_sweep_record strut_sweep_record;
+/** Takes results of a point into directory/runs/POINT. NULL with the error. */
+strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
+                                             const char *scene_text, strut_error *error);
+/** Removes what killed processes left of unfinished runs below the directory, and nothing else. */
+void strut_sweep_records_clear(const char *directory);
+strut_sink *strut_sweep_record_sink(strut_sweep_record *record);
+/** Ends it: complete, or with a run that never began not at all. Frees it. */
+strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scene *scene,
+                                    const strut_summary *summary, bool keep, strut_error *error);
+
+#endif

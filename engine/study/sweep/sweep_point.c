@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One point of a sweep: its scene, its run, once more for the check, its row. Whoever runs it. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/accuracy/accuracy.h"
+#include "engine/run/simulate.h"
+#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/* Does this end the sweep, instead of the point alone? */
+static bool stops(strut_status status) {
+  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
+}
+
+/* What is not known of a point that failed. */
+static void pad(const strut_sweep_plan *plan, strut_sweep_room *room) {
+  size_t words = 0;
+  for (size_t i = 0; i < plan->column_count; i++) words += plan->columns[i].word;
+  while (room->word_count < words) strut_sweep_word(room, "");
+  while (room->number_count < plan->column_count - words) strut_sweep_number(room, (double)NAN);
+}
+
+/* The point is over: its row, or what stops the sweep. */
+static bool end(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
+  strut_sweep_room *room = &job->room;
+  job->stage = STRUT_SWEEP_IDLE;
+  job->status = stops(status) ? status : STRUT_OK;
+  if (job->status) return false;
+  if (status) {
+    pad(w->plan, room);
+    snprintf(room->message, sizeof room->message, "%.*s", (int)sizeof room->message - 1,
+             job->error.message);
+  }
+  room->row = (strut_slot){.status = status,
+                           .numbers = room->numbers,
+                           .words = (const char(*)[STRUT_SLOT_WORD])room->words,
+                           .message = room->message};
+  return false;
+}
+
+/* The same where the point has a scene. */
+static bool end_scene(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
+  strut_scene_free(&job->scene);
+  return end(w, job, status);
+}
+
+/* As `strut run` writes it, into a folder of its own where that is wanted. */
+static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *job) {
+  job->options = (strut_run_options){.interrupt = w->options->interrupt};
+  job->files = NULL;
+  if (!w->plan->study->trajectories || !w->options->directory) return STRUT_OK;
+  char *text = w->plan->scenes.text(&job->scene);
+  if (!text) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
+  job->files = strut_sweep_record_begin(w->options->directory, job->point, text, &job->error);
+  strut_release(text);
+  if (!job->files) return job->error.status;
+  job->sinks[0] = strut_sweep_record_sink(job->files);
+  job->options.sinks = job->sinks;
+  job->options.sink_count = 1;
+  return STRUT_OK;
+}
+
+bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = w->plan;
+  strut_sweep_room *room = &job->room;
+  room->number_count = room->word_count = 0;
+  room->message[0] = '\0';
+  job->point = point;
+  job->model = NULL;
+  job->second = false;
+  job->error = (strut_error){0};
+  strut_grid_values(plan->study, point, room->values);
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    if (plan->columns[i].word)
+      strut_sweep_word(room, room->values[i].word);
+    else
+      strut_sweep_number(room, room->values[i].number);
+  }
+  strut_status status =
+      plan->scenes.scene(plan->scenes.context, room->values, &job->scene, &job->error);
+  if (status) return end(w, job, status);
+  status = strut_standing_resolve(w->standing, &job->scene, &job->error);
+  if (!status) status = begin_record(w, job);
+  if (status) return end_scene(w, job, status);
+  job->stage = STRUT_SWEEP_WAITING;
+  return true;
+}
+
+/* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
+static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *job,
+                                 const strut_summary *summary, char *name) {
+  const strut_scene *scene = &job->scene;
+  int32_t index = -1;
+  if (!(w->plan->keep >> STRUT_KEEP_OUTCOME & 1u) || !scene->configuration_count) return STRUT_OK;
+  strut_status status =
+      strut_standing_nearest(w->standing, scene, summary->positions, &index, &job->error);
+  snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
+  return status;
+}
+
+/* The experiment of the check. */
+static void refine(const strut_study *study, strut_experiment *e) {
+  if (study->check_accuracy > 0.0) {
+    e->accuracy = study->check_accuracy;
+  } else if (e->accuracy > 0.0) {
+    e->accuracy /= 2.0;
+  } else {
+    e->step /= 2.0;
+    e->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
+  }
+}
+
+static const char *told(const strut_sweep_worker *w, const strut_summary *summary,
+                        const char *outcome) {
+  static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
+  return w->plan->flips ? outcome : kinds[summary->steady.kind];
+}
+
+static bool take_first(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
+                       const strut_summary *summary) {
+  char outcome[STRUT_SLOT_WORD] = "";
+  bool began = status == STRUT_OK || status == STRUT_DIVERGED;
+  if (job->files) {
+    strut_error late = {0};
+    strut_status written = strut_sweep_record_end(job->files, &job->scene, summary, began, &late);
+    if (written) status = strut_fail(&job->error, written, "%s", late.message);
+  }
+  if (!status) status = name_outcome(w, job, summary, outcome);
+  if (status) return end_scene(w, job, status);
+  strut_sweep_fill(w->plan, &job->scene, summary, outcome, &job->room);
+  if (!w->plan->check) return end_scene(w, job, STRUT_OK);
+  snprintf(job->first, sizeof job->first, "%s", told(w, summary, outcome));
+  refine(w->plan->study, &job->scene.experiment);
+  job->options = (strut_run_options){.interrupt = w->options->interrupt};
+  job->second = true;
+  job->error = (strut_error){0};
+  job->stage = STRUT_SWEEP_WAITING;
+  return true;
+}
+
+/* A second run that fails has ended elsewhere. */
+static bool take_second(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
+                        const strut_summary *summary) {
+  char outcome[STRUT_SLOT_WORD] = "";
+  strut_sweep_room *room = &job->room;
+  if (!status) status = name_outcome(w, job, summary, outcome);
+  const char *word = status ? "failed" : told(w, summary, outcome);
+  bool same = !status && strcmp(job->first, word) == 0;
+  strut_sweep_number(room, status ? (double)NAN : summary->velocity);
+  strut_sweep_word(room, word);
+  strut_sweep_number(room, same ? 0.0 : 1.0);
+  if (stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
+  return end_scene(w, job, stops(status) ? status : STRUT_OK);
+}
+
+bool strut_sweep_job_take(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
+                          strut_summary *summary, const strut_error *error) {
+  if (error != &job->error) job->error = *error;
+  strut_model_free(job->model);
+  job->model = NULL;
+  bool more =
+      job->second ? take_second(w, job, status, summary) : take_first(w, job, status, summary);
+  strut_summary_free(summary);
+  return more;
+}
+
+strut_status strut_sweep_job_compile(strut_sweep_job *job) {
+  return job->model ? STRUT_OK : strut_model_compile(&job->scene, &job->model, &job->error);
+}
+
+void strut_sweep_job_finish(const strut_sweep_worker *w, strut_sweep_job *job) {
+  do {
+    strut_summary summary = {0};
+    strut_status status;
+    job->stage = STRUT_SWEEP_RUNNING;
+    if (job->scene.experiment.accuracy > 0.0)
+      status = strut_simulate_accurately(&job->scene, &job->options, &summary, &job->error);
+    else if (!(status = strut_sweep_job_compile(job)))
+      status = strut_simulate(job->model, &job->options, &summary, &job->error);
+    strut_sweep_job_take(w, job, status, &summary, &job->error);
+  } while (job->stage == STRUT_SWEEP_WAITING);
+}

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What an answer costs: methods, steps and models of one scene against converged references.
+ *
+ * Two errors are kept apart. The *step error* of a run is its distance from the converged answer of
+ * the same model. The *model error* of a fidelity (lumped masses, another friction law, ...) is the
+ * distance of its converged answer from that of the scene's own model. The *total error* is the
+ * distance of a run from the latter.
+ *
+ * A reference is what two different methods agree on, each refined until they agree to a hundredth
+ * of the smallest error there is, or until the budget is spent; how far they still differ is the
+ * *floor*, and no error is given as smaller than it.
+ */
+#ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
+#define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
+
+#include <signal.h>
+#include <stdbool.h>
+
+#include "engine/integrate/integrator.h"
+#include "engine/scene/scene.h"
+
+typedef enum strut_tradeoff_measure {
+  STRUT_TRADEOFF_AUTOMATIC, /* velocity with contacts or a run by periods, where it is not
+                                0; else position */
+  STRUT_TRADEOFF_VELOCITY,  /* summary.velocity, relative to it or to `scale` if that is larger */
+  STRUT_TRADEOFF_POSITION,  /* of all nodes at the end: the farthest off, over the scene's size */
+  STRUT_TRADEOFF_ENERGY     /* |energy residual| over the energy moved; needs no reference */
+} strut_tradeoff_measure;
+
+enum { STRUT_TRADEOFF_MOST_STEPS = 40 };
+
+/** Zero-initialised: as many steps, periods and repeats as are usual. */
+typedef struct strut_tradeoff_options {
+  strut_tradeoff_measure measure;
+  int steps;      /* of each method, five in a decade from its limit down; 0: 8 */
+  double periods; /* of a run given in periods, at most; 0: 120 */
+  double budget;  /* CPU time [s] that may be spent about; 0: 120 */
+  int repeats;    /* of a short run, for its CPU time; 0: 5 */
+  const strut_integrator *const *methods; /* (method_count) only these; 0: all */
+  size_t method_count;
+  bool own_model; /* leave out other fidelities */
+  const volatile sig_atomic_t *interrupt; /* may be NULL */
+  void (*progress)(void *context, double fraction); /* may be NULL */
+  void *progress_context;
+} strut_tradeoff_options;
+
+/** Over the operating points. Infinite: diverged. */
+typedef struct strut_spread {
+  double median; /* of an even number the mean of the middle two */
+  double ninety; /* 90th percentile: the smallest value that 90 % do not exceed */
+  double worst;
+} strut_spread;
+
+/** A model of the scene. The first is the scene's own. */
+typedef struct strut_tradeoff_fidelity {
+  char name[120];     /* such as "lumped masses" */
+  char remark[600];   /* why it could not be run, or what was assumed; may be empty */
+  bool run;
+  char reference[2][100]; /* the two settings that agree, of the first operating point */
+  double *value;      /* (points, values) the reference */
+  double *floor;      /* (points) where the two agree; relative as errors are */
+  double *model_error; /* (points); 0 for the first */
+  strut_spread model_spread, floor_spread;
+} strut_tradeoff_fidelity;
+
+/** One setting, run at every operating point. */
+typedef struct strut_tradeoff_row {
+  int fidelity;         /* index */
+  int group;            /* settings that differ by their step or tolerance alone */
+  const strut_integrator *method;
+  bool base;            /* the setting that costs are relative to */
+  double step;          /* [s]; fitted to each point's periods. Of an adaptive method the largest */
+  double tolerance;     /* NAN where the method is not adaptive */
+  double refine;        /* as strut_experiment.refine; NAN where nothing is refined */
+  double *value;        /* (points, values); NAN where it diverged */
+  double *error, *total; /* (points) step error and total error; INFINITY where it diverged */
+  strut_spread error_spread, total_spread;
+  size_t diverged;      /* points */
+  double evaluations;   /* of the forces over those of the base: median over the points */
+  double cpu;           /* CPU time over that of the base, measured in turn; NAN: not measured */
+  double seconds;       /* CPU time of a run, median [s]; NAN: not measured */
+  bool front;           /* no other of its model is as cheap and as good: `evaluations`, worst */
+} strut_tradeoff_row;
+
+/** All of it; strut_tradeoff_free. Names and methods outlive it. */
+typedef struct strut_tradeoff {
+  const char *name; /* of the scene */
+  strut_tradeoff_measure measure;
+  size_t point_count, value_count, fidelity_count, row_count, group_count;
+  double scale;     /* velocities below it have errors relative to it [m/s]; of the first point */
+  double periods;   /* run; 0 where the run is given in seconds */
+  double duration;  /* of the first point [s] */
+  int64_t base_evaluations; /* of the first point */
+  double base_seconds;
+  size_t base;      /* row */
+  size_t left_out;  /* settings for which the budget did not suffice */
+  double spent;     /* CPU time [s] */
+  strut_tradeoff_fidelity *fidelities;
+  strut_tradeoff_row *rows;
+  strut_arena arena;
+} strut_tradeoff;
+
+/**
+ * Runs everything. `scenes` are (count) operating points of one model, alike but for their
+ * parameters; as strut_simulate wants them. STRUT_USAGE where there is nothing to measure; else the
+ * status of the base's own run where it has none, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_tradeoff_make(const strut_scene *const *scenes, size_t count,
+                                           const strut_tradeoff_options *options,
+                                           strut_tradeoff *result, strut_error *error);
+/** A zeroed struct is allowed. */
+STRUT_API void strut_tradeoff_free(strut_tradeoff *result);
+
+/** Median, 90th percentile and worst of (count) values; scratch holds as many. */
+STRUT_API strut_spread strut_spread_of(const double *values, size_t count, double *scratch);
+
+/** Errors for which strut_tradeoff_best is asked, in the order in which they are told. */
+enum { STRUT_TRADEOFF_LEVELS = 4 };
+STRUT_API double strut_tradeoff_level(int i);
+/** The largest worst total error of a row and of all finer ones of its group. */
+STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
+/**
+ * The cheapest row of a fidelity whose worst total error stays within `level`, and that of all
+ * smaller steps or tolerances of its group too: a single small error at a large step is luck. -1:
+ * none.
+ */
+STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int fidelity, double level);
+
+#endif

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/tradeoff/tradeoff_report.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+#include "engine/study/tradeoff/tradeoff_words.h"
+
+static void add_head(strut_buffer *table, const strut_tradeoff *r) {
+  const strut_tradeoff_row *base = &r->rows[r->base];
+  char a[STRUT_STUDY_WORDS];
+  strut_buffer_add(table, "%s%swhat the %s costs", r->name, *r->name ? ": " : "",
+                   strut_study_measure(r->measure));
+  if (r->periods > 0)
+    strut_buffer_add(table, " in %.6g periods", r->periods);
+  else
+    strut_buffer_add(table, " in %s", strut_quantity_of(r->duration, 4, "s").text);
+  if (r->point_count > 1) strut_buffer_add(table, ", %zu operating points", r->point_count);
+  strut_buffer_add(table, "\ncost 1: %s, %s: %.0f evaluations of the forces", base->method->name,
+                   strut_study_step(base, a), (double)r->base_evaluations);
+  if (isfinite(r->base_seconds))
+    strut_buffer_add(table, ", %s of CPU time", strut_quantity_of(r->base_seconds, 3, "s").text);
+  strut_buffer_add(table, "%s\n", r->point_count > 1 ? " at the first point" : "");
+  if (r->measure == STRUT_TRADEOFF_VELOCITY)
+    strut_buffer_add(table, "errors relative to the velocity, or to %s where it is smaller\n",
+                     strut_quantity_of(r->scale, 3, "m/s").text);
+  if (r->measure == STRUT_TRADEOFF_POSITION)
+    strut_buffer_add(table, "errors relative to the size of the structure\n");
+}
+
+static void add_fidelity(strut_buffer *table, const strut_tradeoff *r, int fidelity) {
+  const strut_tradeoff_fidelity *f = &r->fidelities[fidelity];
+  char a[STRUT_STUDY_WORDS];
+  if (!f->run) return;
+  strut_buffer_add(table, "\n%s%s\n", f->name, fidelity ? ", the best of its settings" : "");
+  if (f->remark[0]) strut_buffer_add(table, "  %s\n", f->remark);
+  strut_buffer_add(table, "  reference: %s", f->reference[0]);
+  if (f->reference[1][0])
+    strut_buffer_add(table, " and %s; apart by %s", f->reference[1],
+                     strut_study_percent(f->floor_spread.worst, a));
+  if (r->point_count > 1) strut_buffer_add(table, " at worst, settings of the first point");
+  strut_buffer_add(table, "\n  %-26s %9s %9s %8s %9s", "method", "step", "cost", "CPU",
+                   r->point_count > 1 ? "median" : "error");
+  if (r->point_count > 1) strut_buffer_add(table, " %9s %9s", "90 %", "worst");
+  strut_buffer_add(table, "\n");
+}
+
+static void add_row(strut_buffer *table, const strut_tradeoff *r, const strut_tradeoff_row *row) {
+  char a[STRUT_STUDY_WORDS], b[STRUT_STUDY_WORDS], cpu[STRUT_STUDY_WORDS] = "-";
+  char worst[STRUT_STUDY_WORDS];
+  if (isfinite(row->cpu)) snprintf(cpu, sizeof cpu, "%.3g", row->cpu);
+  strut_buffer_add(table, "%c%c %-25s %9s %9.3g %8s", row->front ? '*' : ' ', row->base ? '=' : ' ',
+                   strut_study_group(row, a), strut_study_step(row, b), row->evaluations, cpu);
+  strut_buffer_add(table, " %9s", strut_study_percent(row->error_spread.median, a));
+  if (r->point_count > 1) {
+    strut_buffer_add(table, " %9s %9s", strut_study_percent(row->error_spread.ninety, a),
+                     strut_study_percent(row->error_spread.worst, worst));
+    if (row->diverged) strut_buffer_add(table, "  (%zu diverged)", row->diverged);
+  }
+  strut_buffer_add(table, "\n");
+}
+
+char *strut_tradeoff_table(const strut_tradeoff *r) {
+  strut_buffer table = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  add_head(&table, r);
+  for (size_t f = 0; f < r->fidelity_count; f++) {
+    add_fidelity(&table, r, (int)f);
+    for (size_t i = 0; i < r->row_count; i++) {
+      const strut_tradeoff_row *row = &r->rows[i];
+      bool shown = row->fidelity == (int)f && r->fidelities[f].run && (f == 0 || row->front);
+      if (shown) add_row(&table, r, row);
+    }
+  }
+  strut_buffer_add(&table, "  (* on the front of the best, = what costs are relative to)\n");
+  if (r->left_out)
+    strut_buffer_add(&table, "  %zu finer settings left out: the budget did not suffice\n",
+                     r->left_out);
+  strut_buffer_add(&table, "\n");
+  strut_study_advise(&table, r);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}
+
+/* ---- CSV ---- */
+
+static void add_number(strut_buffer *csv, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_buffer_add(csv, ",");
+  if (isinf(value)) strut_buffer_add(csv, "inf");
+  if (!isfinite(value)) return;
+  strut_number_text(value, text);
+  strut_buffer_add(csv, "%s", text);
+}
+
+static void add_spread(strut_buffer *csv, const strut_spread *spread) {
+  add_number(csv, spread->median);
+  add_number(csv, spread->ninety);
+  add_number(csv, spread->worst);
+}
+
+char *strut_tradeoff_csv(const strut_tradeoff *r) {
+  strut_buffer csv = {0};
+  char a[STRUT_STUDY_WORDS];
+  strut_buffer_add(&csv, "model,group,method,refine,step [s],tolerance,evaluations,cpu,seconds [s],"
+                         "error median,error 90 %%,error worst,total median,total 90 %%,"
+                         "total worst,diverged,points,front,base\n");
+  for (size_t i = 0; i < r->row_count; i++) {
+    const strut_tradeoff_row *row = &r->rows[i];
+    strut_buffer_add(&csv, "\"%s\",\"%s\",%s", r->fidelities[row->fidelity].name,
+                     strut_study_group(row, a), row->method->name);
+    add_number(&csv, row->refine);
+    add_number(&csv, row->step);
+    add_number(&csv, row->tolerance);
+    add_number(&csv, row->evaluations);
+    add_number(&csv, row->cpu);
+    add_number(&csv, row->seconds);
+    add_spread(&csv, &row->error_spread);
+    add_spread(&csv, &row->total_spread);
+    strut_buffer_add(&csv, ",%zu,%zu,%d,%d\n", row->diverged, r->point_count, row->front,
+                     row->base);
+  }
+  return strut_buffer_take(&csv);
+}
+
+/* ---- JSON ---- */
+
+static void put_spread(strut_json *json, struct cJSON *to, const char *key,
+                       const strut_spread *spread, const double *values, size_t count) {
+  struct cJSON *object = strut_json_object(json, to, key);
+  strut_json_number(json, object, "median", spread->median);
+  strut_json_number(json, object, "ninety", spread->ninety);
+  strut_json_number(json, object, "worst", spread->worst);
+  strut_json_numbers(json, object, "points", values, count);
+}
+
+static void put_fidelities(strut_json *json, const strut_tradeoff *r) {
+  struct cJSON *list = strut_json_array(json, json->root, "models");
+  for (size_t i = 0; i < r->fidelity_count; i++) {
+    const strut_tradeoff_fidelity *f = &r->fidelities[i];
+    struct cJSON *object = strut_json_object(json, list, NULL);
+    strut_json_text(json, object, "name", f->name);
+    strut_json_text(json, object, "remark", f->remark[0] ? f->remark : NULL);
+    strut_json_bool(json, object, "run", f->run);
+    if (!f->run) continue;
+    struct cJSON *methods = strut_json_array(json, object, "reference");
+    for (int k = 0; k < 2; k++)
+      if (f->reference[k][0]) strut_json_text(json, methods, NULL, f->reference[k]);
+    strut_json_numbers(json, object, "values", f->value, r->point_count * r->value_count);
+    put_spread(json, object, "floor", &f->floor_spread, f->floor, r->point_count);
+    put_spread(json, object, "model_error", &f->model_spread, f->model_error, r->point_count);
+  }
+}
+
+static void put_rows(strut_json *json, const strut_tradeoff *r) {
+  struct cJSON *list = strut_json_array(json, json->root, "settings");
+  char a[STRUT_STUDY_WORDS];
+  for (size_t i = 0; i < r->row_count; i++) {
+    const strut_tradeoff_row *row = &r->rows[i];
+    struct cJSON *object = strut_json_object(json, list, NULL);
+    strut_json_text(json, object, "model", r->fidelities[row->fidelity].name);
+    strut_json_text(json, object, "group", strut_study_group(row, a));
+    strut_json_text(json, object, "method", row->method->name);
+    strut_json_number(json, object, "step", row->step);
+    strut_json_number(json, object, "tolerance", row->tolerance);
+    strut_json_number(json, object, "refine", row->refine);
+    strut_json_number(json, object, "evaluations", row->evaluations);
+    strut_json_number(json, object, "cpu", row->cpu);
+    strut_json_number(json, object, "seconds", row->seconds);
+    put_spread(json, object, "step_error", &row->error_spread, row->error, r->point_count);
+    put_spread(json, object, "total_error", &row->total_spread, row->total, r->point_count);
+    strut_json_numbers(json, object, "values", row->value, r->point_count * r->value_count);
+    strut_json_integer(json, object, "diverged", (int64_t)row->diverged);
+    strut_json_bool(json, object, "front", row->front);
+    strut_json_bool(json, object, "base", row->base);
+  }
+}
+
+static void put_points(strut_json *json, const strut_scene *const *scenes, size_t count) {
+  struct cJSON *list = strut_json_array(json, json->root, "points");
+  for (size_t p = 0; p < count; p++) {
+    struct cJSON *object = strut_json_object(json, list, NULL);
+    for (size_t i = 0; i < scenes[p]->parameter_count; i++) {
+      const strut_parameter *parameter = &scenes[p]->parameters[i];
+      if (isnan(parameter->value))
+        strut_json_text(json, object, parameter->name, parameter->text);
+      else
+        strut_json_number(json, object, parameter->name, parameter->value);
+    }
+  }
+}
+
+static void put_advice(strut_json *json, const strut_tradeoff *r) {
+  struct cJSON *list = strut_json_array(json, json->root, "advice");
+  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) {
+    int best = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
+    struct cJSON *object = strut_json_object(json, list, NULL);
+    strut_json_number(json, object, "error", strut_tradeoff_level(i));
+    if (best < 0)
+      strut_json_text(json, object, "setting", NULL);
+    else
+      strut_json_integer(json, object, "setting", best);
+  }
+}
+
+char *strut_tradeoff_json(const strut_tradeoff *r, const strut_scene *const *scenes) {
+  strut_json json = strut_json_begin();
+  strut_json_text(&json, json.root, "name", r->name);
+  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
+  strut_json_text(&json, json.root, "measure", strut_study_measure(r->measure));
+  if (r->periods > 0) strut_json_number(&json, json.root, "periods", r->periods);
+  strut_json_number(&json, json.root, "duration", r->duration);
+  if (r->measure == STRUT_TRADEOFF_VELOCITY)
+    strut_json_number(&json, json.root, "scale", r->scale);
+  strut_json_integer(&json, json.root, "base_setting", (int64_t)r->base);
+  strut_json_integer(&json, json.root, "base_evaluations", r->base_evaluations);
+  strut_json_number(&json, json.root, "base_seconds", r->base_seconds);
+  strut_json_number(&json, json.root, "spent_seconds", r->spent);
+  strut_json_integer(&json, json.root, "left_out", (int64_t)r->left_out);
+  put_points(&json, scenes, r->point_count);
+  put_fidelities(&json, r);
+  put_rows(&json, r);
+  put_advice(&json, r);
+  return strut_json_end(&json);
+}

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/expression/expression.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "parser/expression/expression_parts.h"
+#include "parser/expression/quantity.h"
+#include "parser/yaml/text.h"
+
+enum { DEPTH_MOST = 64, LENGTH_MOST = 1000 };
+
+#define PI 3.14159265358979323846
+
+static bool read_sum(strut_expression_reader *r, strut_quantity *q);
+static bool read_signed(strut_expression_reader *r, strut_quantity *q);
+
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+char strut_expression_peek(strut_expression_reader *r) {
+  while (r->at < r->length && is_blank(r->text[r->at])) r->at++;
+  return r->at < r->length ? r->text[r->at] : '\0';
+}
+
+static bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+size_t strut_expression_word(const strut_expression_reader *r, size_t at) {
+  size_t begin = at;
+  if (at >= r->length || !is_letter(r->text[at])) return 0;
+  while (at < r->length && (is_letter(r->text[at]) || (r->text[at] >= '0' && r->text[at] <= '9')))
+    at++;
+  return at - begin;
+}
+
+int strut_expression_lookup(const strut_expression_reader *r, const char *name, size_t length,
+                            strut_quantity *quantity) {
+  if (!r->scope || !r->scope->lookup) return 0;
+  return r->scope->lookup(r->scope->context, name, length, quantity);
+}
+
+bool strut_expression_reserved(const char *name, size_t length) {
+  return (length == 2 && memcmp(name, "pi", 2) == 0) || strut_function_find(name, length);
+}
+
+static bool expect(strut_expression_reader *r, char wanted, const char *words) {
+  if (strut_expression_peek(r) != wanted) return strut_expression_unexpected(r, words);
+  r->at++;
+  return true;
+}
+
+/* Arguments and the closing parenthesis; r is behind the opening one. */
+static bool read_call(strut_expression_reader *r, const strut_function *function, size_t begin,
+                      strut_quantity *q) {
+  strut_quantity arguments[STRUT_ARGUMENT_MOST];
+  strut_reason reason;
+  size_t count = 0;
+  do {
+    if (count) r->at++;
+    if (count == STRUT_ARGUMENT_MOST)
+      return strut_expression_fail(r, begin, r->at, "more than %d arguments", STRUT_ARGUMENT_MOST);
+    if (!read_sum(r, &arguments[count])) return false;
+    count++;
+  } while (strut_expression_peek(r) == ',');
+  if (!expect(r, ')', "an operator, ',' or ')'")) return false;
+  if (!strut_function_apply(function, arguments, count, q, &reason))
+    return strut_expression_fail(r, begin, r->at, "%s", reason.text);
+  strut_expression_emit(r, strut_function_operation(function), count, q);
+  return true;
+}
+
+static bool read_name(strut_expression_reader *r, size_t length, strut_quantity *q) {
+  size_t begin = r->at;
+  const char *name = r->text + begin;
+  r->at += length;
+  if (strut_expression_peek(r) == '(') {
+    const strut_function *function = strut_function_find(name, length);
+    if (!function) return strut_expression_unknown_function(r, begin, length);
+    r->at++;
+    return read_call(r, function, begin, q);
+  }
+  if (length == 2 && memcmp(name, "pi", 2) == 0) {
+    *q = (strut_quantity){.value = PI, .bare = true};
+    strut_expression_emit_number(r, q);
+    return true;
+  }
+  int found = strut_expression_lookup(r, name, length, q);
+  if (found < 0) {
+    strut_expression_fail(r, begin, begin + length, "%s", "");
+    r->error->message[0] = '\0'; /* the lookup has reported it */
+    return false;
+  }
+  if (found > 0) {
+    strut_expression_emit_number(r, q);
+    return true;
+  }
+  found = strut_expression_column_word(r, begin, length, q);
+  return found > 0 || (found == 0 && strut_expression_unknown_name(r, begin, length));
+}
+
+static bool read_literal(strut_expression_reader *r, strut_quantity *q) {
+  if (!strut_expression_literal(r, q)) return false;
+  strut_expression_emit_number(r, q);
+  return true;
+}
+
+static bool read_primary(strut_expression_reader *r, strut_quantity *q) {
+  char c = strut_expression_peek(r);
+  int column = strut_expression_column(r, q);
+  if (column) return column > 0;
+  if ((c >= '0' && c <= '9') || c == '.') return read_literal(r, q);
+  if (c == '(') {
+    r->at++;
+    return read_sum(r, q) && expect(r, ')', "an operator or ')'");
+  }
+  size_t length = strut_expression_word(r, r->at);
+  if (length) return read_name(r, length, q);
+  return strut_expression_unexpected(r, "a number, a name or '('");
+}
+
+/* *q = *q OP b, where the operands stand in text[begin..at). */
+static bool operate(strut_expression_reader *r, size_t begin, char operation, strut_quantity *q,
+                    strut_quantity b) {
+  static const char signs[] = "+-*/^";
+  static const strut_operation operations[] = {STRUT_OPERATION_ADD, STRUT_OPERATION_SUBTRACT,
+                                               STRUT_OPERATION_MULTIPLY, STRUT_OPERATION_DIVIDE,
+                                               STRUT_OPERATION_POWER};
+  strut_reason reason;
+  if (!strut_quantity_operate(operation, q, b, &reason))
+    return strut_expression_fail(r, begin, r->at, "%s", reason.text);
+  strut_expression_emit(r, operations[strchr(signs, operation) - signs], 2, q);
+  return true;
+}
+
+/* A power binds tighter than a sign before it, and groups to the right. */
+static bool read_power(strut_expression_reader *r, strut_quantity *q) {
+  strut_expression_peek(r);
+  size_t begin = r->at;
+  strut_quantity exponent;
+  if (!read_primary(r, q)) return false;
+  size_t end = r->at;
+  if (strut_expression_peek(r) != '^') {
+    r->at = end;
+    return true;
+  }
+  r->at++;
+  return read_signed(r, &exponent) && operate(r, begin, '^', q, exponent);
+}
+
+/* Every way of nesting passes here, so this is where depth is counted. */
+static bool read_signed(strut_expression_reader *r, strut_quantity *q) {
+  char c = strut_expression_peek(r);
+  if (r->depth > DEPTH_MOST)
+    return strut_expression_fail(r, r->at, r->at + 1, "more than %d levels of nesting", DEPTH_MOST);
+  r->depth++;
+  bool sign = c == '-' || c == '+', fine;
+  if (sign) r->at++;
+  fine = sign ? read_signed(r, q) : read_power(r, q);
+  if (fine && c == '-') {
+    q->value = -q->value;
+    strut_expression_emit(r, STRUT_OPERATION_NEGATE, 1, q);
+  }
+  r->depth--;
+  return fine;
+}
+
+static bool read_product(strut_expression_reader *r, strut_quantity *q) {
+  strut_expression_peek(r);
+  size_t begin = r->at;
+  if (!read_signed(r, q)) return false;
+  for (;;) {
+    size_t end = r->at;
+    char c = strut_expression_peek(r);
+    strut_quantity factor;
+    if (c != '*' && c != '/') {
+      r->at = end;
+      return true;
+    }
+    r->at++;
+    if (!read_signed(r, &factor) || !operate(r, begin, c, q, factor)) return false;
+  }
+}
+
+static bool read_sum(strut_expression_reader *r, strut_quantity *q) {
+  strut_expression_peek(r);
+  size_t begin = r->at;
+  if (!read_product(r, q)) return false;
+  for (;;) {
+    size_t end = r->at;
+    char c = strut_expression_peek(r);
+    strut_quantity term;
+    if (c != '+' && c != '-') {
+      r->at = end;
+      return true;
+    }
+    r->at++;
+    if (!read_product(r, &term) || !operate(r, begin, c, q, term)) return false;
+  }
+}
+
+bool strut_expression_evaluate(const char *text, const strut_scope *scope, strut_quantity *quantity,
+                               strut_expression_error *error) {
+  return strut_expression_compile(text, scope, NULL, quantity, error);
+}
+
+bool strut_expression_compile(const char *text, const strut_scope *scope, strut_compiler *compiler,
+                              strut_quantity *quantity, strut_expression_error *error) {
+  strut_expression_reader r = {text, strlen(text), 0, 0, scope, error, compiler};
+  strut_quantity q = {0};
+  if (r.length > LENGTH_MOST && strut_text_points(text, r.length) > LENGTH_MOST)
+    return strut_expression_fail(&r, 0, r.length, "the expression is longer than %d characters",
+                                 LENGTH_MOST);
+  if (strut_expression_peek(&r) == '\0' && r.at >= r.length)
+    return strut_expression_fail(&r, 0, r.length, "a number is missing here");
+  if (!read_sum(&r, &q)) return false;
+  if (strut_expression_peek(&r) != '\0' || r.at < r.length)
+    return strut_expression_unexpected(&r, "an operator or the end");
+  assert(isfinite(q.value));
+  error->message[0] = '\0';
+  *quantity = q;
+  return true;
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Expressions with units: "2*amplitude + 0.1 mm", "1 / (1000 * frequency)".
+ *
+ * A value carries its dimension. A *bare* value is made of plain numbers only and fits any
+ * dimension: plain numbers are SI.
+ */
+#ifndef STRUT_PARSER_EXPRESSION_EXPRESSION_H
+#define STRUT_PARSER_EXPRESSION_EXPRESSION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/base/export.h"
+#include "engine/scene/quantity.h"
+#include "parser/expression/units.h"
+
+typedef struct strut_quantity {
+  double value; /* SI */
+  strut_dimension dimension;
+  bool bare;
+  bool varies; /* it is made of columns of the motion: it has no value yet */
+} strut_quantity;
+
+/** Where an expression went wrong: code point offset and length within the text, and why. */
+typedef struct strut_expression_error {
+  size_t offset, length;
+  char message[300];
+} strut_expression_error;
+
+/**
+ * Looks a parameter up by its name (not NUL-terminated). Returns 1 and fills the quantity; 0 when
+ * there is none of that name; -1 when it exists but has no value (the lookup has reported why).
+ */
+typedef int strut_lookup(void *context, const char *name, size_t length, strut_quantity *quantity);
+/** Names for "did you mean": the i-th, or NULL after the last. */
+typedef const char *strut_names(const void *context, size_t i);
+
+typedef struct strut_scope {
+  strut_lookup *lookup; /* may be NULL: no parameters */
+  strut_names *names;
+  void *context;
+  bool no_hints; /* errors suggest no name: that would take too long */
+  bool unread;   /* nobody will read the messages: they need only not be empty */
+} strut_scope;
+
+/**
+ * Evaluates text. Returns false with `error` filled; error->message is empty where the lookup has
+ * already reported the cause. The result is finite.
+ */
+STRUT_API bool strut_expression_evaluate(const char *text, const strut_scope *scope,
+                                         strut_quantity *quantity, strut_expression_error *error);
+
+/** Why a column is refused; empty where that has been reported. */
+typedef struct strut_refusal {
+  char text[300];
+} strut_refusal;
+
+/** A part of the text that is being read. */
+typedef struct strut_piece {
+  const char *text;
+  size_t length;
+} strut_piece;
+
+/**
+ * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node" or "member"
+ * where the text says which, else NULL. Returns 1 and fills column and dimension; 0: nothing has that
+ * name; -1: refused.
+ */
+typedef int strut_find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                              strut_column *column, strut_dimension *dimension,
+                              strut_refusal *refusal);
+/** The same of WORD(FIRST, SECOND), whose word is one of those below. */
+typedef int strut_find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                            strut_column *column, strut_dimension *dimension,
+                            strut_refusal *refusal);
+
+/** One instruction while it is being made. */
+typedef struct strut_compiled {
+  strut_instruction instruction;
+  strut_dimension dimension; /* of a NUMBER */
+} strut_compiled;
+
+/** Makes a program of an expression of columns. */
+typedef struct strut_compiler {
+  strut_find_column *column;
+  strut_find_pair *pair;
+  void *context;
+  strut_compiled *program; /* at least one for each byte of the text */
+  size_t length, depth;    /* instructions so far; numbers on the stack at most */
+} strut_compiler;
+
+/** As strut_expression_evaluate; what has columns is not evaluated but compiled. */
+STRUT_API bool strut_expression_compile(const char *text, const strut_scope *scope,
+                                        strut_compiler *compiler, strut_quantity *quantity,
+                                        strut_expression_error *error);
+
+/** True for the names that no parameter may have: pi and the functions. */
+STRUT_API bool strut_expression_reserved(const char *name, size_t length);
+
+/**
+ * Reads a strict decimal number that fills text[0..length): the reader of every number literal. A
+ * literal has no sign. False also where the value is beyond the range of a double.
+ */
+STRUT_API bool strut_number_read(const char *text, size_t length, double *value);
+
+#endif

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Groups: keys of a member, a node or a contact that many things share. See reader.h. */
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+static const strut_room rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
+
+enum { ROOMS = 3 };
+
+static const char *group_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->group_count ? reader->groups[i].name : NULL;
+}
+
+static size_t room_index(strut_room room) {
+  size_t i = 0;
+  while (rooms[i] != room) i++;
+  return i;
+}
+
+/* An earlier key of the group that belongs to the same set as `key`, or NULL. */
+static const strut_tree *rival(const strut_group *group, int key) {
+  int set = strut_key_at(key)->set;
+  for (size_t i = 0; set && i < group->count; i++)
+    if (group->items[i].key[0] >= 0 && strut_key_at(group->items[i].key[0])->set == set)
+      return group->items[i].slot.key;
+  return NULL;
+}
+
+static void read_item(strut_reader *reader, strut_group *group, const strut_tree *key,
+                      strut_owner owner) {
+  strut_group_item item = {.key = {-1, -1, -1}};
+  int found = -1;
+  for (size_t r = 0; r < ROOMS; r++) {
+    item.key[r] = strut_key_find(rooms[r], key->text);
+    if (found < 0) found = item.key[r];
+  }
+  if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {
+    strut_say(reader, key->place, "a group cannot have a group, found '%s' in %s", key->text,
+              strut_owner_text(reader, owner));
+    group->broken = true;
+    return;
+  }
+  if (found < 0) {
+    int meant = strut_unknown_key(reader, key, rooms, ROOMS, owner);
+    group->broken = true;
+    if (meant < 0) return;
+    for (size_t r = 0; r < ROOMS; r++)
+      item.key[r] = strut_key_find(rooms[r], strut_key_at(meant)->name);
+    item.slot = (strut_slot){.state = STRUT_BROKEN, .key = key, .value = key->next};
+    group->items[group->count++] = item;
+    return;
+  }
+  strut_read_slot(reader, found, key, key->next, owner, &item.slot);
+  const strut_tree *other = rival(group, found);
+  if (other) {
+    strut_say(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
+              strut_owner_text(reader, owner), other->text, key->text);
+    item.slot.state = STRUT_BROKEN;
+  }
+  if (item.slot.state == STRUT_GIVEN && strut_key_at(found)->type == STRUT_TYPE_MAP) {
+    item.nested = strut_take(reader, &reader->scratch, 1, sizeof *item.nested);
+    if (!item.nested) return;
+    strut_read_fields(reader, STRUT_ROOM_FRICTION, key->next,
+                      (strut_owner){"the friction of group", group->name}, item.nested);
+  }
+  group->items[group->count++] = item;
+}
+
+static void read_group(strut_reader *reader, const strut_tree *key, strut_group *group) {
+  const strut_tree *map = key->next;
+  strut_owner owner = {"group", key->text};
+  *group = (strut_group){.name = key->text, .key = key};
+  if (!strut_read_name(reader, key, "group")) group->broken = true;
+  if (map->kind != STRUT_TREE_MAP) {
+    strut_say(reader, map->place, "expected keys of a member, a node or a contact for %s, found %s",
+              strut_owner_text(reader, owner), strut_found(reader, map));
+    group->broken = true;
+    return;
+  }
+  group->items = strut_take(reader, &reader->scratch, map->count, sizeof *group->items);
+  for (const strut_tree *k = map->first; k && group->items; k = k->next->next)
+    read_item(reader, group, k, owner);
+}
+
+void strut_read_groups(strut_reader *reader) {
+  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_GROUPS);
+  if (!map) return;
+  reader->groups = strut_take(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  for (const strut_tree *key = map->first; key && reader->groups; key = key->next->next) {
+    read_group(reader, key, &reader->groups[reader->group_count]);
+    strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
+  }
+}
+
+size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups) {
+  size_t count = 0;
+  const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
+  for (; item && count < STRUT_MOST_GROUPS; item = value == item ? NULL : item->next) {
+    int32_t index = item->kind == STRUT_TREE_SCALAR
+                        ? strut_name_map_find(&reader->group_names, item->text)
+                        : -1;
+    if (index >= 0) groups[count++] = &reader->groups[index];
+  }
+  return count;
+}
+
+/* Does every name in `group:` name a group? Says so where not. */
+static bool check_names(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner) {
+  bool fine = true,
+       known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUPS)->state != STRUT_BROKEN;
+  const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
+  if (value->kind == STRUT_TREE_LIST && value->count > STRUT_MOST_GROUPS) {
+    strut_say(reader, value->place, "%s names %u groups, expected at most %d",
+              strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
+    return false;
+  }
+  for (; item && known; item = value == item ? NULL : item->next)
+    if (strut_read_reference(reader, item, key, owner, "group", &reader->group_names, group_name,
+                             reader->group_count) < 0)
+      fine = false;
+  return fine && known;
+}
+
+/* True where the fields have the key, or another one of its set, already. */
+static bool taken(strut_fields *fields, int key) {
+  int first = strut_room_first(fields->room), set = strut_key_at(key)->set;
+  if (strut_slot_of(fields, key)->state != STRUT_ABSENT) return true;
+  for (int i = 0; set && i < strut_room_size(fields->room); i++)
+    if (strut_key_at(first + i)->set == set && fields->slot[i].state != STRUT_ABSENT) return true;
+  return false;
+}
+
+static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
+                        strut_owner owner) {
+  size_t room = room_index(fields->room);
+  group->used = true;
+  for (size_t i = 0; i < group->count; i++) {
+    strut_group_item *item = &group->items[i];
+    int key = item->key[room];
+    if (key >= 0) {
+      if (taken(fields, key)) continue;
+      *strut_slot_of(fields, key) = item->slot;
+      strut_slot_of(fields, key)->from = item;
+      if (item->slot.state == STRUT_BROKEN || (item->nested && item->nested->broken))
+        fields->broken = true;
+    } else if (!item->refused[room]) {
+      item->refused[room] = true;
+      if (item->slot.state == STRUT_BROKEN) continue;
+      strut_say(reader, item->slot.key->place, "group '%s' gives '%s' to %s, but a %s has no '%s'",
+                group->name, item->slot.key->text, strut_owner_text(reader, owner),
+                strut_room_name(fields->room), item->slot.key->text);
+    }
+  }
+  if (group->broken) fields->broken = true;
+}
+
+void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key,
+                        strut_owner owner) {
+  const strut_slot *slot = strut_slot_of(fields, group_key);
+  strut_group *groups[STRUT_MOST_GROUPS];
+  if (slot->state == STRUT_BROKEN) {
+    reader->groups_unknown = true;
+    strut_excuse(fields);
+  }
+  if (slot->state != STRUT_GIVEN) return;
+  bool fine = check_names(reader, slot->value, strut_key_at(group_key)->name, owner);
+  size_t count = strut_groups_named(reader, slot->value, groups);
+  while (count > 0) apply_group(reader, fields, groups[--count], owner);
+  if (fine) return;
+  reader->groups_unknown = true;
+  fields->broken = true; /* what the unknown group would have given is not missing */
+  strut_excuse(fields);
+}
+
+void strut_report_unused_groups(strut_reader *reader) {
+  if (reader->groups_unknown || reader->top.broken) return;
+  for (size_t i = 0; i < reader->group_count; i++) {
+    const strut_group *group = &reader->groups[i];
+    if (group->used || group->broken) continue;
+    strut_say(reader, group->key->place, "nothing uses group '%s'", group->name);
+  }
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From a finding of the check to its place in the text. See reader.h. */
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+/* The item of a thing's groups that gives `key`; the later group wins. */
+static strut_group_item *group_item(strut_reader *reader, const strut_tree *map, const char *key) {
+  strut_tree *named = strut_tree_find(map, "group", NULL);
+  strut_group *groups[STRUT_MOST_GROUPS];
+  size_t count = named ? strut_groups_named(reader, named, groups) : 0;
+  while (count > 0) {
+    const strut_group *group = groups[--count];
+    for (size_t i = 0; i < group->count; i++)
+      if (strcmp(group->items[i].slot.key->text, key) == 0) return &group->items[i];
+  }
+  return NULL;
+}
+
+/* Own key's value, else the group's, else the thing's name. False: said there before. */
+static bool thing_place(strut_reader *reader, const strut_source *source, const char *key,
+                        strut_place *place) {
+  bool map = source->value->kind == STRUT_TREE_MAP;
+  const strut_tree *own = key && map ? strut_tree_find(source->value, key, NULL) : NULL;
+  strut_group_item *item = key && map && !own ? group_item(reader, source->value, key) : NULL;
+  *place = own ? own->place : item ? item->slot.value->place : source->key->place;
+  if (!item) return true;
+  bool first = !item->found;
+  item->found = true;
+  return first;
+}
+
+/* The value of a key in a mapping that there is once, else the key of the whole section. */
+static strut_place field_place(strut_reader *reader, strut_fields *fields, const char *key,
+                               int section) {
+  int found = key ? strut_key_find(fields->room, key) : -1;
+  const strut_slot *slot = found < 0 ? NULL : strut_slot_of(fields, found);
+  if (slot && slot->value) return slot->value->place;
+  const strut_tree *whole = strut_slot_of(&reader->top, section)->key;
+  return whole ? whole->place : strut_root_place(reader);
+}
+
+static bool node_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
+  const strut_source *source = &reader->node_source[finding->index];
+  bool mass = finding->key && strcmp(finding->key, "mass") == 0;
+  bool velocity = finding->key && strcmp(finding->key, "velocity") == 0;
+  if ((mass || !finding->key) && reader->ends_unknown) return false;
+  if (mass && reader->masses_unknown) return false;
+  if (!velocity) return thing_place(reader, source, finding->key, place);
+  const strut_tree *own = reader->velocity_source ? reader->velocity_source[finding->index] : NULL;
+  *place = own ? own->place : source->key->place;
+  return true;
+}
+
+/* Own key, group's key, ground's key, or what names the contact. */
+static bool contact_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
+  const strut_source *source = &reader->contact_source[finding->index];
+  *place = field_place(reader, &reader->ground, finding->key, STRUT_KEY_SCENE_GROUND);
+  if (!source->key) return true;
+  strut_place before = *place, mine;
+  bool fresh = thing_place(reader, source, finding->key, &mine);
+  bool ground = mine.line == source->key->place.line && mine.column == source->key->place.column &&
+                finding->key && strut_key_find(STRUT_ROOM_GROUND, finding->key) >= 0;
+  *place = ground ? before : mine;
+  return fresh;
+}
+
+static bool signal_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
+  const strut_tree *value = reader->signal_state[finding->index].value;
+  const strut_tree *own = finding->key && value->kind == STRUT_TREE_MAP
+                              ? strut_tree_find(value, finding->key, NULL)
+                              : NULL;
+  *place = own ? own->place : value->place;
+  return true;
+}
+
+/* Findings about the things of which there are many. */
+static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
+  const strut_source *sources[] = {[STRUT_ON_NODE] = reader->node_source,
+                                   [STRUT_ON_MEMBER] = reader->member_source,
+                                   [STRUT_ON_CONTACT] = reader->contact_source,
+                                   [STRUT_ON_ACTUATOR] = reader->actuator_source,
+                                   [STRUT_ON_LOAD] = reader->load_source,
+                                   [STRUT_ON_CONFIGURATION] = reader->configuration_source};
+  const strut_source *source = &sources[finding->subject][finding->index];
+  if (source->broken) return false;
+  if (finding->subject == STRUT_ON_CONFIGURATION && reader->ground.broken) return false;
+  if (finding->subject == STRUT_ON_NODE) return node_place(reader, finding, place);
+  if (finding->subject == STRUT_ON_CONTACT) return contact_place(reader, finding, place);
+  return thing_place(reader, source, finding->key, place);
+}
+
+/* Findings about the mappings of which there is one. */
+static bool single_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
+  const char *key = finding->key;
+  strut_fields *fields = &reader->top;
+  int section = STRUT_KEY_SCENE_NODES;
+  bool broken = false;
+  switch (finding->subject) {
+    case STRUT_ON_GROUND:
+      fields = &reader->ground, section = STRUT_KEY_SCENE_GROUND;
+      broken = key && strcmp(key, "slope") == 0 /* on its own */
+                   ? strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state != STRUT_GIVEN
+                   : fields->broken;
+      break;
+    case STRUT_ON_INITIAL:
+      fields = &reader->settle, section = STRUT_KEY_SCENE_INITIAL;
+      broken = fields->broken;
+      break;
+    case STRUT_ON_EQUILIBRIA:
+      fields = &reader->search, section = STRUT_KEY_SCENE_EQUILIBRIA;
+      broken = fields->broken || reader->ground.broken;
+      break;
+    case STRUT_ON_SOLVER:
+      fields = &reader->solver, section = STRUT_KEY_SCENE_SOLVER;
+      broken = fields->broken;
+      break;
+    case STRUT_ON_RUN:
+      fields = key && (strcmp(key, "last") == 0 || strcmp(key, "node") == 0) ? &reader->measure
+                                                                             : &reader->run;
+      section = STRUT_KEY_SCENE_RUN;
+      broken = fields->broken || reader->run.broken;
+      break;
+    case STRUT_ON_OUTPUT:
+      fields = &reader->output, section = STRUT_KEY_SCENE_OUTPUT;
+      broken = fields->broken || reader->run.broken;
+      break;
+    default:
+      broken = key && strut_key_find(STRUT_ROOM_SCENE, key) >= 0 &&
+               strut_slot_of(fields, strut_key_find(STRUT_ROOM_SCENE, key))->state == STRUT_BROKEN;
+  }
+  if (!broken) *place = field_place(reader, fields, key, section);
+  return !broken;
+}
+
+void strut_place_findings(strut_reader *reader, const strut_findings *findings) {
+  for (size_t i = 0; i < findings->count; i++) {
+    const strut_finding *finding = &findings->items[i];
+    strut_place place;
+    bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
+                finding->subject == STRUT_ON_CONTACT || finding->subject == STRUT_ON_ACTUATOR ||
+                finding->subject == STRUT_ON_LOAD || finding->subject == STRUT_ON_CONFIGURATION;
+    bool fresh = many                                  ? many_place(reader, finding, &place)
+                 : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
+                                                       : single_place(reader, finding, &place);
+    if (fresh) strut_say(reader, place, "%s", finding->message);
+  }
+}

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shapes with a name, which of them a run begins in, and how equilibria are looked for.
+   See reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+/* Most positions that all configurations may have together, to bound the memory. */
+enum { MOST_POSITIONS = 20000000 };
+
+static const strut_owner search_owner = {"the search for equilibria", NULL};
+
+static bool nodes_known(strut_reader *reader) {
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+}
+
+/* Of the configuration that is being read: the last one. */
+static void take_position(strut_reader *reader, int32_t node, const double pair[2],
+                          const strut_tree *value) {
+  strut_scene *scene = reader->scene;
+  (void)value;
+  memcpy(scene->configurations[scene->configuration_count - 1].position[node], pair,
+         2 * sizeof *pair);
+}
+
+/* One list of nodes; unknown ones are reported and left out. */
+static bool read_set(strut_reader *reader, const strut_tree *list, const char *key,
+                     strut_owner owner, strut_node_set *set) {
+  bool fine = true;
+  set->node = strut_take(reader, &reader->scene->arena, list->count, sizeof *set->node);
+  if (!set->node) return false;
+  for (const strut_tree *item = list->first; item; item = item->next) {
+    int32_t node = strut_read_reference(reader, item, key, owner, "node", &reader->node_names,
+                                        strut_node_name, reader->scene->node_count);
+    if (node >= 0)
+      set->node[set->count++] = node;
+    else
+      fine = false;
+  }
+  return fine;
+}
+
+/* `[n1, n4]`, or a list of such lists. */
+static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                      strut_node_set **sets, size_t *count) {
+  const strut_tree *list = slot->value;
+  const char *key = slot->key->text;
+  size_t lists = 0, alternatives;
+  bool fine = true;
+  for (const strut_tree *item = list->first; item; item = item->next)
+    if (item->kind == STRUT_TREE_LIST) lists++;
+  if (!list->count || (lists && lists != list->count)) {
+    strut_say(reader, list->place,
+              "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s",
+              key, strut_owner_text(reader, owner),
+              lists ? "a list of both" : strut_found(reader, list));
+    return false;
+  }
+  if (!nodes_known(reader)) return false;
+  alternatives = lists ? lists : 1;
+  *sets = strut_take(reader, &reader->scene->arena, alternatives, sizeof **sets);
+  if (!*sets) return false;
+  *count = alternatives;
+  if (!lists) return read_set(reader, list, key, owner, *sets);
+  const strut_tree *item = list->first;
+  for (size_t i = 0; i < alternatives; i++, item = item->next)
+    fine = read_set(reader, item, key, owner, &(*sets)[i]) && fine;
+  return fine;
+}
+
+/*
+ * Is the key one of a configuration, not a node that is called so? Where there is such a node, two
+ * scalars behind `contacts` are its position, and so is all but a mapping behind `shape`.
+ */
+static bool is_key(strut_reader *reader, const strut_tree *key) {
+  const strut_tree *value = key->next;
+  if (strut_key_find(STRUT_ROOM_CONFIGURATION, key->text) < 0) return false;
+  if (strut_name_map_find(&reader->node_names, key->text) < 0) return true;
+  if (strcmp(key->text, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)->name) == 0)
+    return value->kind == STRUT_TREE_MAP;
+  return value->kind == STRUT_TREE_LIST && value->count &&
+         !(value->count == 2 && value->first->kind == STRUT_TREE_SCALAR &&
+           value->first->next->kind == STRUT_TREE_SCALAR);
+}
+
+/* Reports nodes that stand beside `contacts` or `shape`; true where there are none. */
+static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner owner) {
+  bool fine = true;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    if (is_key(reader, key) || strut_name_map_find(&reader->node_names, key->text) < 0) continue;
+    strut_say(reader, key->place,
+              "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
+              strut_shown(reader, key->text), strut_owner_text(reader, owner),
+              strut_shown(reader, key->text));
+    fine = false;
+  }
+  return fine;
+}
+
+/* `{contacts: ..., shape: ...}` */
+static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                      strut_configuration *configuration) {
+  strut_fields fields;
+  if (!keys_only(reader, map, owner)) return false;
+  strut_read_fields(reader, STRUT_ROOM_CONFIGURATION, map, owner, &fields);
+  const strut_slot *contacts = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_CONTACTS);
+  const strut_slot *shape = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
+  bool fine = !fields.broken;
+  if (contacts->state == STRUT_GIVEN)
+    fine =
+        read_sets(reader, contacts, owner, &configuration->sets, &configuration->set_count) && fine;
+  configuration->shaped = shape->state == STRUT_GIVEN;
+  if (configuration->shaped)
+    fine =
+        strut_read_node_pairs(reader, shape->value, owner, STRUT_DIM_LENGTH, take_position) && fine;
+  return fine;
+}
+
+static bool read_configuration(strut_reader *reader, const strut_tree *key,
+                               strut_configuration *configuration) {
+  strut_owner owner = {"configuration", key->text};
+  const strut_tree *value = key->next;
+  bool fine = strut_read_name(reader, key, "configuration"), keys = false;
+  if (value->kind != STRUT_TREE_MAP) {
+    strut_say(reader, value->place, "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
+              strut_owner_text(reader, owner), strut_found(reader, value));
+    return false;
+  }
+  for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
+  if (keys) return read_keys(reader, value, owner, configuration) && fine;
+  configuration->shaped = true; /* `{}` is the drawn shape */
+  return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position) && fine;
+}
+
+void strut_read_configurations(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_CONFIGURATIONS);
+  if (!map) return;
+  if (map->count > MOST_POSITIONS / (scene->node_count + 1)) {
+    strut_say(reader, map->place, "%u configurations of %zu nodes are more than %d positions",
+              (unsigned)map->count, scene->node_count, (int)MOST_POSITIONS);
+    return;
+  }
+  scene->configurations =
+      strut_take(reader, &scene->arena, map->count, sizeof *scene->configurations);
+  reader->configuration_source =
+      strut_take(reader, &reader->scratch, map->count, sizeof *reader->configuration_source);
+  if (!scene->configurations || !reader->configuration_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    strut_configuration *configuration = &scene->configurations[scene->configuration_count];
+    configuration->name = strut_keep_text(reader, key->text);
+    if (!configuration->position)
+      configuration->position =
+          strut_take(reader, &scene->arena, scene->node_count, sizeof *configuration->position);
+    if (!configuration->position) return;
+    for (size_t i = 0; i < scene->node_count; i++)
+      memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
+    size_t index = strut_next_thing(reader, &scene->configuration_count);
+    strut_add_name(reader, &reader->configuration_names, key->text, index);
+    bool fine = read_configuration(reader, key, configuration);
+    reader->configuration_source[index] = (strut_source){key, key->next, !fine};
+  }
+}
+
+static const char *configuration_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->scene->configuration_count ? reader->scene->configurations[i].name : NULL;
+}
+
+int32_t strut_find_configuration(strut_reader *reader, int key) {
+  const strut_slot *slot = strut_slot_of(&reader->initial, key);
+  strut_owner owner = {"the initial state", NULL};
+  size_t count = reader->scene->configuration_count;
+  if (slot->state != STRUT_GIVEN) return -1;
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
+  strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
+  int32_t direct = strut_name_map_find(&reader->configuration_names, slot->value->text);
+  if (!p || !p->text)
+    return strut_read_reference(reader, slot->value, slot->key->text, owner, "configuration",
+                                &reader->configuration_names, configuration_name, count);
+  if (direct >= 0) {
+    strut_say(reader, slot->value->place,
+              "'%s' is both a configuration and a text parameter; rename one of them", p->name);
+    return -1;
+  }
+  p->used = true;
+  const char *text = p->set ? p->set->text : p->value->text;
+  int32_t index = strut_name_map_find(&reader->configuration_names, text);
+  strut_place place = !p->set              ? p->value->place
+                      : p->set->place.line ? p->set->place
+                                           : p->key->place;
+  if (index < 0)
+    strut_say(reader, place, "unknown configuration '%s' in parameter '%s'%s",
+              strut_shown(reader, text), p->name,
+              strut_hint(reader, text, configuration_name, reader, count));
+  return index;
+}
+
+/* A whole number from 0 to `most`; `fallback` where it is absent or was reported. */
+static double whole(strut_reader *reader, int key, double most, double fallback) {
+  const strut_slot *slot = strut_slot_of(&reader->search, key);
+  if (slot->state != STRUT_GIVEN) return fallback;
+  if (slot->number[0] == floor(slot->number[0]) && slot->number[0] <= most)
+    return slot->number[0] + 0.0; /* -0 is 0 */
+  strut_say(reader, slot->value->place, "'%s' of %s must be a whole number up to %.0f, found %g",
+            strut_key_at(key)->name, search_owner.kind, most, slot->number[0]);
+  reader->search.broken = true;
+  return fallback;
+}
+
+void strut_read_search(strut_reader *reader) {
+  strut_search *search = &reader->scene->search;
+  if (!strut_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_ROOM_EQUILIBRIA, search_owner.kind,
+                     &reader->search))
+    return;
+  search->starts = (int64_t)whole(reader, STRUT_KEY_EQUILIBRIA_STARTS, STRUT_MOST_STARTS, 0.0);
+  search->seed = (uint64_t)whole(reader, STRUT_KEY_EQUILIBRIA_SEED, STRUT_MOST_SEED, 1.0);
+  const strut_slot *supports = strut_slot_of(&reader->search, STRUT_KEY_EQUILIBRIA_SUPPORTS);
+  if (supports->state == STRUT_GIVEN &&
+      !read_sets(reader, supports, search_owner, &search->supports, &search->support_count))
+    reader->search.broken = true;
+}

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The initial state; solver, run and output. See reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+static void take_start(strut_reader *reader, int32_t node, const double pair[2],
+                       const strut_tree *value) {
+  (void)value;
+  memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
+}
+
+static void take_velocity(strut_reader *reader, int32_t node, const double pair[2],
+                          const strut_tree *value) {
+  memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
+  if (reader->velocity_source) reader->velocity_source[node] = value;
+}
+
+static void read_settle(strut_reader *reader, const strut_slot *slot) {
+  strut_settle *settle = &reader->scene->settle;
+  strut_owner owner = {"the settling", NULL};
+  settle->wanted = true;
+  if (slot->value->kind == STRUT_TREE_SCALAR) {
+    int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
+    settle->wanted = wanted == 1;
+    if (wanted >= 0) return;
+    strut_say(reader, slot->value->place,
+              "expected true, or a mapping such as {limit: 100 s}, for 'settle' of the initial "
+              "state, found %s",
+              strut_found(reader, slot->value));
+    return;
+  }
+  strut_read_fields(reader, STRUT_ROOM_SETTLE, slot->value, owner, &reader->settle);
+  settle->speed = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_SPEED, settle->speed);
+  settle->acceleration =
+      strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
+  settle->limit = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_LIMIT, settle->limit);
+  settle->evaluations = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_EVALUATIONS, 0.0);
+  const strut_slot *perturb = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_PERTURB);
+  settle->perturb = perturb->state == STRUT_GIVEN && perturb->word == 1;
+  const strut_slot *friction = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_FRICTION);
+  settle->friction = friction->state == STRUT_GIVEN && friction->word == 1;
+}
+
+/* Positions and velocities: the general first, then what is said of single nodes. */
+static void read_state(strut_reader *reader, int32_t configuration) {
+  strut_scene *scene = reader->scene;
+  const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
+  const strut_slot *velocities = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
+  const strut_slot *velocity = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITY);
+  for (size_t i = 0; configuration >= 0 && i < scene->node_count; i++)
+    memcpy(scene->nodes[i].start, scene->configurations[configuration].position[i],
+           sizeof scene->nodes[i].start);
+  if (positions->state == STRUT_GIVEN)
+    strut_read_node_pairs(reader, positions->value,
+                          (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
+                          take_start);
+  if (velocity->state == STRUT_GIVEN)
+    for (size_t i = 0; i < scene->node_count; i++)
+      for (int c = 0; c < 2; c++)
+        scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
+  if (velocities->state != STRUT_GIVEN) return;
+  reader->velocity_source =
+      strut_take(reader, &reader->scratch, scene->node_count, sizeof *reader->velocity_source);
+  strut_read_node_pairs(reader, velocities->value,
+                        (strut_owner){"'velocities' of the initial state", NULL},
+                        STRUT_DIM_VELOCITY, take_velocity);
+}
+
+/* An equilibrium says where every node is, and that it rests. */
+static void read_equilibrium(strut_reader *reader) {
+  static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
+                               STRUT_KEY_INITIAL_SETTLE};
+  const strut_slot *equilibrium = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  int32_t index = strut_find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  for (size_t i = 0; equilibrium->key && i < sizeof rivals / sizeof rivals[0]; i++) {
+    const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
+    if (!rival->key) continue;
+    strut_say(reader, rival->key->place,
+              "the initial state gives both 'equilibrium' and '%s', expected one of them",
+              rival->key->text);
+    return;
+  }
+  reader->scene->start_equilibrium = index;
+}
+
+void strut_read_initial(strut_reader *reader) {
+  if (!strut_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
+                     &reader->initial))
+    return;
+  read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
+  read_equilibrium(reader);
+  const strut_slot *settle = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE);
+  if (settle->state == STRUT_GIVEN) read_settle(reader, settle);
+}
+
+/* Actuators, loads and signals, one after the other, for suggestions. */
+static const char *driver_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  const strut_scene *scene = reader->scene;
+  if (i < scene->actuator_count) return scene->actuators[i].name;
+  i -= scene->actuator_count;
+  if (i < scene->load_count) return scene->loads[i].name;
+  i -= scene->load_count;
+  return i < reader->named_count ? reader->named[i].name : NULL;
+}
+
+/* What `of` names: an actuator, a load or a signal. */
+static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
+  const strut_scene *scene = reader->scene;
+  int32_t a = strut_name_map_find(&reader->actuator_names, value->text);
+  int32_t l = strut_name_map_find(&reader->load_names, value->text);
+  int32_t s = strut_name_map_find(&reader->signal_names, value->text);
+  int32_t found[3], count = 0;
+  if (a >= 0) found[count++] = scene->actuators[a].signal;
+  if (l >= 0 && (scene->loads[l].signal >= 0 || reader->load_source[l].broken || a < 0))
+    found[count++] = scene->loads[l].signal;
+  if (s >= 0) found[count++] = reader->named[s].index;
+  *broken = true;
+  if (!count) {
+    const int sections[] = {STRUT_KEY_SCENE_ACTUATORS, STRUT_KEY_SCENE_LOADS,
+                            STRUT_KEY_SCENE_SIGNALS};
+    for (int i = 0; i < 3; i++)
+      if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
+    size_t names = scene->actuator_count + scene->load_count + reader->named_count;
+    strut_say(reader, value->place, "unknown actuator, load or signal '%s' in 'of' of the run%s",
+              strut_shown(reader, value->text),
+              strut_hint(reader, value->text, driver_name, reader, names));
+    return -1;
+  }
+  for (int32_t i = 1; i < count; i++)
+    if (found[i] != found[0] && found[i] >= 0 && found[0] >= 0) {
+      strut_say(reader, value->place,
+                "'%s' names several things with different signals; rename one of them",
+                strut_shown(reader, value->text));
+      return -1;
+    }
+  if (found[0] < 0 && l >= 0 && a < 0 && !reader->load_source[l].broken) {
+    strut_say(reader, value->place, "load '%s' has no signal whose periods could be counted",
+              strut_shown(reader, value->text));
+    return -1;
+  }
+  *broken = found[0] < 0;
+  return found[0];
+}
+
+static void read_of(strut_reader *reader) {
+  strut_experiment *e = &reader->scene->experiment;
+  const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
+  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
+  bool broken = false;
+  if (of->state == STRUT_GIVEN && periods->state == STRUT_ABSENT) {
+    strut_say(reader, of->key->place, "the run gives 'of' without 'periods'");
+    reader->run.broken = true;
+  } else if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
+    strut_say(reader, top->key->place,
+              "the run lacks 'of', expected the actuator, load or signal whose periods count");
+    reader->run.broken = true;
+  } else if (of->state == STRUT_GIVEN) {
+    e->period_signal = find_signal_of(reader, of->value, &broken);
+    e->period_of = strut_keep_text(reader, of->value->text);
+    if (broken) reader->run.broken = true;
+  }
+}
+
+/* A window: in periods where the run is, else in seconds; skipped where that is unknown. */
+static void read_last(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+                      double *last) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  const strut_slot *duration = strut_slot_of(&reader->run, STRUT_KEY_RUN_DURATION);
+  if (slot->state != STRUT_GIVEN) return;
+  if (!periods->key && !duration->key) {
+    fields->broken = true;
+    if (reader->purpose == STRUT_FOR_STATICS) /* else what is missing is about to be said */
+      strut_say(reader, slot->key->place, "'last' of %s needs a run with a duration or periods",
+                owner.kind);
+    return;
+  }
+  strut_dimension dimension = periods->key ? STRUT_DIM_NONE : STRUT_DIM_TIME;
+  if (!strut_read_number(reader, slot->value, "last", owner, dimension, STRUT_RANGE_ABOVE_ZERO,
+                         last))
+    fields->broken = true;
+}
+
+static void read_steady(strut_reader *reader, const strut_slot *slot) {
+  strut_steady *steady = &reader->scene->experiment.steady;
+  strut_owner owner = {"the steady state", NULL};
+  steady->wanted = true;
+  if (slot->value->kind == STRUT_TREE_SCALAR) {
+    int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
+    steady->wanted = wanted == 1;
+    if (wanted >= 0) return;
+    strut_say(reader, slot->value->place,
+              "expected true, or a mapping such as {tolerance: 0.5 %%}, for 'steady' of the "
+              "measurement, found %s",
+              strut_found(reader, slot->value));
+    return;
+  }
+  strut_read_fields(reader, STRUT_ROOM_STEADY, slot->value, owner, &reader->steady);
+  steady->tolerance =
+      strut_number_or(&reader->steady, STRUT_KEY_STEADY_TOLERANCE, steady->tolerance);
+  steady->floor = strut_number_or(&reader->steady, STRUT_KEY_STEADY_FLOOR, steady->floor);
+  double successive =
+      strut_number_or(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE, steady->successive);
+  const strut_slot *shooting = strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SHOOTING);
+  steady->shooting = shooting->state == STRUT_GIVEN && shooting->word == 1;
+  bool whole = successive == floor(successive) && successive >= 2.0 && successive <= 16.0;
+  if (whole)
+    steady->successive = (int32_t)successive;
+  else
+    strut_say(reader, strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE)->value->place,
+              "expected a whole number from 2 to 16 for 'successive' of the steady state");
+}
+
+static void read_run(strut_reader *reader) {
+  strut_experiment *e = &reader->scene->experiment;
+  strut_owner owner = {"the measurement", NULL};
+  reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
+  if (!strut_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run)) return;
+  read_of(reader);
+  e->duration = strut_number_or(&reader->run, STRUT_KEY_RUN_DURATION, 0.0);
+  e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
+  const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
+  if (measure->state == STRUT_GIVEN) {
+    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value,
+                      (strut_owner){"the measurement", NULL}, &reader->measure);
+    const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
+    if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
+    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
+    const strut_slot *node = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_NODE);
+    bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+    if (node->state == STRUT_GIVEN && known)
+      e->measure_node = strut_read_reference(
+          reader, node->value, "node", (strut_owner){"the measurement", NULL}, "node",
+          &reader->node_names, strut_node_name, reader->scene->node_count);
+    strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
+  }
+  if (reader->measure.broken) reader->run.broken = true;
+  if (reader->run.broken) e->duration = e->periods = 0.0;
+}
+
+/*
+ * Settling keeps the file's step, whatever step, method or accuracy the run is given later: it then
+ * ends in the same bits. Below zero: by the stability limit.
+ */
+static void choose_settling_step(strut_reader *reader) {
+  strut_settle *settle = &reader->scene->settle;
+  if (!settle->wanted) return;
+  const strut_slot *step = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_STEP);
+  double given = reader->scene->experiment.step;
+  if (step->state == STRUT_GIVEN) given = step->number[0];
+  settle->step = given > 0.0 ? given : -1.0;
+}
+
+static void read_integrator(strut_reader *reader) {
+  const strut_slot *slot = strut_slot_of(&reader->solver, STRUT_KEY_SOLVER_INTEGRATOR);
+  char name[32];
+  if (slot->state != STRUT_GIVEN) return;
+  if (strut_word_at(strut_key_at(STRUT_KEY_SOLVER_INTEGRATOR)->words, slot->word, name,
+                    sizeof name))
+    reader->scene->experiment.integrator = strut_keep_text(reader, name);
+}
+
+void strut_read_experiment(strut_reader *reader) {
+  strut_experiment *e = &reader->scene->experiment;
+  read_run(reader);
+  if (strut_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
+                    &reader->solver)) {
+    e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
+    e->tolerance = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_TOLERANCE, e->tolerance);
+    e->refine = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE, 0.0);
+    e->refine_time = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE_TIME, 0.0);
+    e->accuracy = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_ACCURACY, 0.0);
+    e->budget = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_BUDGET, e->budget);
+    read_integrator(reader);
+  }
+  choose_settling_step(reader);
+  if (!strut_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
+                     &reader->output))
+    return;
+  e->output_every = strut_number_or(&reader->output, STRUT_KEY_OUTPUT_EVERY, 0.0);
+  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, (strut_owner){"the output", NULL},
+            &e->output_last);
+  const strut_slot *channels = strut_slot_of(&reader->output, STRUT_KEY_OUTPUT_CHANNELS);
+  if (channels->state == STRUT_GIVEN) e->channels = (unsigned)channels->word;
+}

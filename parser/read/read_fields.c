@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Mappings by the table of keys: unknown keys, missing keys, typed values. See reader.h. */
+#include <assert.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+strut_slot *strut_slot_of(strut_fields *fields, int key) {
+  assert(strut_key_at(key)->room == fields->room);
+  return &fields->slot[key - strut_room_first(fields->room)];
+}
+
+double strut_number_or(strut_fields *fields, int key, double fallback) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  return slot->state == STRUT_GIVEN ? slot->number[0] : fallback;
+}
+
+void strut_excuse(strut_fields *fields) {
+  for (int i = 0; i < strut_room_size(fields->room); i++)
+    if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
+}
+
+/* The keys of some rooms, one after the other, for suggestions. */
+typedef struct rooms_context {
+  const strut_room *rooms;
+  size_t count;
+} rooms_context;
+
+static int key_of_rooms(const rooms_context *rooms, size_t i) {
+  for (size_t r = 0; r < rooms->count; r++) {
+    size_t size = (size_t)strut_room_size(rooms->rooms[r]);
+    if (i < size) return strut_room_first(rooms->rooms[r]) + (int)i;
+    i -= size;
+  }
+  return -1;
+}
+
+static const char *name_of_rooms(const void *context, size_t i) {
+  int key = key_of_rooms(context, i);
+  return key < 0 ? NULL : strut_key_at(key)->name;
+}
+
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_room *rooms,
+                      size_t count, strut_owner owner) {
+  rooms_context context = {rooms, count};
+  const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
+                         ? NULL
+                         : strut_did_you_mean(key->text, name_of_rooms, &context);
+  strut_say(reader, key->place, "unknown key '%s' in %s%s%s%s", strut_shown(reader, key->text),
+            strut_owner_text(reader, owner), near ? "; did you mean '" : "", near ? near : "",
+            near ? "'?" : "");
+  for (int i = 0; near && key_of_rooms(&context, (size_t)i) >= 0; i++) {
+    int meant = key_of_rooms(&context, (size_t)i);
+    if (strcmp(strut_key_at(meant)->name, near) == 0) return meant;
+  }
+  return -1;
+}
+
+/* The words of a key, each with its end, for suggestions. */
+typedef struct words_context {
+  char word[32][24];
+  int count;
+} words_context;
+
+static const char *name_of_words(const void *context, size_t i) {
+  const words_context *words = context;
+  return i < (size_t)words->count ? words->word[i] : NULL;
+}
+
+static bool read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                      strut_owner owner, int *word) {
+  char expected[400];
+  if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
+    return true; /* scenes of a study are read by the million */
+  bool may_switch = value->kind == STRUT_TREE_SCALAR && !value->quoted;
+  if (may_switch && strcmp(key->words, "no|yes") == 0 &&
+      (*word = strut_switch_find(value->text)) >= 0)
+    return true;
+  strut_words_text(key->words, expected, sizeof expected);
+  if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
+  words_context words = {.count = 0};
+  while (words.count < 32 &&
+         strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
+    words.count++;
+  strut_say(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
+            strut_owner_text(reader, owner), strut_shown(reader, value->text),
+            strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
+  return false;
+}
+
+/* A list of words without repetition; bits gets one bit for each. */
+static bool read_words(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                       strut_owner owner, int *bits) {
+  bool fine = true;
+  *bits = 0;
+  for (const strut_tree *item = value->first; item; item = item->next) {
+    int word;
+    if (!read_word(reader, key, item, owner, &word)) {
+      fine = false;
+    } else if (*bits & 1 << word) {
+      strut_say(reader, item->place, "'%s' stands twice in '%s' of %s", item->text, key->name,
+                strut_owner_text(reader, owner));
+      fine = false;
+    } else {
+      *bits |= 1 << word;
+    }
+  }
+  return fine;
+}
+
+/* Supports: none, x, y, both, or a list of x and y. Bit 1: x, bit 2: y. */
+static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                       strut_owner owner, int *bits) {
+  if (value->kind != STRUT_TREE_LIST) return read_word(reader, key, value, owner, bits);
+  strut_key in_list = *key;
+  in_list.words = "x|y";
+  return read_words(reader, &in_list, value, owner, bits);
+}
+
+static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
+  char expected[300];
+  strut_say(reader, value->place, "expected %s for '%s' of %s, found %s",
+            strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
+            strut_owner_text(reader, owner), strut_found(reader, value));
+  return false;
+}
+
+/* Is the value of a shape that the type allows? What is inside is somebody else's to read. */
+static bool shape_fits(strut_key_type type, const strut_tree *value) {
+  bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
+  switch (type) {
+    case STRUT_TYPE_WORDS:
+    case STRUT_TYPE_KEEP:
+    case STRUT_TYPE_SIGNALS:
+    case STRUT_TYPE_AXES:
+    case STRUT_TYPE_TIMES:
+    case STRUT_TYPE_TABLE:
+    case STRUT_TYPE_NODE_SETS:
+      return value->kind == STRUT_TREE_LIST;
+    case STRUT_TYPE_NODE_PAIR:
+      return value->kind == STRUT_TREE_LIST && value->count == 2;
+    case STRUT_TYPE_MAP:
+    case STRUT_TYPE_THINGS:
+      return value->kind == STRUT_TREE_MAP;
+    case STRUT_TYPE_SIGNAL:
+    case STRUT_TYPE_SETTLE:
+    case STRUT_TYPE_STEADY:
+      return scalar || value->kind == STRUT_TREE_MAP;
+    case STRUT_TYPE_GROUPS:
+    case STRUT_TYPE_FIXED:
+      return scalar || value->kind == STRUT_TREE_LIST;
+    case STRUT_TYPE_CONTACT_NODES:
+      return value->kind == STRUT_TREE_LIST || (scalar && strcmp(value->text, "all") == 0);
+    case STRUT_TYPE_VERSION:
+    case STRUT_TYPE_TEXT:
+    case STRUT_TYPE_NAME:
+    case STRUT_TYPE_EXPRESSION:
+      return scalar;
+    default:
+      return true; /* numbers and words say it themselves */
+  }
+}
+
+static bool read_version(strut_reader *reader, const strut_tree *value) {
+  if (strcmp(value->text, "1") == 0) return true;
+  strut_say(reader, value->place,
+            "expected the language version 1 for 'strut', found '%s'; "
+            "this program knows version 1 only",
+            strut_shown(reader, value->text));
+  return false;
+}
+
+/* The value proper; false where it has been reported. */
+static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                       strut_owner owner, strut_slot *slot) {
+  strut_dimension dimension = strut_measure_dimension(key->measure);
+  switch (key->type) {
+    case STRUT_TYPE_VERSION:
+      return read_version(reader, value);
+    case STRUT_TYPE_NUMBER:
+      if (key->measure == STRUT_MEASURE_CONTEXT) return true;
+      return strut_read_number(reader, value, key->name, owner, dimension, key->range,
+                               &slot->number[0]);
+    case STRUT_TYPE_PAIR:
+      if (key->room == STRUT_ROOM_SCENE) return true; /* its parameters are not read yet */
+      return strut_read_pair(reader, value, key->name, owner, dimension, slot->number);
+    case STRUT_TYPE_WORD:
+      return read_word(reader, key, value, owner, &slot->word);
+    case STRUT_TYPE_WORDS:
+      return read_words(reader, key, value, owner, &slot->word);
+    case STRUT_TYPE_FIXED:
+      return read_fixed(reader, key, value, owner, &slot->word);
+    default:
+      return true;
+  }
+}
+
+void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
+                     const strut_tree *value, strut_owner owner, strut_slot *slot) {
+  const strut_key *k = strut_key_at(key);
+  *slot = (strut_slot){.key = key_tree, .value = value};
+  bool fine = shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
+                                         : refuse(reader, key, value, owner);
+  slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
+}
+
+/* Another key of the same set that the mapping itself gives, or NULL. */
+static const strut_tree *rival(const strut_fields *fields, int key) {
+  int first = strut_room_first(fields->room), set = strut_key_at(key)->set;
+  for (int i = 0; set && i < strut_room_size(fields->room); i++)
+    if (first + i != key && strut_key_at(first + i)->set == set && fields->slot[i].key)
+      return fields->slot[i].key;
+  return NULL;
+}
+
+static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const strut_tree *key_tree,
+                             strut_owner owner) {
+  int key = strut_key_find(fields->room, key_tree->text);
+  if (key < 0) {
+    int meant = strut_unknown_key(reader, key_tree, &fields->room, 1, owner);
+    fields->broken = true;
+    if (meant >= 0 && strut_slot_of(fields, meant)->state == STRUT_ABSENT)
+      strut_slot_of(fields, meant)->state = STRUT_BROKEN;
+    return;
+  }
+  strut_slot *slot = strut_slot_of(fields, key);
+  const strut_tree *other = rival(fields, key);
+  strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
+  if (other) {
+    strut_say(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
+              strut_owner_text(reader, owner), other->text, key_tree->text);
+    slot->state = STRUT_BROKEN;
+  }
+  if (slot->state == STRUT_BROKEN) fields->broken = true;
+}
+
+/* Of friction: `mu` says both coefficients. */
+static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
+  const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
+  const strut_slot *rival = statics->key ? statics : kinetics;
+  if (!mu->key || !rival->key) return;
+  strut_say(reader, mu->key->place,
+            "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
+            strut_owner_text(reader, owner), rival->key->text);
+  fields->broken = true;
+}
+
+void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *map,
+                       strut_owner owner, strut_fields *fields) {
+  *fields = (strut_fields){.room = room, .map = map};
+  if (map->kind != STRUT_TREE_MAP) {
+    strut_say(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
+              strut_owner_text(reader, owner), strut_found(reader, map));
+    fields->broken = true;
+    strut_excuse(fields);
+    return;
+  }
+  for (const strut_tree *k = map->first; k; k = k->next->next)
+    read_pair_of_map(reader, fields, k, owner);
+  if (room == STRUT_ROOM_FRICTION) check_rivals(reader, fields, owner);
+}
+
+void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                   strut_place place) {
+  int first = strut_room_first(fields->room);
+  for (int i = 0; i < strut_room_size(fields->room); i++) {
+    char expected[300];
+    strut_slot *slot = &fields->slot[i];
+    if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
+    if (!reader->holes)
+      strut_say(reader, place, "%s lacks '%s', expected %s", strut_owner_text(reader, owner),
+                strut_key_at(first + i)->name,
+                strut_key_expected(first + i, expected, sizeof expected));
+    slot->state = STRUT_BROKEN;
+    fields->broken = true;
+  }
+}
+
+bool strut_section(strut_reader *reader, int key, strut_room room, const char *owner,
+                   strut_fields *fields) {
+  const strut_slot *slot = strut_slot_of(&reader->top, key);
+  *fields = (strut_fields){.room = room, .broken = slot->state == STRUT_BROKEN};
+  if (fields->broken) strut_excuse(fields);
+  if (slot->state != STRUT_GIVEN) return false;
+  strut_read_fields(reader, room, slot->value, (strut_owner){owner, NULL}, fields);
+  return true;
+}
+
+const strut_tree *strut_things(strut_reader *reader, int key) {
+  const strut_slot *slot = strut_slot_of(&reader->top, key);
+  return slot->state == STRUT_GIVEN ? slot->value : NULL;
+}

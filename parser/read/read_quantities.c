@@ -1,0 +1,383 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measured quantities: `quantities` of the measurement. See reader.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/language/quantities.h"
+#include "parser/read/reader.h"
+
+/* Most characters of a name that a message repeats. */
+enum { SHOWN_MOST = 40 };
+
+static const struct column_row {
+  strut_column_owner owner;
+  const char *word;
+  strut_dimension dimension;
+} columns[] = {
+#define STRUT_COLUMN_ROW(id, owner, word, kg, m, s, angle)                                         \
+  {STRUT_COLUMN_OF_##owner, word, {kg, m, s, angle}},
+    STRUT_COLUMN_TABLE(STRUT_COLUMN_ROW)
+#undef STRUT_COLUMN_ROW
+};
+
+/* The owners that are no things of the scene. */
+static const struct group_row {
+  const char *word, *name;
+  strut_column_owner owner;
+} groups[] = {{"com", "the centre of mass", STRUT_COLUMN_OF_CENTRE},
+              {"energy", "the energy", STRUT_COLUMN_OF_ENERGY},
+              {"work", "the work", STRUT_COLUMN_OF_WORK},
+              {"losses", "the losses", STRUT_COLUMN_OF_LOSSES}};
+enum { GROUP_COUNT = sizeof groups / sizeof groups[0] };
+
+const char *strut_column_word(strut_column_kind kind) { return columns[kind].word; }
+strut_column_owner strut_column_owner_of(strut_column_kind kind) { return columns[kind].owner; }
+
+const char *strut_column_group(strut_column_owner owner) {
+  for (size_t i = 0; i < GROUP_COUNT; i++)
+    if (groups[i].owner == owner) return groups[i].word;
+  return NULL;
+}
+
+static bool is(strut_piece piece, const char *word) {
+  return strlen(word) == piece.length && memcmp(word, piece.text, piece.length) == 0;
+}
+
+/* Which owners a name has, and what a message calls it. */
+typedef struct found_owner {
+  unsigned owners; /* bits 1 << strut_column_owner */
+  int32_t node, member;
+  const char *what; /* "node", "member", "the energy" */
+} found_owner;
+
+#define OWNER(name) (1u << STRUT_COLUMN_OF_##name)
+
+static int shown(size_t length) { return length > SHOWN_MOST ? SHOWN_MOST : (int)length; }
+
+/* A piece of the text as a text of its own, in scratch. */
+static const char *text_of(strut_reader *reader, strut_piece piece) {
+  const char *text = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  if (!text) reader->out_of_memory = true;
+  return text ? text : "";
+}
+
+/* Nodes, members and the owners that every scene has, for suggestions. */
+static const char *owner_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  const strut_scene *scene = reader->scene;
+  if (i < scene->node_count) return scene->nodes[i].name;
+  i -= scene->node_count;
+  if (i < scene->member_count) return scene->members[i].name;
+  i -= scene->member_count;
+  return i < GROUP_COUNT ? groups[i].word : NULL;
+}
+
+static bool all_known(strut_reader *reader) {
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN &&
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
+}
+
+static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
+  found_owner found = {.node = -1, .member = -1};
+  const char *text = text_of(reader, name);
+  if (!kind || strcmp(kind, "member") == 0)
+    found.member = strut_name_map_find(&reader->member_names, text);
+  if (!kind || strcmp(kind, "node") == 0)
+    found.node = strut_name_map_find(&reader->node_names, text);
+  if (found.member >= 0) found.owners |= OWNER(MEMBER), found.what = "member";
+  if (found.node >= 0) found.owners |= OWNER(NODE) | OWNER(CONTACT), found.what = "node";
+  for (size_t i = 0; i < GROUP_COUNT && !kind; i++)
+    if (is(name, groups[i].word)) {
+      found.owners |= 1u << groups[i].owner;
+      if (!found.what) found.what = groups[i].name;
+    }
+  return found;
+}
+
+/* The words of some owners, one after the other, for suggestions. */
+static const char *field_name(const void *context, size_t i) {
+  const unsigned *owners = context;
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
+    if (*owners >> columns[k].owner & 1u && i-- == 0) return columns[k].word;
+  return NULL;
+}
+
+static size_t field_count(unsigned owners) {
+  size_t count = 0;
+  while (field_name(&owners, count)) count++;
+  return count;
+}
+
+/* "x, y or vx" */
+static const char *field_list(unsigned owners, char *text, size_t size) {
+  size_t count = field_count(owners), used = 0;
+  text[0] = '\0';
+  for (size_t i = 0; i < count && used < size; i++)
+    used += (size_t)snprintf(text + used, size - used, "%s%s",
+                             i == 0           ? ""
+                             : i + 1 == count ? " or "
+                                              : ", ",
+                             field_name(&owners, i));
+  return text;
+}
+
+static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owner,
+                        strut_refusal *refusal) {
+  if (!all_known(reader)) return -1;
+  size_t count = reader->scene->node_count + reader->scene->member_count + GROUP_COUNT;
+  snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
+           kind ? kind : "node or member", shown(owner.length), owner.text,
+           strut_hint(reader, text_of(reader, owner), owner_name, reader, count));
+  return -1;
+}
+
+static int refuse_field(strut_reader *reader, const found_owner *found, strut_piece owner,
+                        strut_piece field, strut_refusal *refusal) {
+  char list[200];
+  bool thing = found->node >= 0 || found->member >= 0;
+  const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
+                                field_count(found->owners));
+  snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
+           found->what, thing ? " '" : "", thing ? shown(owner.length) : 0, owner.text,
+           thing ? "'" : "", shown(field.length), field.text, hint, *hint ? "" : ", expected ",
+           *hint ? "" : field_list(found->owners, list, sizeof list));
+  return -1;
+}
+
+static bool has_contact(const strut_scene *scene, int32_t node) {
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (scene->contacts[i].node == node) return true;
+  return false;
+}
+
+/* Do the columns of the ground mean anything for this node? */
+static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
+                    strut_refusal *refusal) {
+  const strut_scene *scene = reader->scene;
+  bool of_contact = columns[kind].owner == STRUT_COLUMN_OF_CONTACT;
+  if (!of_contact && kind != STRUT_COLUMN_HEIGHT) return true;
+  const strut_slot *ground = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND);
+  if (ground->state == STRUT_BROKEN || reader->ground.broken) return false; /* reported */
+  if (ground->state == STRUT_ABSENT)
+    snprintf(refusal->text, sizeof refusal->text,
+             "there is no ground, so node '%s' has no '%s'; 'ground' says what it is",
+             scene->nodes[node].name, columns[kind].word);
+  else if (of_contact && !has_contact(scene, node))
+    snprintf(refusal->text, sizeof refusal->text,
+             "node '%s' does not touch the ground, so it has no '%s'; 'nodes' of the ground says "
+             "which nodes may",
+             scene->nodes[node].name, columns[kind].word);
+  else
+    return true;
+  return false;
+}
+
+/* A word alone: time, or a thing whose column is missing. */
+static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
+                     strut_dimension *dimension, strut_refusal *refusal) {
+  char list[200];
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
+    if (columns[k].owner == STRUT_COLUMN_OF_RUN && is(word, columns[k].word)) {
+      column->kind = (strut_column_kind)k;
+      *dimension = columns[k].dimension;
+      return 1;
+    }
+  found_owner found = find_owner(reader, NULL, word);
+  if (!found.owners) return 0;
+  snprintf(refusal->text, sizeof refusal->text, "'%.*s' alone is no number; write '%.*s.' and %s",
+           shown(word.length), word.text, shown(word.length), word.text,
+           field_list(found.owners, list, sizeof list));
+  return -1;
+}
+
+static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                       strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  strut_reader *reader = context;
+  if (!owner.length && !kind) return find_word(reader, field, column, dimension, refusal);
+  found_owner found = find_owner(reader, kind, owner);
+  if (!found.owners) return refuse_owner(reader, kind, owner, refusal);
+  int count = 0;
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++) {
+    if (!(found.owners >> columns[k].owner & 1u) || !is(field, columns[k].word)) continue;
+    count++;
+    column->kind = (strut_column_kind)k;
+    *dimension = columns[k].dimension;
+  }
+  if (!count) return refuse_field(reader, &found, owner, field, refusal);
+  if (count > 1) {
+    snprintf(refusal->text, sizeof refusal->text,
+             "'%.*s.%.*s' means two things, since a node or a member is called '%.*s'; rename it, "
+             "or write node(%.*s) or member(%.*s) for it",
+             shown(owner.length), owner.text, shown(field.length), field.text, shown(owner.length),
+             owner.text, shown(owner.length), owner.text, shown(owner.length), owner.text);
+    return -1;
+  }
+  strut_column_owner of = columns[column->kind].owner;
+  if (of == STRUT_COLUMN_OF_MEMBER) column->item = found.member;
+  if (of != STRUT_COLUMN_OF_NODE && of != STRUT_COLUMN_OF_CONTACT) return 1;
+  column->item = found.node;
+  return touches(reader, column->kind, found.node, refusal) ? 1 : -1;
+}
+
+static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  strut_reader *reader = context;
+  const strut_piece names[2] = {first, second};
+  int32_t node[2];
+  for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++)
+    if (columns[k].owner == STRUT_COLUMN_OF_PAIR && is(word, columns[k].word)) {
+      column->kind = (strut_column_kind)k;
+      *dimension = columns[k].dimension;
+    }
+  for (int k = 0; k < 2; k++) {
+    const char *name = text_of(reader, names[k]);
+    node[k] = strut_name_map_find(&reader->node_names, name);
+    if (node[k] >= 0) continue;
+    if (all_known(reader))
+      snprintf(refusal->text, sizeof refusal->text, "unknown node '%.*s'%s", shown(names[k].length),
+               names[k].text,
+               strut_hint(reader, name, strut_node_name, reader, reader->scene->node_count));
+    return -1;
+  }
+  if (node[0] == node[1]) {
+    snprintf(refusal->text, sizeof refusal->text, "'%.*s' needs two different nodes",
+             (int)word.length, word.text);
+    return -1;
+  }
+  column->item = node[0], column->other = node[1];
+  return 1;
+}
+
+/* The program in the scene's own memory. */
+static void keep_program(strut_reader *reader, const strut_compiler *c,
+                         strut_quantity_definition *d) {
+  strut_scene *scene = reader->scene;
+  char unit[STRUT_SUFFIX_TEXT];
+  d->program = strut_take(reader, &scene->arena, c->length, sizeof *d->program);
+  if (!d->program) return;
+  d->length = c->length;
+  d->depth = c->depth;
+  for (size_t i = 0; i < c->length; i++) {
+    const strut_compiled *from = &c->program[i];
+    d->program[i] = from->instruction;
+    if (from->instruction.operation != STRUT_OPERATION_NUMBER) continue;
+    strut_dimension_suffix(from->dimension, unit, sizeof unit);
+    if (*unit) d->program[i].unit = strut_keep_text(reader, unit);
+  }
+}
+
+/* The expression; *dimension is that of its values. */
+static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                            strut_quantity_definition *d, strut_dimension *dimension) {
+  size_t most = strlen(value->text) + 1;
+  strut_compiler compiler = {.column = find_column, .pair = find_pair, .context = reader};
+  strut_quantity q;
+  compiler.program = strut_take(reader, &reader->scratch, most, sizeof *compiler.program);
+  if (!compiler.program) return false;
+  if (!strut_read_program(reader, value, "of", owner, &compiler, &q)) {
+    reader->failed = true;
+    return false;
+  }
+  if (!q.varies) {
+    strut_say(reader, value->place,
+              "'of' of %s does not change in time, expected a column of the motion such as com.vy, "
+              "NODE.y or MEMBER.force",
+              strut_owner_text(reader, owner));
+    return false;
+  }
+  keep_program(reader, &compiler, d);
+  *dimension = q.bare ? STRUT_DIM_NONE : q.dimension;
+  return true;
+}
+
+/* Without a unit it is relative, else in the unit of the quantity. */
+static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                          strut_dimension dimension, bool known, strut_quantity_definition *d) {
+  char expected[120], found[80];
+  strut_quantity q;
+  if (slot->state != STRUT_GIVEN) return;
+  bool fine = strut_read_scalar(reader, slot->value, "accuracy", owner, "a number such as '1 %'") &&
+              strut_read_quantity(reader, slot->value, "accuracy", owner, &q);
+  if (!fine) return;
+  bool relative = q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE);
+  bool plain = strut_dimension_equal(dimension, STRUT_DIM_NONE);
+  if (!relative && known && !strut_dimension_equal(q.dimension, dimension))
+    strut_say(reader, slot->value->place,
+              "expected a number without unit such as '1 %%'%s%s for 'accuracy' of %s, found %s",
+              plain ? "" : " or ",
+              plain ? "" : strut_dimension_name(dimension, expected, sizeof expected),
+              strut_owner_text(reader, owner),
+              strut_dimension_name(q.dimension, found, sizeof found));
+  else if (!(q.value > 0.0))
+    strut_say(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
+              strut_owner_text(reader, owner), q.value);
+  else
+    *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
+}
+
+/* Within {...} a comma ends a text that has no quotes: angle(a, b) becomes "angle(a". */
+static bool ends_at_comma(strut_reader *reader, const strut_tree *of, strut_owner owner) {
+  int open = 0;
+  if (!of || of->kind != STRUT_TREE_SCALAR || of->quoted) return false;
+  for (const char *c = of->text; *c; c++) open += *c == '(' ? 1 : *c == ')' ? -1 : 0;
+  if (open <= 0 || !of->next) return false;
+  strut_say(
+      reader, of->place,
+      "in 'of' of %s: the text ends here, since a comma ends it within '{...}'; put the whole "
+      "expression in quotes",
+      strut_owner_text(reader, owner));
+  return true;
+}
+
+static void read_quantity(strut_reader *reader, const strut_tree *key,
+                          strut_quantity_definition *d) {
+  strut_owner owner = {"quantity", key->text};
+  char unit[STRUT_SUFFIX_TEXT];
+  strut_dimension dimension = STRUT_DIM_NONE;
+  strut_fields fields = {.room = STRUT_ROOM_QUANTITY};
+  const strut_tree *of = key->next;
+  bool map = of->kind == STRUT_TREE_MAP;
+  if (ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, owner)) return;
+  if (map) {
+    strut_read_fields(reader, STRUT_ROOM_QUANTITY, of, owner, &fields);
+    strut_require(reader, &fields, owner, key->place);
+    const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_QUANTITY_OF);
+    of = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  } else if (!strut_read_scalar(reader, of, key->text, (strut_owner){"the quantities", NULL},
+                                "an expression such as com.vy, or a mapping such as {of: com.vy, "
+                                "take: max}")) {
+    return;
+  }
+  bool known = of && read_expression(reader, of, owner, d, &dimension);
+  const strut_slot *take = strut_slot_of(&fields, STRUT_KEY_QUANTITY_TAKE);
+  if (take->state == STRUT_GIVEN) d->take = (strut_reduction)take->word;
+  if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
+  read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
+                known, d);
+  strut_dimension_suffix(dimension, unit, sizeof unit);
+  d->unit = *unit ? strut_keep_text(reader, unit) : "1";
+}
+
+/* A study's table has a column for it, and `keep` names it. */
+static bool may_be_called(strut_reader *reader, const strut_tree *key) {
+  if (!strut_read_name(reader, key, "quantity")) return false;
+  if (strut_word_find(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, key->text) < 0) return true;
+  strut_say(reader, key->place,
+            "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
+            key->text);
+  return false;
+}
+
+void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
+  strut_experiment *e = &reader->scene->experiment;
+  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *map = slot->value;
+  e->quantities = strut_take(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
+  if (!e->quantities) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    strut_quantity_definition *d = &e->quantities[e->quantity_count++];
+    d->name = strut_keep_text(reader, key->text);
+    d->unit = "1";
+    if (may_be_called(reader, key)) read_quantity(reader, key, d);
+  }
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Signals, and what they drive: actuators and loads. See reader.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* What the values of a signal under construction measure. */
+typedef struct meaning {
+  const strut_dimension *expected; /* NULL: anything */
+  strut_dimension dimension;       /* found so far, unless bare */
+  bool bare;
+} meaning;
+
+static const char *signal_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->named_count ? reader->named[i].name : NULL;
+}
+
+/* Appends a signal; returns its index, or -1 where memory is out. */
+static int32_t add_signal(strut_reader *reader, const strut_signal *signal, const meaning *m,
+                          const strut_tree *value) {
+  if (reader->signal_count == reader->signal_capacity) {
+    size_t capacity = reader->signal_capacity ? 2 * reader->signal_capacity : 16;
+    strut_signal *signals = strut_reallocate(reader->signals, capacity, sizeof *signals);
+    if (signals) reader->signals = signals;
+    strut_signal_state *state = strut_reallocate(reader->signal_state, capacity, sizeof *state);
+    if (state) reader->signal_state = state;
+    if (!signals || !state) {
+      reader->out_of_memory = true;
+      return -1;
+    }
+    reader->signal_capacity = capacity;
+  }
+  size_t i = reader->signal_count++;
+  reader->signals[i] = *signal;
+  reader->signal_state[i] = (strut_signal_state){m->dimension, m->bare, value};
+  return (int32_t)i;
+}
+
+/* A value of the signal: as expected, or of the same dimension as those before it. */
+static bool read_value(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, meaning *m, double *number) {
+  strut_quantity quantity;
+  if (m->expected || !m->bare)
+    return strut_read_number(reader, value, key, owner, m->expected ? *m->expected : m->dimension,
+                             STRUT_RANGE_ANY, number);
+  if (!strut_read_scalar(reader, value, key, owner, "a number") ||
+      !strut_read_quantity(reader, value, key, owner, &quantity))
+    return false;
+  *number = quantity.value;
+  m->bare = quantity.bare;
+  m->dimension = quantity.dimension;
+  return true;
+}
+
+/* A sine, half-sine, square or ramp. The keys of their rooms have the same names. */
+static bool read_wave(strut_reader *reader, strut_room room, const strut_tree *map,
+                      strut_owner owner, meaning *m, strut_signal *signal) {
+  strut_fields fields;
+  strut_read_fields(reader, room, map, owner, &fields);
+  strut_require(reader, &fields, owner, map->place);
+  bool fine = !fields.broken;
+  for (int i = 0; i < strut_room_size(room); i++) {
+    const strut_slot *slot = &fields.slot[i];
+    const char *name = strut_key_at(strut_room_first(room) + i)->name;
+    if (slot->state != STRUT_GIVEN) continue;
+    if (strcmp(name, "amplitude") == 0) {
+      fine = read_value(reader, slot->value, name, owner, m, &signal->amplitude) && fine;
+    } else if (strcmp(name, "frequency") == 0) {
+      signal->frequency = slot->number[0];
+    } else if (strcmp(name, "phase") == 0) {
+      signal->phase = slot->number[0] / TWO_PI;
+    } else if (strcmp(name, "start") == 0) {
+      signal->start = slot->number[0];
+    } else {
+      signal->stop = slot->number[0];
+    }
+  }
+  return fine;
+}
+
+static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
+                       strut_signal *signal) {
+  double *time = strut_take(reader, &reader->scene->arena, list->count, sizeof *time);
+  double *value = strut_take(reader, &reader->scene->arena, list->count, sizeof *value);
+  bool fine = true;
+  if (!time || !value) return false;
+  for (const strut_tree *point = list->first; point; point = point->next) {
+    if (point->kind != STRUT_TREE_LIST || point->count != 2) {
+      strut_say(reader, point->place,
+                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
+                strut_owner_text(reader, owner), strut_found(reader, point));
+      fine = false;
+      continue;
+    }
+    size_t i = signal->point_count++;
+    fine = strut_read_number(reader, point->first, "table", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
+                             &time[i]) &&
+           fine;
+    fine = read_value(reader, point->first->next, "table", owner, m, &value[i]) && fine;
+  }
+  signal->time = time;
+  signal->value = value;
+  return fine;
+}
+
+static int32_t read_signal(strut_reader *reader, const strut_tree *value, const char *key,
+                           strut_owner owner, const strut_dimension *expected);
+
+static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
+                     strut_signal *signal) {
+  int32_t *terms = strut_take(reader, &reader->scene->arena, list->count, sizeof *terms);
+  bool fine = terms != NULL;
+  for (const strut_tree *item = terms ? list->first : NULL; item; item = item->next) {
+    const strut_dimension *expected = m->expected ? m->expected : m->bare ? NULL : &m->dimension;
+    int32_t term = read_signal(reader, item, "sum", owner, expected);
+    if (term < 0) {
+      fine = false;
+      continue;
+    }
+    terms[signal->term_count++] = term;
+    if (!m->expected && m->bare && !reader->signal_state[term].bare) {
+      m->bare = false;
+      m->dimension = reader->signal_state[term].dimension;
+    }
+  }
+  signal->terms = terms;
+  return fine;
+}
+
+/* A signal written out: a mapping with one key. */
+static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                            const strut_dimension *expected) {
+  static const strut_room rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
+                                     STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
+  meaning m = {expected, STRUT_DIM_NONE, true};
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, owner, &fields);
+  if (map->count != 1 && !fields.broken)
+    strut_say(reader, map->place, "expected one kind of signal for %s, found %u",
+              strut_owner_text(reader, owner), (unsigned)map->count);
+  if (map->count != 1 || fields.broken) return -1;
+  int chosen = 0;
+  while (fields.slot[chosen].state != STRUT_GIVEN) chosen++;
+  const strut_tree *value = fields.slot[chosen].value;
+  strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
+  bool fine;
+  if (signal.kind == STRUT_CONSTANT)
+    fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude);
+  else if (signal.kind == STRUT_TABLE)
+    fine = read_table(reader, value, owner, &m, &signal);
+  else if (signal.kind == STRUT_SUM)
+    fine = read_sum(reader, value, owner, &m, &signal);
+  else
+    fine = read_wave(reader, rooms[chosen], value, owner, &m, &signal);
+  if (m.expected) m.bare = false, m.dimension = *m.expected;
+  return fine ? add_signal(reader, &signal, &m, value) : -1;
+}
+
+static const char *stacked_name(strut_reader *reader, size_t i) {
+  return reader->signal_stack[i]->name;
+}
+
+/* The signal of that number among the named ones, read when it is first needed. */
+static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
+  strut_owner owner = {"signal", named->name};
+  if (named->state == STRUT_SIGNAL_READ) return named->index;
+  if (named->state == STRUT_SIGNAL_READING) {
+    size_t first = 0;
+    while (reader->signal_stack[first] != named) first++;
+    strut_say(reader, named->key->place, "signal '%s' contains itself: %s", named->name,
+              strut_circle(reader, stacked_name, first, reader->signal_depth));
+    return -1;
+  }
+  if (reader->signal_depth >= STRUT_DEEPEST_SIGNAL) {
+    strut_say(reader, named->key->place, "signals contain each other more than %d deep",
+              STRUT_DEEPEST_SIGNAL);
+    return -1;
+  }
+  named->state = STRUT_SIGNAL_READING;
+  reader->signal_stack[reader->signal_depth++] = named;
+  const strut_tree *value = named->key->next;
+  bool fine = strut_read_name(reader, named->key, "signal");
+  int32_t index = read_signal(reader, value, named->name, owner, NULL);
+  if (index >= 0 && value->kind == STRUT_TREE_SCALAR) {
+    /* Another name for a signal: a sum of one term. */
+    int32_t *term = strut_take(reader, &reader->scene->arena, 1, sizeof *term);
+    strut_signal sum = strut_signal_default(STRUT_SUM);
+    meaning m = {NULL, reader->signal_state[index].dimension, reader->signal_state[index].bare};
+    if (term) *term = index;
+    sum.terms = term;
+    sum.term_count = 1;
+    index = term ? add_signal(reader, &sum, &m, value) : -1;
+  }
+  reader->signal_depth--;
+  named->state = STRUT_SIGNAL_READ;
+  named->index = fine ? index : -1;
+  if (named->index >= 0) {
+    char *copy = strut_arena_text(&reader->scene->arena, named->name, strlen(named->name));
+    if (!copy) reader->out_of_memory = true;
+    reader->signals[index].name = copy;
+  }
+  return named->index;
+}
+
+/* May the signal stand where `expected` is needed? Its first use decides for a bare one. */
+static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
+                  const strut_dimension *expected) {
+  strut_signal_state *state = &reader->signal_state[index];
+  char wanted[200], found[80];
+  if (!expected) return true;
+  if (state->bare) {
+    state->bare = false;
+    state->dimension = *expected;
+  }
+  if (strut_dimension_equal(state->dimension, *expected)) return true;
+  strut_say(reader, value->place, "expected %s here, but signal '%s' is %s",
+            strut_expected_number(*expected, wanted, sizeof wanted), value->text,
+            strut_dimension_name(state->dimension, found, sizeof found));
+  return false;
+}
+
+static int32_t read_signal(strut_reader *reader, const strut_tree *value, const char *key,
+                           strut_owner owner, const strut_dimension *expected) {
+  if (value->kind == STRUT_TREE_MAP) return read_literal(reader, value, owner, expected);
+  if (!strut_read_scalar(reader, value, key, owner, "a signal or the name of one")) return -1;
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SIGNALS)->state == STRUT_BROKEN) return -1;
+  int32_t i = strut_read_reference(reader, value, key, owner, "signal", &reader->signal_names,
+                                   signal_name, reader->named_count);
+  if (i < 0) return -1;
+  int32_t index = read_named(reader, &reader->named[i]);
+  return index >= 0 && claim(reader, index, value, expected) ? index : -1;
+}
+
+int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
+                          strut_owner owner, const strut_dimension *expected) {
+  char text[200];
+  snprintf(text, sizeof text, "the signal of %.150s", strut_owner_text(reader, owner));
+  strut_owner within = value->kind == STRUT_TREE_MAP ? (strut_owner){text, NULL} : owner;
+  return read_signal(reader, value, key, within, expected);
+}
+
+void strut_read_signals(strut_reader *reader) {
+  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_SIGNALS);
+  if (!map) return;
+  reader->named = strut_take(reader, &reader->scratch, map->count, sizeof *reader->named);
+  for (const strut_tree *key = map->first; key && reader->named; key = key->next->next) {
+    strut_named_signal *named = &reader->named[reader->named_count];
+    *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
+    strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
+  }
+  for (size_t i = 0; i < reader->named_count; i++) read_named(reader, &reader->named[i]);
+}
+
+void strut_keep_signals(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  scene->signals = strut_take(reader, &scene->arena, reader->signal_count, sizeof *scene->signals);
+  if (!scene->signals) return;
+  if (reader->signal_count)
+    memcpy(scene->signals, reader->signals, reader->signal_count * sizeof *scene->signals);
+  scene->signal_count = reader->signal_count;
+}

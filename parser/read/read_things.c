@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Nodes and members, and mappings from nodes to pairs. See reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+const char *strut_node_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->scene->node_count ? reader->scene->nodes[i].name : NULL;
+}
+
+const char *strut_member_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->scene->member_count ? reader->scene->members[i].name : NULL;
+}
+
+/* Reads one node; returns false where something about it could not be read. */
+static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *node) {
+  const strut_tree *value = key->next;
+  strut_owner owner = {"node", node->name};
+  bool fine = strut_read_name(reader, key, "node");
+  node->position[0] = node->position[1] = (double)NAN;
+  if (value->kind == STRUT_TREE_LIST)
+    return strut_read_pair(reader, value, "position", owner, STRUT_DIM_LENGTH, node->position) &&
+           fine;
+  if (value->kind == STRUT_TREE_SCALAR) {
+    strut_say(reader, value->place,
+              "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
+              strut_owner_text(reader, owner), strut_found(reader, value));
+    return false;
+  }
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_ROOM_NODE, value, owner, &fields);
+  strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *position = strut_slot_of(&fields, STRUT_KEY_NODE_POSITION);
+  const strut_slot *fixed = strut_slot_of(&fields, STRUT_KEY_NODE_FIXED);
+  const strut_slot *mass = strut_slot_of(&fields, STRUT_KEY_NODE_MASS);
+  if (position->state == STRUT_GIVEN)
+    memcpy(node->position, position->number, sizeof node->position);
+  if (fixed->state == STRUT_GIVEN)
+    for (int c = 0; c < 2; c++) node->fixed[c] = (fixed->word >> c & 1) != 0;
+  if (mass->state == STRUT_GIVEN) node->mass = mass->number[0];
+  return fine && !fields.broken;
+}
+
+void strut_read_nodes(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_NODES);
+  if (!map) return;
+  scene->nodes = strut_take(reader, &scene->arena, map->count, sizeof *scene->nodes);
+  reader->node_source =
+      strut_take(reader, &reader->scratch, map->count, sizeof *reader->node_source);
+  if (!scene->nodes || !reader->node_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t i = strut_next_thing(reader, &scene->node_count);
+    scene->nodes[i] = strut_node_default();
+    scene->nodes[i].name = strut_keep_text(reader, key->text);
+    strut_add_name(reader, &reader->node_names, scene->nodes[i].name, i);
+    bool fine = read_node(reader, key, &scene->nodes[i]);
+    memcpy(scene->nodes[i].start, scene->nodes[i].position, sizeof scene->nodes[i].start);
+    reader->node_source[i] = (strut_source){key, key->next, !fine};
+  }
+}
+
+/* The two nodes of `nodes: [a, b]`; -1 for what is unknown. */
+static bool read_ends(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                      int32_t node[2]) {
+  if (slot->state != STRUT_GIVEN) return false;
+  const strut_tree *item = slot->value->first;
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  for (int e = 0; e < 2 && known; e++, item = item->next)
+    node[e] = strut_read_reference(reader, item, "nodes", owner, "node", &reader->node_names,
+                                   strut_node_name, reader->scene->node_count);
+  return node[0] >= 0 && node[1] >= 0;
+}
+
+static void take_rest(strut_fields *fields, strut_member *member) {
+  static const int keys[] = {STRUT_KEY_MEMBER_REST_LENGTH_RATIO, STRUT_KEY_MEMBER_REST_LENGTH,
+                             STRUT_KEY_MEMBER_PRETENSION, STRUT_KEY_MEMBER_FORCE_DENSITY};
+  for (int kind = STRUT_REST_RATIO; kind <= STRUT_REST_FORCE_DENSITY; kind++) {
+    const strut_slot *slot = strut_slot_of(fields, keys[kind]);
+    if (slot->state != STRUT_GIVEN) continue;
+    member->rest_kind = (strut_rest_kind)kind;
+    member->rest_value = slot->number[0];
+  }
+}
+
+static bool read_member(strut_reader *reader, const strut_tree *key, strut_member *member) {
+  strut_owner owner = {"member", member->name};
+  bool fine = strut_read_name(reader, key, "member");
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_ROOM_MEMBER, key->next, owner, &fields);
+  strut_apply_groups(reader, &fields, STRUT_KEY_MEMBER_GROUP, owner);
+  strut_require(reader, &fields, owner, key->place);
+  if (!read_ends(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member->node)) {
+    reader->ends_unknown = true;
+    fine = false;
+  }
+  const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_MEMBER_KIND);
+  if (kind->state == STRUT_GIVEN) member->kind = (strut_member_kind)kind->word;
+  member->stiffness = strut_number_or(&fields, STRUT_KEY_MEMBER_STIFFNESS, 0.0);
+  member->axial_stiffness = strut_number_or(&fields, STRUT_KEY_MEMBER_AXIAL_STIFFNESS, 0.0);
+  member->damping = strut_number_or(&fields, STRUT_KEY_MEMBER_DAMPING, 0.0);
+  member->mass = strut_number_or(&fields, STRUT_KEY_MEMBER_MASS, 0.0);
+  if (strut_slot_of(&fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
+    reader->masses_unknown = true;
+  take_rest(&fields, member);
+  return fine && !fields.broken;
+}
+
+void strut_read_members(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_MEMBERS);
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state == STRUT_BROKEN)
+    reader->ends_unknown = true;
+  if (!map) return;
+  scene->members = strut_take(reader, &scene->arena, map->count, sizeof *scene->members);
+  reader->member_source =
+      strut_take(reader, &reader->scratch, map->count, sizeof *reader->member_source);
+  if (!scene->members || !reader->member_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t i = strut_next_thing(reader, &scene->member_count);
+    scene->members[i] = strut_member_default();
+    scene->members[i].name = strut_keep_text(reader, key->text);
+    strut_add_name(reader, &reader->member_names, scene->members[i].name, i);
+    bool fine = read_member(reader, key, &scene->members[i]);
+    reader->member_source[i] = (strut_source){key, key->next, !fine};
+  }
+}
+
+bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                           strut_dimension dimension, strut_pair_taker *take) {
+  bool fine = true;
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  for (const strut_tree *k = map->first; k; k = k->next->next) {
+    double pair[2];
+    int32_t node = strut_name_map_find(&reader->node_names, k->text);
+    if (node < 0 && known)
+      strut_say(reader, k->place, "unknown node '%s' in %s%s", strut_shown(reader, k->text),
+                strut_owner_text(reader, owner),
+                strut_hint(reader, k->text, strut_node_name, reader, reader->scene->node_count));
+    if (!strut_read_pair(reader, k->next, k->text, owner, dimension, pair) || node < 0)
+      fine = false;
+    else if (take)
+      take(reader, node, pair, k->next);
+  }
+  return fine;
+}

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Messages of the reader, and single values: numbers, pairs, references. See reader.h. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+#include "parser/yaml/text.h"
+
+/* Longest text from the file in a message, and most names compared for suggestions. */
+enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 64 };
+
+void strut_say(strut_reader *reader, strut_place place, const char *format, ...) {
+  char text[1200] = "";
+  va_list arguments;
+  va_start(arguments, format);
+  if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  reader->failed = true;
+  strut_diagnose(reader->diagnostics, place, "%s", text);
+}
+
+void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
+  void *block = strut_arena_allocate(arena, count, size);
+  if (!block) reader->out_of_memory = true;
+  return block;
+}
+
+void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index) {
+  if (strut_diagnostics_full(reader->diagnostics)) return;
+  if (strut_name_map_add(map, name, (int32_t)index) == -2) reader->out_of_memory = true;
+}
+
+size_t strut_next_thing(const strut_reader *reader, size_t *count) {
+  return strut_diagnostics_full(reader->diagnostics) ? *count : (*count)++;
+}
+
+const char *strut_keep_text(strut_reader *reader, const char *text) {
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
+  char *copy = strut_arena_text(&reader->scene->arena, text, strlen(text));
+  if (copy) return copy;
+  reader->out_of_memory = true;
+  return "";
+}
+
+/* What arena functions give, or a stand-in that remembers that memory is out. */
+static const char *kept(strut_reader *reader, const char *text) {
+  if (text) return text;
+  reader->out_of_memory = true;
+  return "?";
+}
+
+const char *strut_shown(strut_reader *reader, const char *text) {
+  size_t length = strlen(text), end = length;
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
+  if (length > SHOWN) {
+    end = SHOWN;
+    while (end && ((unsigned char)text[end] & 0xc0) == 0x80) end--;
+  }
+  char *copy = strut_arena_text(&reader->scratch, text, end);
+  if (!copy) return kept(reader, NULL);
+  for (char *c = copy; *c; c++)
+    if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
+  return end < length ? kept(reader, strut_arena_format(&reader->scratch, "%s...", copy)) : copy;
+}
+
+const char *strut_owner_text(strut_reader *reader, strut_owner owner) {
+  if (!owner.name || strut_diagnostics_full(reader->diagnostics)) return owner.kind;
+  return kept(reader, strut_arena_format(&reader->scratch, "%s '%s'", owner.kind,
+                                         strut_shown(reader, owner.name)));
+}
+
+bool strut_hints_left(const strut_reader *reader) {
+  return reader->suggestions < MOST_SUGGESTIONS && !strut_diagnostics_full(reader->diagnostics);
+}
+
+const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
+                       const void *context, size_t count) {
+  if (strlen(word) > LONGEST_NAME || !strut_hints_left(reader)) return "";
+  reader->suggestions += count;
+  const char *near = strut_did_you_mean(word, names, context);
+  if (!near) return "";
+  return kept(reader, strut_arena_format(&reader->scratch, "; did you mean '%s'?", near));
+}
+
+strut_place strut_root_place(const strut_reader *reader) {
+  strut_place place = reader->document.root->place;
+  return (strut_place){place.line, place.column, 1};
+}
+
+const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
+                         size_t first, size_t depth) {
+  const char *text = "";
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
+  for (size_t i = first; i < depth; i++) {
+    bool shown = depth - first <= 8 || i - first < 4 || depth - i <= 3;
+    if (shown)
+      text = kept(reader, strut_arena_format(&reader->scratch, "%s%s -> ", text, name(reader, i)));
+    else if (i - first == 4)
+      text = kept(reader, strut_arena_format(&reader->scratch, "%s... -> ", text));
+  }
+  return kept(reader, strut_arena_format(&reader->scratch, "%s%s", text, name(reader, first)));
+}
+
+bool strut_is_null(const strut_tree *value) {
+  static const char *const nulls[] = {"", "~", "null", "Null", "NULL"};
+  if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
+  for (size_t i = 0; i < sizeof nulls / sizeof nulls[0]; i++)
+    if (strcmp(value->text, nulls[i]) == 0) return true;
+  return false;
+}
+
+const char *strut_found(strut_reader *reader, const strut_tree *value) {
+  strut_arena *arena = &reader->scratch;
+  if (strut_diagnostics_full(reader->diagnostics)) return "";
+  if (value->kind == STRUT_TREE_MAP) return "a mapping";
+  if (value->kind == STRUT_TREE_LIST && !value->count) return "an empty list";
+  if (value->kind == STRUT_TREE_LIST)
+    return kept(reader, strut_arena_format(arena, "a list of %u", (unsigned)value->count));
+  if (strut_is_null(value)) return "nothing";
+  if (!*value->text) return "an empty text";
+  return kept(reader, strut_arena_format(arena, value->quoted ? "the text '%s'" : "'%s'",
+                                         strut_shown(reader, value->text)));
+}
+
+bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, const char *expected) {
+  if (value->kind == STRUT_TREE_SCALAR && !strut_is_null(value)) return true;
+  strut_say(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
+            strut_owner_text(reader, owner), strut_found(reader, value));
+  return false;
+}
+
+/* Where in the file an error within an expression is; the whole value where that is not simple. */
+static strut_place place_within(const strut_tree *value, const strut_expression_error *error) {
+  strut_place place = value->place;
+  size_t points = strut_text_points(value->text, strlen(value->text));
+  size_t quotes = place.length > points ? place.length - points : 0;
+  if (quotes != (value->quoted ? 2u : 0u)) return place;
+  place.column += (uint32_t)(error->offset + quotes / 2);
+  place.length = error->length ? (uint32_t)error->length : 1;
+  return place;
+}
+
+bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
+                         strut_owner owner, strut_quantity *quantity) {
+  return strut_read_program(reader, value, key, owner, NULL, quantity);
+}
+
+bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, strut_compiler *compiler, strut_quantity *quantity) {
+  strut_expression_error error;
+  error.message[0] = '\0';
+  strut_scope scope = strut_parameter_scope(reader);
+  const strut_tree *asked_before = reader->asking;
+  const char *set_before = reader->asking_set;
+  reader->asking = value;
+  reader->asking_set = NULL;
+  bool fine = strut_expression_compile(value->text, &scope, compiler, quantity, &error);
+  reader->asking = asked_before;
+  reader->asking_set = set_before;
+  if (!fine && scope.names) reader->suggestions += reader->parameter_count;
+  if (!fine && error.message[0])
+    strut_say(reader, place_within(value, &error), "in '%s' of %s: %s", key,
+              strut_owner_text(reader, owner), error.message);
+  return fine;
+}
+
+static bool in_range(strut_reader *reader, const strut_tree *value, const char *key,
+                     strut_owner owner, strut_key_range range, double number) {
+  bool below = range == STRUT_RANGE_NOT_NEGATIVE ? number < 0.0
+                                                 : range == STRUT_RANGE_ABOVE_ZERO && number <= 0.0;
+  if (!below) return true;
+  strut_say(reader, value->place, "'%s' of %s must %s, found %g", key,
+            strut_owner_text(reader, owner),
+            range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
+  return false;
+}
+
+bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, strut_dimension dimension, strut_key_range range,
+                       double *number) {
+  char expected[200], found[80];
+  strut_quantity quantity;
+  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value)) {
+    strut_expected_number(dimension, expected, sizeof expected);
+    return strut_read_scalar(reader, value, key, owner, expected);
+  }
+  if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
+  if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
+    strut_say(reader, value->place, "expected %s for '%s' of %s, found %s",
+              strut_expected_number(dimension, expected, sizeof expected), key,
+              strut_owner_text(reader, owner),
+              strut_dimension_name(quantity.dimension, found, sizeof found));
+    return false;
+  }
+  *number = quantity.value;
+  return in_range(reader, value, key, owner, range, quantity.value);
+}
+
+bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
+                     strut_owner owner, strut_dimension dimension, double number[2]) {
+  if (value->kind == STRUT_TREE_LIST && value->count == 2) {
+    const strut_tree *x = value->first, *y = x->next;
+    bool fine = strut_read_number(reader, x, key, owner, dimension, STRUT_RANGE_ANY, &number[0]);
+    return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
+  }
+  const char *example = strut_dimension_example(dimension);
+  strut_say(reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
+            example ? example : "1", key, strut_owner_text(reader, owner),
+            strut_found(reader, value));
+  return false;
+}
+
+int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
+                             strut_owner owner, const char *kind, const strut_name_map *map,
+                             strut_names *names, size_t count) {
+  char expected[80];
+  snprintf(expected, sizeof expected, "the name of a %s", kind);
+  if (!strut_read_scalar(reader, value, key, owner, expected)) return -1;
+  int32_t index = strut_name_map_find(map, value->text);
+  if (index < 0)
+    strut_say(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
+              strut_shown(reader, value->text), key, strut_owner_text(reader, owner),
+              strut_hint(reader, value->text, names, reader, count));
+  return index;
+}
+
+static bool name_character(unsigned char c) {
+  return c >= 0x80 || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+         c == '_' || c == '-' || c == '.';
+}
+
+bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *kind) {
+  const char *c = key->text;
+  while (*c && name_character((unsigned char)*c)) c++;
+  size_t length = strlen(key->text);
+  strut_tree plain = *key; /* a name that reads as null could not be referred to */
+  plain.quoted = false;
+  if (length && !*c && length <= LONGEST_NAME && !strut_is_null(&plain)) return true;
+  if (length > LONGEST_NAME && !*c)
+    strut_say(reader, key->place, "the name of a %s may have %d bytes, found %zu", kind,
+              (int)LONGEST_NAME, length);
+  else
+    strut_say(reader, key->place,
+              "'%s' cannot be the name of a %s, expected letters, digits, '_', '-' and '.'",
+              strut_shown(reader, key->text), kind);
+  return false;
+}

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the parts of the scene reader share. Internal to parser/.
+ *
+ * Every mapping is read in two passes: strut_read_fields turns its keys into *fields*, by the table
+ * of keys alone; then the part that knows the thing takes its values from there. A value that could
+ * not be read has been reported and is BROKEN: whatever depends on it stays silent, so that one
+ * mistake gives one message.
+ */
+#ifndef STRUT_PARSER_READ_READER_H
+#define STRUT_PARSER_READ_READER_H
+
+#include "engine/base/name_map.h"
+#include "engine/scene/check.h"
+#include "engine/scene/scene.h"
+#include "parser/yaml/diagnostics.h"
+#include "parser/yaml/document.h"
+#include "parser/expression/expression.h"
+#include "parser/language/keys.h"
+#include "parser/read/read_scene.h"
+
+/** Whom a message is about: "member 'm1'"; name may be NULL: "the solver". */
+typedef struct strut_owner {
+  const char *kind, *name;
+} strut_owner;
+
+typedef enum strut_slot_state { STRUT_ABSENT, STRUT_GIVEN, STRUT_BROKEN } strut_slot_state;
+
+/** The value of one key, as far as the table says how to read it. */
+typedef struct strut_slot {
+  strut_slot_state state;
+  int word;                      /* WORD: its index; WORDS: bits; FIXED: 1 x, 2 y */
+  double number[2];              /* NUMBER, PAIR; SI */
+  const strut_tree *key, *value; /* where it stands */
+  struct strut_group_item *from; /* the key of a group that it came from, or NULL: its own */
+} strut_slot;
+
+/** The keys of one mapping. */
+typedef struct strut_fields {
+  strut_room room;
+  bool broken;           /* some value, or the mapping itself, could not be read */
+  const strut_tree *map; /* NULL: there is none */
+  strut_slot slot[STRUT_MOST_KEYS];
+} strut_fields;
+
+/** One key of a group, and what it is called in the rooms that may use the group. */
+typedef struct strut_group_item {
+  strut_slot slot;
+  int key[3];           /* in member, node, contact; -1: not there */
+  bool refused[3];      /* it has been reported that the room has no such key */
+  bool found;           /* a finding has been reported here */
+  strut_fields *nested; /* of a mapping: friction */
+} strut_group_item;
+
+typedef struct strut_group {
+  const char *name;
+  const strut_tree *key;
+  size_t count;
+  strut_group_item *items;
+  bool used, broken;
+} strut_group;
+
+/** A parameter while parameters are being evaluated. */
+typedef struct strut_parameter_state {
+  const char *name;
+  const strut_setting *set; /* given from outside, or NULL */
+  const strut_tree *key, *value;
+  enum { STRUT_UNREAD, STRUT_READING, STRUT_READ, STRUT_FAILED } state;
+  bool text;
+  bool used; /* something refers to it */
+  strut_quantity quantity;
+} strut_parameter_state;
+
+/** A thing with a name: where it stands, and whether findings about it make sense. */
+typedef struct strut_source {
+  const strut_tree *key, *value;
+  bool broken;
+} strut_source;
+
+/** A signal of the scene under construction: what its values measure. */
+typedef struct strut_signal_state {
+  strut_dimension dimension;
+  bool bare; /* made of plain numbers, and nothing has used it yet */
+  const strut_tree *value;
+} strut_signal_state;
+
+/** A signal with a name. */
+typedef struct strut_named_signal {
+  const char *name;
+  const strut_tree *key;
+  enum { STRUT_SIGNAL_UNREAD, STRUT_SIGNAL_READING, STRUT_SIGNAL_READ } state;
+  int32_t index; /* into the signals; -1: it could not be read */
+} strut_named_signal;
+
+/** How many parameters may wait for each other, and how many signals. */
+enum { STRUT_DEEPEST_PARAMETER = 200, STRUT_DEEPEST_SIGNAL = 64 };
+
+typedef struct strut_reader {
+  strut_scene *scene;
+  strut_diagnostics *diagnostics;
+  strut_document document;
+  strut_arena scratch; /* freed with the reader */
+  strut_purpose purpose;
+  strut_fields top;
+  strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
+      configuration_names, actuator_names, load_names;
+  strut_group *groups;
+  size_t group_count;
+  strut_parameter_state *parameters;
+  size_t parameter_count, parameter_depth;
+  strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
+  strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source;
+  const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
+  strut_named_signal *named;
+  size_t named_count, signal_depth, signal_capacity;
+  strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
+  strut_signal *signals; /* strut_allocate; moves to the scene at the end */
+  strut_signal_state *signal_state;
+  size_t signal_count;
+  strut_source *configuration_source;
+  strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
+  const strut_tree *asking; /* the value whose expression is being evaluated */
+  const char *asking_set;   /* or the parameter whose setting is */
+  size_t suggestions;       /* names compared so far, to bound the effort */
+  bool holes;               /* the text lacks what was refused in it: nothing is missing */
+  bool ends_unknown;        /* some member or load could not be tied to its nodes */
+  bool masses_unknown;      /* some mass could not be read */
+  bool groups_unknown;      /* somebody's groups could not be read */
+  bool failed, out_of_memory;
+} strut_reader;
+
+/* read_values.c: messages and single values */
+
+/**
+ * Reports at a place. Once the diagnostics are full a message is only counted, and the functions below
+ * that make its parts return "".
+ */
+void strut_say(strut_reader *reader, strut_place place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/** "member 'm1'", for use within a message; lives in scratch. */
+const char *strut_owner_text(strut_reader *reader, strut_owner owner);
+/** Text from the file, shortened and without control characters; lives in scratch. */
+const char *strut_shown(strut_reader *reader, const char *text);
+/** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
+const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
+                       const void *context, size_t count);
+/** True while suggestions may still be looked for: they are bounded for the file as a whole. */
+bool strut_hints_left(const strut_reader *reader);
+/** "a list", "a mapping", "nothing", "'text'": what a value is instead; lives in scratch. */
+const char *strut_found(strut_reader *reader, const strut_tree *value);
+/** The beginning of the file, for what is about all of it. */
+strut_place strut_root_place(const strut_reader *reader);
+/** "a -> b -> a" from the names of a stack, shortened in the middle; lives in scratch. */
+const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
+                         size_t first, size_t depth);
+/** True for a plain empty scalar, ~ and null. */
+bool strut_is_null(const strut_tree *value);
+/** Is it a scalar that is not null? If not, that is reported. */
+bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, const char *expected);
+/** A number of any dimension. */
+bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
+                         strut_owner owner, strut_quantity *quantity);
+/** The same of an expression of columns, whose program the compiler makes. */
+bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
+                        strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);
+/** A number of the given dimension in SI. */
+bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
+                       strut_owner owner, strut_dimension dimension, strut_key_range range,
+                       double *number);
+/** A list of two numbers. */
+bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
+                     strut_owner owner, strut_dimension dimension, double number[2]);
+/** The index of the thing that the scalar names, or -1. `kind` is "node", "member", ... */
+int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
+                             strut_owner owner, const char *kind, const strut_name_map *map,
+                             strut_names *names, size_t count);
+/** May a thing be called so? If not, that is reported. */
+bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *kind);
+/** Adds a name to a map; remembers when memory is out. */
+void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
+/** count * size zeroed bytes of an arena; remembers when memory is out. */
+void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t size);
+
+/**
+ * The index of the next thing of an array. Once the diagnostics are full, things are read for their
+ * errors only, all into the same place behind the last one that is kept, and without names.
+ */
+size_t strut_next_thing(const strut_reader *reader, size_t *count);
+
+/** A copy in the scene's own memory; "" where that is out. */
+const char *strut_keep_text(strut_reader *reader, const char *text);
+
+/* read_fields.c: mappings */
+
+/** Reads a mapping by the table. A value that is not a mapping is reported. */
+void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *map,
+                       strut_owner owner, strut_fields *fields);
+/** Reports what is required and absent, at the place given. */
+void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                   strut_place place);
+/** Reads a value by the table's line for the key. */
+void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
+                     const strut_tree *value, strut_owner owner, strut_slot *slot);
+/** The slot of a key: fields->room must be the key's. */
+strut_slot *strut_slot_of(strut_fields *fields, int key);
+/** Reports an unknown key; returns the key of the rooms that was probably meant, or -1. */
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_room *rooms,
+                      size_t count, strut_owner owner);
+/** Number in a field, or the fallback where it is absent or broken. */
+double strut_number_or(strut_fields *fields, int key, double fallback);
+/** Marks every absent key as broken, so that nothing is said to be missing. */
+void strut_excuse(strut_fields *fields);
+/** True where the mapping behind a key of the scene is there and could be read. */
+bool strut_section(strut_reader *reader, int key, strut_room room, const char *owner,
+                   strut_fields *fields);
+/** The mapping of things behind a key of the scene, or NULL. */
+const strut_tree *strut_things(strut_reader *reader, int key);
+
+/* groups.c */
+
+enum { STRUT_MOST_GROUPS = 64 }; /* that one thing may name */
+void strut_read_groups(strut_reader *reader);
+/** Fills absent keys from the groups that the fields name. */
+void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_key,
+                        strut_owner owner);
+/** The groups that `group:` names, in order; unknown ones are left out. Returns their number. */
+size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups);
+void strut_report_unused_groups(strut_reader *reader);
+
+/* parameters.c */
+
+void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count);
+/** The record of what was used, for the scene. */
+void strut_keep_parameters(strut_reader *reader);
+/** A setting that changes nothing is an error: it cannot be what was meant. */
+void strut_report_idle_settings(strut_reader *reader);
+strut_scope strut_parameter_scope(strut_reader *reader);
+/** The parameter of that name, or NULL. */
+strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name);
+/** Its name by number, for suggestions. */
+const char *strut_parameter_name(const void *reader, size_t i);
+
+/* The sections, in the order in which they are read. */
+
+void strut_read_nodes(strut_reader *reader);
+void strut_read_members(strut_reader *reader);
+void strut_read_ground(strut_reader *reader);
+void strut_read_signals(strut_reader *reader);
+void strut_read_drives(strut_reader *reader);
+/** Moves the signals into the scene. */
+void strut_keep_signals(strut_reader *reader);
+void strut_read_configurations(strut_reader *reader);
+void strut_read_search(strut_reader *reader);
+void strut_read_initial(strut_reader *reader);
+void strut_read_experiment(strut_reader *reader);
+/** `quantities` of the measurement: read_quantities.c. */
+void strut_read_quantities(strut_reader *reader, const strut_slot *slot);
+
+/**
+ * A signal or the name of one. `expected`: what its values must measure, or NULL for anything.
+ * Returns its index, or -1 where it was reported.
+ */
+int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
+                          strut_owner owner, const strut_dimension *expected);
+/**
+ * The configuration that a key of the initial state names, itself or through a text parameter; -1
+ * where the key is absent or was reported.
+ */
+int32_t strut_find_configuration(strut_reader *reader, int key);
+/** Reads `{NODE: [x, y], ...}` and calls back for each node that could be read. */
+typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double pair[2],
+                              const strut_tree *value);
+bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                           strut_dimension dimension, strut_pair_taker *take);
+/** Names of nodes and members, for suggestions; the context is the reader. */
+const char *strut_node_name(const void *reader, size_t i);
+const char *strut_member_name(const void *reader, size_t i);
+
+/* places.c */
+
+/** Reports findings where they belong, except those that follow from what was reported before. */
+void strut_place_findings(strut_reader *reader, const strut_findings *findings);
+
+#endif

@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study's text and its model. See read_study.h; axes are in study_axes.c. */
+#include "parser/study/read_study.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "parser/study/overlay.h"
+#include "parser/study/study_reader.h"
+
+static const strut_owner study_owner = {"the study", NULL};
+
+static const char *declared_name(const void *context, size_t i) {
+  const strut_study_reader *r = context;
+  return i < r->declared_count ? r->declared[i].name : NULL;
+}
+
+const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key) {
+  const strut_declared *found = NULL;
+  size_t at = 0;
+  for (; at < r->declared_count && !found; at++)
+    if (strcmp(r->declared[at].name, key->text) == 0) found = &r->declared[at];
+  if (!found) {
+    strut_say(r->reader, key->place, "the model has no parameter '%s'%s",
+              strut_shown(r->reader, key->text),
+              strut_hint(r->reader, key->text, declared_name, r, r->declared_count));
+    return NULL;
+  }
+  if (strut_name_map_find(&r->given, found->name) >= 0) {
+    strut_say(r->reader, key->place, "parameter '%s' is given twice", found->name);
+    return NULL;
+  }
+  strut_add_name(r->reader, &r->given, found->name, at);
+  return found;
+}
+
+/* --set wins over the study's own `set`. */
+static bool overridden(const strut_study_file *file, size_t overrides, const char *name) {
+  for (size_t i = 0; i < overrides; i++)
+    if (strcmp(file->settings[i].name, name) == 0) return true;
+  return false;
+}
+
+static void read_settings(strut_study_reader *r, const strut_slot *slot, size_t overrides,
+                          bool may_yield) {
+  strut_study_file *file = r->file;
+  if (slot->state != STRUT_GIVEN) return;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+    const strut_tree *value = key->next;
+    if (!strut_read_scalar(r->reader, value, key->text, study_owner, "an expression or a text"))
+      continue;
+    bool yields = may_yield && overridden(file, overrides, key->text);
+    const strut_declared *parameter = strut_study_parameter(r, key);
+    if (!parameter || yields) continue;
+    file->settings[file->setting_count++] = (strut_setting){
+        .name = parameter->name, .text = value->text, .place = strut_overlay_place(value->place)};
+  }
+}
+
+/* --set of what the study itself varies is a contradiction. */
+static void check_overrides(strut_study_reader *r, size_t overrides) {
+  strut_study_file *file = r->file;
+  for (size_t i = 0; i < overrides; i++) {
+    const char *name = file->settings[i].name;
+    for (size_t k = 0; k < file->column_count; k++)
+      if (file->columns[k].name && strcmp(file->columns[k].name, name) == 0)
+        strut_say(r->reader, file->columns[k].place, "--set %s=%s: an axis gives '%s' its values",
+                  name, strut_shown(r->reader, file->settings[i].text), name);
+    for (size_t k = overrides; k < file->setting_count; k++)
+      if (strcmp(file->settings[k].name, name) == 0)
+        strut_say(r->reader, (strut_place){0}, "--set %s=%s: the study derives '%s'", name,
+                  strut_shown(r->reader, file->settings[i].text), name);
+  }
+}
+
+/* The quantities that the model of a variant measures, or NULL. */
+static const strut_tree *quantities_of(strut_scene_source *source) {
+  static const char *const path[] = {"run", "measure", "quantities"};
+  const strut_tree *tree = strut_scene_source_document(source)->root;
+  for (size_t i = 0; i < sizeof path / sizeof path[0] && tree; i++)
+    tree = tree->kind == STRUT_TREE_MAP ? strut_tree_find(tree, path[i], NULL) : NULL;
+  return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
+}
+
+/* What `keep` may name: the words of the table of keys, then the model's quantities. */
+typedef struct kept_names {
+  char word[32][24];
+  size_t word_count;
+  const strut_tree *quantities;
+} kept_names;
+
+static const char *kept_name(const void *context, size_t i) {
+  const kept_names *names = context;
+  if (i < names->word_count) return names->word[i];
+  i -= names->word_count;
+  const strut_tree *key = names->quantities ? names->quantities->first : NULL;
+  while (key && i-- > 0) key = key->next->next;
+  return key ? key->text : NULL;
+}
+
+static void refuse_kept(strut_study_reader *r, const strut_tree *item, const char *words,
+                        const strut_tree *quantities) {
+  char expected[500];
+  kept_names names = {.quantities = quantities};
+  while (names.word_count < 32 && strut_word_at(words, (int)names.word_count,
+                                                names.word[names.word_count], sizeof names.word[0]))
+    names.word_count++;
+  strut_words_text(words, expected, sizeof expected);
+  if (!strut_read_scalar(r->reader, item, "keep", study_owner, expected)) return;
+  size_t count = names.word_count + (quantities ? quantities->count : 0);
+  strut_say(r->reader, item->place,
+            "expected %s, or a quantity that the model measures, for 'keep' of the study, found "
+            "'%s'%s",
+            expected, strut_shown(r->reader, item->text),
+            strut_hint(r->reader, item->text, kept_name, &names, count));
+}
+
+static bool is_twice(const strut_tree *list, const strut_tree *item) {
+  for (const strut_tree *other = list->first; other != item; other = other->next)
+    if (other->kind == STRUT_TREE_SCALAR && strcmp(other->text, item->text) == 0) return true;
+  return false;
+}
+
+/* Words, and names of what the model measures. */
+static void read_keep(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  const char *words = strut_key_at(STRUT_KEY_STUDY_KEEP)->words;
+  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *quantities = r->file->source_count ? quantities_of(r->file->sources[0]) : NULL;
+  study->quantities =
+      strut_take(r->reader, &r->file->arena, slot->value->count + 1, sizeof *study->quantities);
+  if (!study->quantities) return;
+  for (const strut_tree *item = slot->value->first; item; item = item->next) {
+    bool scalar = item->kind == STRUT_TREE_SCALAR;
+    int word = scalar ? strut_word_find(words, item->text) : -1;
+    if (scalar && is_twice(slot->value, item))
+      strut_say(r->reader, item->place, "'%s' stands twice in 'keep' of the study", item->text);
+    else if (word >= 0)
+      study->keep |= 1u << word;
+    else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
+      study->quantities[study->quantity_count++] = item->text;
+    else
+      refuse_kept(r, item, words, quantities);
+  }
+}
+
+static void read_rest(strut_study_reader *r, strut_fields *top) {
+  strut_study *study = &r->file->study;
+  const strut_slot *files = strut_slot_of(top, STRUT_KEY_STUDY_TRAJECTORIES);
+  const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
+  strut_fields fields;
+  const char *name = strut_study_text(r, top, STRUT_KEY_STUDY_NAME);
+  const char *description = strut_study_text(r, top, STRUT_KEY_STUDY_DESCRIPTION);
+  study->name = name ? name : "";
+  study->description = description ? description : "";
+  study->trajectories = files->state == STRUT_GIVEN && files->word == 1;
+  if (check->state == STRUT_GIVEN) {
+    strut_read_fields(r->reader, STRUT_ROOM_CHECK, check->value, (strut_owner){"the check", NULL},
+                      &fields);
+    const strut_slot *half = strut_slot_of(&fields, STRUT_KEY_CHECK_HALF_STEP);
+    study->half_step = half->state == STRUT_GIVEN && half->word == 1;
+    study->check_accuracy = strut_number_or(&fields, STRUT_KEY_CHECK_ACCURACY, 0.0);
+  }
+  strut_study_read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
+}
+
+static size_t size_of(const strut_slot *slot) {
+  return slot->state == STRUT_GIVEN ? slot->value->count : 0;
+}
+
+/* What refers to the model's parameters. */
+static void read_points(strut_study_reader *r, strut_fields *top, const strut_override *overrides,
+                        size_t count) {
+  strut_study_file *file = r->file;
+  const strut_slot *set = strut_slot_of(top, STRUT_KEY_STUDY_SET);
+  const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
+  const strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
+  file->settings = strut_take(r->reader, &file->arena, count + size_of(set) + size_of(derive),
+                              sizeof *file->settings);
+  if (!file->settings) return;
+  for (size_t i = 0; i < count; i++)
+    file->settings[file->setting_count++] =
+        (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
+  read_settings(r, set, count, true);
+  read_settings(r, derive, count, false);
+  if (axes->state == STRUT_GIVEN) strut_study_read_axes(r, axes->value);
+  check_overrides(r, count);
+}
+
+/* A model in the place of a study would be wrong in every line. */
+static bool is_model(const strut_tree *root) {
+  return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "nodes", NULL) &&
+         !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
+}
+
+static strut_status read_all(strut_study_reader *r, const strut_override *overrides, size_t count,
+                             strut_error *error) {
+  strut_study_file *file = r->file;
+  strut_reader *reader = r->reader;
+  strut_fields top;
+  strut_status status = strut_document_read(&file->document, &file->diagnostics);
+  if (status == STRUT_NO_MEMORY || !file->document.root) return status;
+  reader->document.root = file->document.root;
+  reader->holes = status == STRUT_BAD_SCENE;
+  if (reader->holes) reader->failed = true;
+  if (is_model(file->document.root)) {
+    strut_say(reader, strut_root_place(reader),
+              "this is a model, expected a study, which names one");
+    return STRUT_BAD_SCENE;
+  }
+  strut_read_fields(reader, STRUT_ROOM_STUDY, file->document.root, study_owner, &top);
+  if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
+  strut_require(reader, &top, study_owner, strut_root_place(reader));
+  read_rest(r, &top);
+  status = strut_study_open_sources(r, &top, error);
+  read_keep(r, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
+  if (status == STRUT_OK) read_points(r, &top, overrides, count);
+  if (reader->out_of_memory) return STRUT_NO_MEMORY;
+  return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;
+}
+
+strut_status strut_study_open(const char *path, const strut_override *overrides, size_t count,
+                              strut_study_file *file, strut_error *error) {
+  *file = (strut_study_file){.path = path};
+  strut_status status = strut_file_read(path, &file->text, &file->length, error);
+  if (status != STRUT_OK) return status;
+  strut_scene scene;
+  strut_reader *reader = strut_allocate(1, sizeof *reader);
+  if (!reader) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_scene_init(&scene);
+  reader->scene = &scene;
+  reader->diagnostics = &file->diagnostics;
+  strut_diagnostics_source(&file->diagnostics, path, file->text, file->length);
+  strut_study_reader r = {.reader = reader, .file = file};
+  strut_c_locale locale = strut_c_locale_enter();
+  status = read_all(&r, overrides, count, error);
+  strut_c_locale_leave(locale);
+  if (status == STRUT_NO_MEMORY) strut_fail(error, status, "out of memory");
+  strut_name_map_free(&r.given);
+  strut_arena_free(&reader->scratch);
+  strut_release(reader);
+  strut_scene_free(&scene);
+  return status;
+}
+
+const char *strut_study_messages(strut_study_file *file, size_t most) {
+  const char *own = strut_diagnostics_render(&file->diagnostics, most);
+  const char *model =
+      file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
+  return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
+}
+
+/* The model of a point: that of its variant. */
+static const strut_scene_source *source_of(const strut_study_file *file,
+                                           const strut_study_value *values) {
+  size_t i = 0;
+  if (!file->variants) return file->sources[0];
+  while (strcmp(file->study.axes[0].columns[0].words[i], values[0].word) != 0) i++;
+  return file->sources[i];
+}
+
+/* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
+static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
+                               strut_diagnostics *diagnostics, strut_scene *scene) {
+  size_t first = file->variants, fixed = file->setting_count;
+  size_t count = fixed + file->column_count - first;
+  strut_setting *settings = strut_allocate(count, sizeof *settings + STRUT_NUMBER_TEXT);
+  if (!settings) return STRUT_NO_MEMORY;
+  char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + count);
+  for (size_t i = 0; i < fixed; i++) settings[i] = file->settings[i];
+  for (size_t i = first; i < file->column_count; i++) {
+    strut_setting *s = &settings[fixed + i - first];
+    *s = file->columns[i];
+    s->place = strut_overlay_place(s->place);
+    s->value = values[i].number;
+    s->text = values[i].word ? values[i].word : texts[i - first];
+    if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
+  }
+  strut_status status = strut_scene_source_read(source_of(file, values), settings, count,
+                                                STRUT_FOR_RUN, diagnostics, scene);
+  strut_release(settings);
+  return status;
+}
+
+strut_status strut_study_scene(const strut_study_file *file, const strut_study_value *values,
+                               strut_scene *scene, strut_error *error) {
+  strut_diagnostics diagnostics = {0};
+  strut_status status = read_point(file, values, &diagnostics, scene);
+  if (status == STRUT_BAD_SCENE) {
+    const strut_diagnostic *first = &diagnostics.items[0];
+    for (size_t i = 1; i < diagnostics.count; i++)
+      if (diagnostics.items[i].place.line < first->place.line) first = &diagnostics.items[i];
+    bool own = first->place.line & STRUT_OVERLAY_LINE;
+    strut_fail(error, status, "%s:%u: %s", own ? file->path : file->model_path,
+               first->place.line & ~STRUT_OVERLAY_LINE, first->message);
+  } else if (status != STRUT_OK) {
+    strut_fail(error, status, "out of memory");
+  }
+  strut_diagnostics_free(&diagnostics);
+  return status;
+}
+
+/* "frequency = 10 Hz, start = I" */
+static void tell_values(const strut_study_file *file, const strut_study_value *values, char *text,
+                        size_t room) {
+  size_t used = 0;
+  *text = '\0';
+  for (size_t i = 0; i < file->column_count && used < room; i++) {
+    char number[STRUT_NUMBER_TEXT];
+    const char *unit =
+        file->columns[i].bare ? "1" : strut_dimension_unit(file->columns[i].dimension);
+    bool plain = values[i].word || strcmp(unit, "1") == 0;
+    strut_number_text(values[i].number, number);
+    int n =
+        snprintf(text + used, room - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
+                 values[i].word ? values[i].word : number, plain ? "" : " ", plain ? "" : unit);
+    used += n > 0 ? (size_t)n : 0;
+  }
+}
+
+strut_status strut_study_try(strut_study_file *file, const strut_study_value *values) {
+  strut_scene scene;
+  char text[300];
+  strut_status status = read_point(file, values, &file->model_diagnostics, &scene);
+  if (status == STRUT_OK) strut_scene_free(&scene);
+  if (status != STRUT_BAD_SCENE) return status;
+  tell_values(file, values, text, sizeof text);
+  if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
+  strut_diagnose(&file->diagnostics, (strut_place){0}, "there is no model to run at %s", text);
+  return status;
+}
+
+void strut_study_close(strut_study_file *file) {
+  for (size_t i = 0; i < file->source_count; i++) strut_scene_source_free(file->sources[i]);
+  strut_diagnostics_free(&file->diagnostics);
+  strut_diagnostics_free(&file->model_diagnostics);
+  strut_document_free(&file->document);
+  strut_arena_free(&file->arena);
+  strut_release(file->text);
+  strut_release(file->model_path);
+  strut_release(file->model_text);
+  *file = (strut_study_file){0};
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * From a study's YAML text, and the model it names, to points and their scenes.
+ *
+ * The model's text becomes a tree once; each point's scene is read from that tree with the point's
+ * parameters.
+ */
+#ifndef STRUT_PARSER_STUDY_READ_STUDY_H
+#define STRUT_PARSER_STUDY_READ_STUDY_H
+
+#include "engine/scene/study.h"
+#include "parser/read/read_scene.h"
+
+/** A study as read. Zero-initialise; strut_study_close releases it. Constant once it is open. */
+typedef struct strut_study_file {
+  strut_study study;
+  /* The model, with the study's solver, run, initial and output laid over, and those of a variant:
+     one for each variant, whose name is the first column then, or one. */
+  size_t source_count;
+  strut_scene_source **sources;
+  bool variants;
+  size_t setting_count, column_count;
+  strut_setting *settings; /* (setting_count) the same at every point: --set, set, derive */
+  strut_setting *columns;  /* (column_count) of the axes, their values to be filled in */
+  const char *path;        /* of the study; not owned */
+  char *text, *model_path, *model_text;
+  size_t length, model_length;
+  strut_document document; /* the study's tree */
+  strut_diagnostics diagnostics, model_diagnostics;
+  strut_arena arena;
+} strut_study_file;
+
+/**
+ * Reads the study at `path` and its model. On STRUT_BAD_SCENE strut_study_messages has every finding;
+ * STRUT_FILE_TROUBLE with the reason in `error`. overrides (--set) are kept as they are.
+ */
+STRUT_API strut_status strut_study_open(const char *path, const strut_override *overrides,
+                                        size_t override_count, strut_study_file *file,
+                                        strut_error *error);
+/** All messages as printed text, at most `most` of each file; NULL: memory is out. */
+STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
+/**
+ * The scene where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
+ * finding with its place. Safe from several threads.
+ */
+STRUT_API strut_status strut_study_scene(const strut_study_file *file,
+                                         const strut_study_value *values, strut_scene *scene,
+                                         strut_error *error);
+/** The same for one thread: on STRUT_BAD_SCENE all findings go to the messages, and the values. */
+STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
+/**
+ * All that decides the results, as a text that does not change with comments, blanks and the order
+ * of texts; a block of strut_allocate, or NULL.
+ */
+STRUT_API char *strut_study_identity(const strut_study_file *file);
+/**
+ * The study's text as it was written, but naming `model` as its model, so that it may stand beside a
+ * copy of that; comments at its end say what the model was, and what --set gave. A block of
+ * strut_allocate, or NULL.
+ */
+STRUT_API char *strut_study_copy(const strut_study_file *file, const char *model,
+                                 const strut_override *overrides, size_t override_count);
+STRUT_API void strut_study_close(strut_study_file *file);
+
+#endif

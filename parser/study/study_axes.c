@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The axes of a study: lists, ranges, and several that go together. See study_reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/study/study_reader.h"
+
+/* One parameter along its axis, while it is read. */
+typedef struct along {
+  const strut_declared *parameter;
+  const strut_tree *key, *value;
+  strut_study_column *column;
+  strut_setting *setting;
+  int64_t count;
+} along;
+
+static strut_owner owner_of(const along *a) { return (strut_owner){"axis", a->parameter->name}; }
+
+/* A number in the parameter's dimension; where that has none the first value decides. */
+static bool read_value(strut_study_reader *r, along *a, const strut_tree *value, const char *key,
+                       bool first, double *number) {
+  strut_quantity q;
+  char expected[200], found[80];
+  strut_reader *reader = r->reader;
+  strut_setting *s = a->setting;
+  if (!strut_read_scalar(reader, value, key, owner_of(a), "a number") ||
+      !strut_read_quantity(reader, value, key, owner_of(a), &q))
+    return false;
+  *number = q.value;
+  if (first && s->bare && !q.bare) {
+    s->bare = false;
+    s->dimension = q.dimension;
+  }
+  if (q.bare || (!s->bare && strut_dimension_equal(q.dimension, s->dimension))) return true;
+  strut_say(reader, value->place, "expected %s for '%s' of axis '%s', found %s",
+            s->bare ? "a number without unit, as before,"
+                    : strut_expected_number(s->dimension, expected, sizeof expected),
+            key, a->parameter->name, strut_dimension_name(q.dimension, found, sizeof found));
+  return false;
+}
+
+static bool read_list(strut_study_reader *r, along *a) {
+  strut_arena *arena = &r->file->arena;
+  size_t count = a->value->count, i = 0;
+  double *numbers = strut_take(r->reader, arena, count, sizeof *numbers);
+  const char **words = strut_take(r->reader, arena, count, sizeof *words);
+  bool fine = numbers && words;
+  a->count = (int64_t)count;
+  if (!count) {
+    strut_say(r->reader, a->value->place, "axis '%s' has no values", a->parameter->name);
+    return false;
+  }
+  for (const strut_tree *item = a->value->first; item && fine; item = item->next, i++) {
+    if (!a->parameter->text) {
+      fine = read_value(r, a, item, a->parameter->name, i == 0, &numbers[i]) && fine;
+    } else if (strut_read_scalar(r->reader, item, a->parameter->name, owner_of(a), "a text")) {
+      words[i] = item->text;
+      if (strlen(item->text) < 24) continue;
+      strut_say(r->reader, item->place, "texts of an axis may have 23 bytes, found %zu",
+                strlen(item->text));
+      fine = false;
+    } else {
+      fine = false;
+    }
+  }
+  a->column->kind = STRUT_RANGE_LIST;
+  a->column->number = numbers;
+  a->column->words = words;
+  return fine;
+}
+
+static bool refuse_range(strut_study_reader *r, const along *a, const char *why) {
+  strut_say(r->reader, a->value->place, "the range of axis '%s' %s", a->parameter->name, why);
+  return false;
+}
+
+/* from, to and step: how many values? The last is `to` itself where the steps meet it. */
+static bool count_steps(strut_study_reader *r, along *a, double step) {
+  strut_study_column *c = a->column;
+  double steps = (c->to - c->from) / step;
+  if (step == 0.0 || !(steps >= 0.0) || !isfinite(steps))
+    return refuse_range(r, a, "never arrives: 'step' leads away from 'to'");
+  double whole = floor(steps * (1.0 + 1e-12) + 1e-9);
+  if (whole >= (double)STRUT_STUDY_MOST_POINTS)
+    return refuse_range(r, a, "has more than 1e9 values");
+  a->count = (int64_t)whole + 1;
+  c->step = step;
+  bool meets = fabs(steps - whole) <= 1e-9 * fmax(1.0, whole);
+  c->kind = meets && a->count > 1 ? STRUT_RANGE_EVEN : STRUT_RANGE_STEP;
+  return true;
+}
+
+static bool count_even(strut_study_reader *r, along *a, double count, bool logarithmic) {
+  strut_study_column *c = a->column;
+  if (count != floor(count) || count > (double)STRUT_STUDY_MOST_POINTS)
+    return refuse_range(r, a, "needs a whole 'count' from 1 to 1e9");
+  if (count == 1.0 && c->from != c->to)
+    return refuse_range(r, a, "of one value cannot have both 'from' and 'to'");
+  if (logarithmic && !(c->from * c->to > 0.0))
+    return refuse_range(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
+  a->count = (int64_t)count;
+  c->kind = logarithmic ? STRUT_RANGE_RATIO : STRUT_RANGE_EVEN;
+  return true;
+}
+
+static bool read_range(strut_study_reader *r, along *a) {
+  strut_fields fields;
+  double step = 0.0;
+  if (a->parameter->text)
+    return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
+  strut_read_fields(r->reader, STRUT_ROOM_RANGE, a->value, owner_of(a), &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, owner_of(a), a->value->place);
+  if (fields.broken) return false;
+  const strut_slot *by = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP);
+  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_RANGE_COUNT);
+  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_RANGE_SCALE);
+  bool logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
+  bool fine = read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_FROM)->value, "from", true,
+                         &a->column->from);
+  fine = read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_TO)->value, "to", false,
+                    &a->column->to) &&
+         fine;
+  if (by->state == STRUT_GIVEN) fine = read_value(r, a, by->value, "step", false, &step) && fine;
+  if (by->state != STRUT_GIVEN && count->state != STRUT_GIVEN)
+    return refuse_range(r, a, "lacks 'step' or 'count'");
+  if (!fine) return false;
+  if (count->state == STRUT_GIVEN) return count_even(r, a, count->number[0], logarithmic);
+  if (logarithmic)
+    return refuse_range(r, a,
+                        "needs 'count' instead of 'step' where it is "
+                        "logarithmic");
+  return count_steps(r, a, step);
+}
+
+/* Columns of the table that no axis can bear the name of. */
+static bool is_reserved(const strut_study_reader *r, const char *name) {
+  static const char *const names[] = {"point", "status", "message"};
+  bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+    found = found || strcmp(name, names[i]) == 0;
+  return found;
+}
+
+/* A parameter with its values. */
+static bool read_along(strut_study_reader *r, along *a) {
+  a->parameter = strut_study_parameter(r, a->key);
+  if (!a->parameter) return false;
+  if (is_reserved(r, a->parameter->name))
+    strut_say(r->reader, a->key->place,
+              "the table has a column '%s' of its own: give the model's parameter another name",
+              a->parameter->name);
+  *a->column = (strut_study_column){.name = a->parameter->name, .word = a->parameter->text};
+  *a->setting = (strut_setting){.name = a->parameter->name,
+                                .text = "",
+                                .known = !a->parameter->text,
+                                .bare = a->parameter->bare,
+                                .dimension = a->parameter->dimension,
+                                .place = a->key->place};
+  bool fine = false;
+  if (a->value->kind == STRUT_TREE_LIST)
+    fine = read_list(r, a);
+  else if (a->value->kind == STRUT_TREE_MAP)
+    fine = read_range(r, a);
+  else
+    strut_say(r->reader, a->value->place,
+              "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
+              "found %s",
+              a->parameter->name, strut_found(r->reader, a->value));
+  a->column->unit =
+      a->setting->bare || a->parameter->text ? "1" : strut_dimension_unit(a->setting->dimension);
+  return fine;
+}
+
+/* The mapping whose keys are the axis' parameters: the item itself, or what is zipped in it. */
+static const strut_tree *parameters_of(strut_study_reader *r, const strut_tree *item) {
+  if (item->kind != STRUT_TREE_MAP || item->count == 0) {
+    strut_say(r->reader, item->place, "expected an axis such as {friction: [0.1, 0.2]}, found %s",
+              strut_found(r->reader, item));
+    return NULL;
+  }
+  bool zip = strcmp(item->first->text, "zip") == 0;
+  if (item->count > 1) {
+    strut_say(r->reader, item->first->next->next->place,
+              "an axis gives one parameter; several that go together stand in {zip: {...}}, and "
+              "axes that cross are items of their own");
+    return NULL;
+  }
+  if (!zip) return item;
+  const strut_tree *map = item->first->next;
+  if (map->kind == STRUT_TREE_MAP && map->count > 0) return map;
+  strut_say(r->reader, map->place, "expected {NAME: [...], NAME: [...]} for 'zip', found %s",
+            strut_found(r->reader, map));
+  return NULL;
+}
+
+static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study_axis *axis) {
+  const strut_tree *map = parameters_of(r, item);
+  if (!map) return;
+  strut_study_column *columns = axis->columns =
+      strut_take(r->reader, &r->file->arena, map->count, sizeof *columns);
+  if (!columns) return;
+  bool fine = true;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    along a = {.key = key, .value = key->next, .column = &columns[axis->column_count]};
+    a.setting = &r->file->columns[r->file->column_count++];
+    fine = read_along(r, &a) && fine;
+    axis->column_count++;
+    if (fine && axis->column_count > 1 && a.count != axis->count) {
+      strut_say(r->reader, key->next->place,
+                "what is zipped has one length: '%s' has %lld values, '%s' %lld", columns[0].name,
+                (long long)axis->count, a.parameter->name, (long long)a.count);
+      fine = false;
+    }
+    if (axis->column_count == 1) axis->count = a.count;
+  }
+}
+
+static size_t count_columns(const strut_tree *list) {
+  size_t count = 0;
+  for (const strut_tree *item = list->first; item; item = item->next) {
+    if (item->kind != STRUT_TREE_MAP || !item->count) continue;
+    const strut_tree *value = item->first->next;
+    count += value->kind == STRUT_TREE_MAP && value->count > 1 ? value->count : 1;
+  }
+  return count;
+}
+
+/* The axis of the variants, before all others. */
+static void add_variants(strut_study_reader *r) {
+  strut_study_file *file = r->file;
+  strut_study_column *column = strut_take(r->reader, &file->arena, 1, sizeof *column);
+  if (!column) return;
+  *column =
+      (strut_study_column){.name = "variant", .unit = "1", .word = true, .words = r->variant_names};
+  file->columns[file->column_count++] = (strut_setting){.name = column->name, .bare = true};
+  file->study.axes[file->study.axis_count++] =
+      (strut_study_axis){.count = (int64_t)r->variant_count, .column_count = 1, .columns = column};
+  file->variants = true;
+}
+
+void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
+  strut_study *study = &r->file->study;
+  study->axes = strut_take(r->reader, &r->file->arena, list->count + 1, sizeof *study->axes);
+  r->file->columns =
+      strut_take(r->reader, &r->file->arena, count_columns(list) + 1, sizeof *r->file->columns);
+  if (!study->axes || !r->file->columns) return;
+  if (r->variant_count > 0) add_variants(r);
+  for (const strut_tree *item = list->first; item; item = item->next)
+    read_axis(r, item, &study->axes[study->axis_count++]);
+  double points = 1.0;
+  for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
+  if (points > (double)STRUT_STUDY_MOST_POINTS)
+    strut_say(r->reader, list->place, "the axes make %.3g points; a study has 1e9 at most", points);
+}

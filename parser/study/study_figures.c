@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figures of a study. See study_reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/study/study_reader.h"
+
+const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int key) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  if (slot->state != STRUT_GIVEN) return NULL;
+  const char *copy =
+      strut_arena_text(&r->file->arena, slot->value->text, strlen(slot->value->text));
+  if (!copy) r->reader->out_of_memory = true;
+  return copy;
+}
+
+static bool wanted(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
+                   const char *kind, const char *name, const char *text) {
+  if (text || fields->broken) return true;
+  strut_say(r->reader, key->place, "%s '%s' lacks '%s', expected a column of the table", kind,
+            key->text, name);
+  return false;
+}
+
+/* What a kind cannot do without. */
+static void require(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
+                    const strut_study_figure *f) {
+  static const char *const kinds[] = {"figure", "map", "figure", "", ""};
+  const char *kind = kinds[f->kind];
+  if (f->kind == STRUT_FIGURE_PERIOD || f->kind == STRUT_FIGURE_SNAPSHOTS) return;
+  wanted(r, fields, key, kind, "x", f->x);
+  wanted(r, fields, key, kind, "y", f->y);
+  if (f->kind == STRUT_FIGURE_MAP) wanted(r, fields, key, kind, "color", f->color);
+}
+
+static void read_times(strut_study_reader *r, const strut_slot *slot, strut_owner owner,
+                       strut_study_figure *figure) {
+  if (slot->state != STRUT_GIVEN) return;
+  double *times = strut_take(r->reader, &r->file->arena, slot->value->count, sizeof *times);
+  for (const strut_tree *item = slot->value->first; item && times; item = item->next)
+    if (strut_read_number(r->reader, item, "times", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
+                          &times[figure->time_count]))
+      figure->time_count++;
+  figure->times = times;
+}
+
+static void read_figure(strut_study_reader *r, const strut_tree *key, strut_study_figure *figure) {
+  strut_fields fields;
+  strut_owner owner = {"figure", key->text};
+  strut_read_name(r->reader, key, "figure");
+  strut_read_fields(r->reader, STRUT_ROOM_FIGURE, key->next, owner, &fields);
+  const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_FIGURE_KIND);
+  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_FIGURE_SCALE);
+  figure->name = key->text;
+  figure->kind = kind->state == STRUT_GIVEN ? (strut_study_figure_kind)kind->word : 0;
+  figure->x = strut_study_text(r, &fields, STRUT_KEY_FIGURE_AT_X);
+  figure->y = strut_study_text(r, &fields, STRUT_KEY_FIGURE_AT_Y);
+  figure->series = strut_study_text(r, &fields, STRUT_KEY_FIGURE_SERIES);
+  figure->color = strut_study_text(r, &fields, STRUT_KEY_FIGURE_COLOR);
+  figure->panels = strut_study_text(r, &fields, STRUT_KEY_FIGURE_PANELS);
+  figure->band = strut_study_text(r, &fields, STRUT_KEY_FIGURE_BAND);
+  figure->only = strut_study_text(r, &fields, STRUT_KEY_FIGURE_ONLY);
+  figure->difference = strut_study_text(r, &fields, STRUT_KEY_FIGURE_DIFFERENCE);
+  figure->title = strut_study_text(r, &fields, STRUT_KEY_FIGURE_TITLE);
+  figure->from = strut_number_or(&fields, STRUT_KEY_FIGURE_FROM, -HUGE_VAL);
+  figure->to = strut_number_or(&fields, STRUT_KEY_FIGURE_TO, HUGE_VAL);
+  for (int d = 0; d < 2 && scale->state == STRUT_GIVEN; d++) figure->scale[d] = scale->number[d];
+  read_times(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_TIMES), owner, figure);
+  require(r, &fields, key, figure);
+}
+
+void strut_study_read_figures(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  if (slot->state != STRUT_GIVEN) return;
+  study->figures =
+      strut_take(r->reader, &r->file->arena, slot->value->count, sizeof *study->figures);
+  for (const strut_tree *key = slot->value->first; key && study->figures; key = key->next->next)
+    read_figure(r, key, &study->figures[study->figure_count++]);
+}

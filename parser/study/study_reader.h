@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the parts of the study reader share. Internal to parser/.
+ */
+#ifndef STRUT_PARSER_STUDY_STUDY_READER_H
+#define STRUT_PARSER_STUDY_STUDY_READER_H
+
+#include "parser/study/read_study.h"
+#include "parser/read/reader.h"
+
+typedef struct strut_study_reader {
+  strut_reader *reader; /* of the study's text: its messages and its tree */
+  strut_study_file *file;
+  const strut_declared *declared; /* (declared_count) the model's parameters */
+  size_t declared_count;
+  strut_name_map given; /* parameters that the study gives: their declared index */
+  size_t variant_count; /* 0: the study has none */
+  const char **variant_names;
+} strut_study_reader;
+
+/** The parameter of the model that a key names; NULL where that was reported. */
+const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key);
+/** A text that a key gives, in the study's arena; NULL where there is none. */
+const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int key);
+/**
+ * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
+ * parameters.
+ */
+strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
+                                      strut_error *error);
+/** Reads the figures into the study. */
+void strut_study_read_figures(strut_study_reader *r, const strut_slot *slot);
+/** Reads the axes into the study, and their columns. */
+void strut_study_read_axes(strut_study_reader *r, const strut_tree *list);
+
+#endif

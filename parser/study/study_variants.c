@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The model of a study, once for each variant, with their keys over its own. See study_reader.h. */
+#include <string.h>
+
+#include "parser/study/overlay.h"
+#include "parser/study/study_reader.h"
+
+/* Sections of the model that are laid over, and the keys that do so. */
+static const struct {
+  const char *section;
+  int study, variant;
+} sections[] = {{"solver", STRUT_KEY_STUDY_SOLVER, STRUT_KEY_VARIANT_SOLVER},
+                {"run", STRUT_KEY_STUDY_RUN, STRUT_KEY_VARIANT_RUN},
+                {"initial", STRUT_KEY_STUDY_INITIAL, STRUT_KEY_VARIANT_INITIAL},
+                {"output", STRUT_KEY_STUDY_OUTPUT, STRUT_KEY_VARIANT_OUTPUT}};
+
+/* The model's file, beside the study's unless it says where it is. */
+static char *model_path(const char *study, const char *model) {
+  const char *slash = strrchr(study, '/');
+  size_t folder = *model == '/' || !slash ? 0 : (size_t)(slash - study) + 1;
+  char *path = strut_allocate(folder + strlen(model) + 1, 1);
+  if (!path) return NULL;
+  memcpy(path, study, folder);
+  strcpy(path + folder, model);
+  return path;
+}
+
+static bool lay_over(strut_document *document, const char *section, const strut_slot *slot) {
+  return slot->state != STRUT_GIVEN || strut_overlay(document, section, slot->value);
+}
+
+/* A model that cannot be read may be the study itself, or another: then that is all there is to say. */
+static bool is_study(const strut_study_file *file) {
+  strut_document document = {0};
+  strut_diagnostics unsaid = {0};
+  strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
+  strut_document_read(&document, &unsaid);
+  const strut_tree *root = document.root;
+  bool found = root && root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
+               !strut_tree_find(root, "nodes", NULL);
+  strut_document_free(&document);
+  strut_diagnostics_free(&unsaid);
+  return found;
+}
+
+/* The text of the model as a tree, with the study's keys over it and those of a variant, or NULL. */
+static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_fields *variant) {
+  strut_study_file *file = r->file;
+  strut_scene_source **source = &file->sources[file->source_count];
+  strut_status status = strut_scene_source_open(
+      file->model_path, file->model_text, file->model_length, &file->model_diagnostics, source);
+  if (status == STRUT_BAD_SCENE && is_study(file)) {
+    strut_diagnostics_free(&file->model_diagnostics);
+    strut_say(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
+              "'%s' is a study, expected a model", strut_shown(r->reader, file->study.model));
+  }
+  if (status != STRUT_OK) return status;
+  file->source_count++;
+  strut_document *document = strut_scene_source_document(*source);
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+    const char *section = sections[i].section;
+    if (!lay_over(document, section, strut_slot_of(top, sections[i].study)) ||
+        (variant && !lay_over(document, section, strut_slot_of(variant, sections[i].variant))))
+      return STRUT_NO_MEMORY;
+  }
+  return STRUT_OK;
+}
+
+/* Names stand in the table, as texts of axes do. */
+static void check_name(strut_study_reader *r, const strut_tree *key) {
+  strut_read_name(r->reader, key, "variant");
+  if (strlen(key->text) >= 24)
+    strut_say(r->reader, key->place, "names of variants may have 23 bytes, found %zu",
+              strlen(key->text));
+}
+
+static strut_status open_variants(strut_study_reader *r, strut_fields *top,
+                                  const strut_tree *variants) {
+  strut_status status = STRUT_OK;
+  for (const strut_tree *key = variants->first; key && status == STRUT_OK; key = key->next->next) {
+    strut_fields fields;
+    strut_owner owner = {"variant", key->text};
+    check_name(r, key);
+    strut_read_fields(r->reader, STRUT_ROOM_VARIANT, key->next, owner, &fields);
+    r->variant_names[r->variant_count++] = key->text;
+    status = open_source(r, top, &fields);
+  }
+  return status;
+}
+
+strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
+                                      strut_error *error) {
+  strut_study_file *file = r->file;
+  const strut_slot *model = strut_slot_of(top, STRUT_KEY_STUDY_MODEL);
+  const strut_slot *variants = strut_slot_of(top, STRUT_KEY_STUDY_VARIANTS);
+  size_t count = variants->state == STRUT_GIVEN ? variants->value->count : 0;
+  if (variants->state == STRUT_GIVEN && !count)
+    strut_say(r->reader, variants->value->place, "there are no variants in 'variants'");
+  if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
+  file->study.model = model->value->text;
+  if (!*file->study.model) {
+    strut_say(r->reader, model->value->place, "expected the path of a model for 'model', found ''");
+    return STRUT_BAD_SCENE;
+  }
+  file->model_path = model_path(file->path, model->value->text);
+  if (!file->model_path) return STRUT_NO_MEMORY;
+  strut_status status =
+      strut_file_read(file->model_path, &file->model_text, &file->model_length, error);
+  if (status != STRUT_OK) return status;
+  file->sources = strut_take(r->reader, &file->arena, count + 1, sizeof *file->sources);
+  r->variant_names = strut_take(r->reader, &file->arena, count + 1, sizeof *r->variant_names);
+  if (!file->sources || !r->variant_names) return STRUT_NO_MEMORY;
+  status = count ? open_variants(r, top, variants->value) : open_source(r, top, NULL);
+  if (status == STRUT_OK)
+    r->declared = strut_scene_source_parameters(file->sources[0], &r->declared_count);
+  return status;
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* docs/language-keys.md: one table for each mapping of the language. See keys_page.h. */
+#include "parser/write/keys_page.h"
+
+#include <string.h>
+
+#include "parser/language/keys.h"
+#include "parser/write/writer.h"
+
+/* What stands above the table of each room. */
+static const char *const introductions[STRUT_ROOM_COUNT] = {
+    [STRUT_ROOM_SCENE] = "The keys of the file itself.",
+    [STRUT_ROOM_NODE] =
+        "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.",
+    [STRUT_ROOM_MEMBER] =
+        "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Its own rest "
+        "key replaces that of its group, whichever it is; so does its own stiffness key.",
+    [STRUT_ROOM_GROUND] = "`ground: {...}`: the line that nodes may touch.",
+    [STRUT_ROOM_FRICTION] =
+        "`friction: {...}` of the ground, of a group, or of a contact; each key over the one "
+        "before. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`, and Karnopp's "
+        "needs `stick_velocity`; the smooth law needs `mu` or `mu_kinetic`, and `width`.",
+    [STRUT_ROOM_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: what is different for one node.",
+    [STRUT_ROOM_ACTUATOR] = "`actuators: {NAME: {...}}`.",
+    [STRUT_ROOM_LOAD] = "`loads: {NAME: {...}}`.",
+    [STRUT_ROOM_SIGNAL] =
+        "A signal is a mapping with one of these keys, or the name of an entry of `signals`. Its "
+        "values measure what its user needs: a length for an actuator, a plain factor for a load.",
+    [STRUT_ROOM_SINE] = "`{sine: {...}}`.",
+    [STRUT_ROOM_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
+    [STRUT_ROOM_SQUARE] = "`{square: {...}}`.",
+    [STRUT_ROOM_RAMP] = "`{ramp: {...}}`.",
+    [STRUT_ROOM_CONFIGURATION] =
+        "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with "
+        "these keys. `{}` is the drawn shape. Where a node is called `contacts`, two plain values "
+        "behind that key are its position.",
+    [STRUT_ROOM_INITIAL] = "`initial: {...}`.",
+    [STRUT_ROOM_SETTLE] = "`initial: {settle: {...}}`.",
+    [STRUT_ROOM_EQUILIBRIA] =
+        "`equilibria: {...}`: what `strut equilibria` and `initial: {equilibrium: NAME}` look for.",
+    [STRUT_ROOM_SOLVER] = "`solver: {...}`.",
+    [STRUT_ROOM_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
+    [STRUT_ROOM_MEASURE] = "`run: {measure: {...}}`.",
+    [STRUT_ROOM_QUANTITY] = "`run: {measure: {quantities: {NAME: {...}}}}`.",
+    [STRUT_ROOM_STEADY] = "`run: {measure: {steady: {...}}}`.",
+    [STRUT_ROOM_OUTPUT] = "`output: {...}`.",
+    [STRUT_ROOM_STUDY] =
+        "A study is a file of its own: what `strut sweep` runs. Expressions may use the model's "
+        "parameters in `set` and `derive`.",
+    [STRUT_ROOM_RANGE] = "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
+    [STRUT_ROOM_VARIANT] = "`variants: {NAME: {...}}` of a study.",
+    [STRUT_ROOM_CHECK] = "`check: {...}` of a study.",
+    [STRUT_ROOM_FIGURE] = "`figures: {NAME: {...}}` of a study."};
+
+/* "none, x, y or both", each in code style. */
+static void put_words(strut_writer *writer, const char *words) {
+  char word[40], next[40];
+  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++) {
+    bool last = !strut_word_at(words, i + 1, next, sizeof next);
+    strut_put(writer, i == 0 ? "`" : last ? " or `" : ", `");
+    strut_put(writer, word);
+    strut_put(writer, "`");
+  }
+}
+
+static void put_unit(strut_writer *writer, const strut_key *key) {
+  bool number = key->type == STRUT_TYPE_NUMBER || key->type == STRUT_TYPE_PAIR;
+  if (!number || key->measure == STRUT_MEASURE_NONE) return;
+  if (key->measure == STRUT_MEASURE_CONTEXT) {
+    strut_put(writer, " in the unit of its use");
+    return;
+  }
+  strut_put(writer, " [");
+  strut_put(writer, strut_dimension_unit(strut_measure_dimension(key->measure)));
+  strut_put(writer, "]");
+}
+
+static void put_type(strut_writer *writer, const strut_key *key) {
+  static const char *const types[] = {
+      [STRUT_TYPE_TEXT] = "text",
+      [STRUT_TYPE_NUMBER] = "number",
+      [STRUT_TYPE_PAIR] = "two numbers",
+      [STRUT_TYPE_WORDS] = "list of ",
+      [STRUT_TYPE_NAME] = "name",
+      [STRUT_TYPE_NODE_PAIR] = "names of two nodes",
+      [STRUT_TYPE_CONTACT_NODES] = "`all`, or list of nodes",
+      [STRUT_TYPE_NODE_SETS] = "list of nodes, or list of such lists",
+      [STRUT_TYPE_GROUPS] = "group, or list of groups",
+      [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
+      [STRUT_TYPE_SIGNALS] = "list of signals",
+      [STRUT_TYPE_TABLE] = "list of `[t, value]`",
+      [STRUT_TYPE_EXPRESSION] = "expression of columns",
+      [STRUT_TYPE_KEEP] = "list of quantities, or of ",
+      [STRUT_TYPE_AXES] = "list of axes",
+      [STRUT_TYPE_TIMES] = "list of times [s]",
+      [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
+      [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
+      [STRUT_TYPE_THINGS] = "names, each with "};
+  if (key->type == STRUT_TYPE_MAP) {
+    strut_put(writer, "[mapping](#");
+    strut_put(writer, key->name);
+    strut_put(writer, ")");
+    return;
+  }
+  if (types[key->type]) strut_put(writer, types[key->type]);
+  if (key->type == STRUT_TYPE_THINGS) {
+    strut_put(writer, key->words);
+  } else if (*key->words) {
+    put_words(writer, key->words);
+  }
+  put_unit(writer, key);
+  if (key->range == STRUT_RANGE_NOT_NEGATIVE) strut_put(writer, ", not negative");
+  if (key->range == STRUT_RANGE_ABOVE_ZERO) strut_put(writer, ", above zero");
+}
+
+static void put_room(strut_writer *writer, strut_room room) {
+  strut_put(writer, "\n## ");
+  strut_put(writer, strut_room_name(room));
+  strut_put(writer, "\n\n");
+  strut_put(writer, introductions[room]);
+  strut_put(writer, "\n\n| key | value | default | meaning |\n|---|---|---|---|\n");
+  for (int i = 0; i < strut_room_size(room); i++) {
+    const strut_key *key = strut_key_at(strut_room_first(room) + i);
+    bool words = strchr(key->fallback, ' ') && !strchr(key->fallback, '[');
+    strut_put(writer, "| `");
+    strut_put(writer, key->name);
+    strut_put(writer, "` | ");
+    put_type(writer, key);
+    strut_put(writer, key->required    ? " | required"
+                      : *key->fallback ? words ? " | " : " | `"
+                                       : " |");
+    strut_put(writer, key->fallback);
+    strut_put(writer, *key->fallback && !words ? "` | " : " | ");
+    strut_put(writer, key->description);
+    strut_put(writer, " |\n");
+  }
+}
+
+char *strut_keys_page(void) {
+  strut_writer result = {.text = NULL};
+  strut_put(
+      &result,
+      "<!-- Made from the table of keys (parser/language/keys_table.h); do not edit. -->\n"
+      "# Keys of the language, version 1\n\n"
+      "A number is an expression with units, such as `2*amplitude + 0.1 mm`; a plain number is in "
+      "the SI unit given here.\nGroups take the keys of a [member](#member), a [node](#node) or a "
+      "[contact](#contact), except `group`.\n");
+  for (int room = 0; room < STRUT_ROOM_COUNT; room++) put_room(&result, (strut_room)room);
+  if (!result.failed) return result.text;
+  strut_release(result.text);
+  return NULL;
+}

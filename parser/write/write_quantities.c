@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measured quantities as YAML: programs as expressions again. See writer.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/expression/expression.h"
+#include "parser/language/quantities.h"
+#include "parser/write/writer.h"
+
+static const struct operation_row {
+  size_t operands;
+  const char *word;
+} operations[] = {
+#define STRUT_OPERATION_ROW(id, operands, word) {operands, word},
+    STRUT_OPERATION_TABLE(STRUT_OPERATION_ROW)
+#undef STRUT_OPERATION_ROW
+};
+
+/* How tightly operators bind; numbers, columns and functions need no parentheses. */
+enum { OF_SUM = 1, OF_PRODUCT, OF_SIGN, OF_POWER, OF_PRIMARY };
+
+static int binding(const strut_instruction *p) {
+  switch (p->operation) {
+    case STRUT_OPERATION_ADD:
+    case STRUT_OPERATION_SUBTRACT:
+      return OF_SUM;
+    case STRUT_OPERATION_MULTIPLY:
+    case STRUT_OPERATION_DIVIDE:
+      return OF_PRODUCT;
+    case STRUT_OPERATION_NEGATE:
+      return OF_SIGN;
+    case STRUT_OPERATION_POWER:
+      return OF_POWER;
+    case STRUT_OPERATION_NUMBER:
+      return p->unit || signbit(p->number) ? 0 : OF_PRIMARY;
+    default:
+      return OF_PRIMARY;
+  }
+}
+
+/* Where the operand begins whose last instruction is program[end - 1]. */
+static size_t begin_of(const strut_instruction *program, size_t end) {
+  size_t needed = 1;
+  while (needed > 0) needed += operations[program[--end].operation].operands - 1;
+  return end;
+}
+
+/* Names that expressions would take apart stand in parentheses. */
+static void put_owner(strut_writer *writer, const char *kind, const char *name) {
+  const char *c = name;
+  while ((*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || *c == '_' ||
+         (c > name && *c >= '0' && *c <= '9'))
+    c++;
+  bool plain = !*c;
+  for (int owner = 0; owner <= STRUT_COLUMN_OF_LOSSES && plain; owner++) {
+    const char *group = strut_column_group((strut_column_owner)owner);
+    plain = !group || strcmp(group, name) != 0;
+  }
+  if (!plain) strut_put(writer, kind), strut_put(writer, "(");
+  strut_put(writer, name);
+  if (!plain) strut_put(writer, ")");
+}
+
+static void put_column(strut_writer *writer, strut_column column) {
+  const strut_scene *scene = writer->scene;
+  const char *word = strut_column_word(column.kind);
+  strut_column_owner owner = strut_column_owner_of(column.kind);
+  if (owner == STRUT_COLUMN_OF_PAIR) {
+    strut_put(writer, word);
+    strut_put(writer, "(");
+    strut_put(writer, scene->nodes[column.item].name);
+    strut_put(writer, ", ");
+    strut_put(writer, scene->nodes[column.other].name);
+    strut_put(writer, ")");
+    return;
+  }
+  if (owner == STRUT_COLUMN_OF_MEMBER)
+    put_owner(writer, "member", scene->members[column.item].name);
+  else if (owner == STRUT_COLUMN_OF_NODE || owner == STRUT_COLUMN_OF_CONTACT)
+    put_owner(writer, "node", scene->nodes[column.item].name);
+  else if (owner != STRUT_COLUMN_OF_RUN)
+    strut_put(writer, strut_column_group(owner));
+  if (owner != STRUT_COLUMN_OF_RUN) strut_put(writer, ".");
+  strut_put(writer, word);
+}
+
+static void put_number(strut_writer *writer, const strut_instruction *p) {
+  strut_put_number(writer, p->number);
+  if (p->unit) strut_put(writer, " "), strut_put(writer, p->unit);
+}
+
+static void put_operand(strut_writer *writer, const strut_instruction *program, size_t end,
+                        int least);
+
+static void put_call(strut_writer *writer, const strut_instruction *program, size_t end) {
+  size_t operands = operations[program[end - 1].operation].operands;
+  size_t second = end - 1, first = operands > 1 ? begin_of(program, second) : second;
+  strut_put(writer, operations[program[end - 1].operation].word);
+  strut_put(writer, "(");
+  put_operand(writer, program, first, OF_SUM);
+  if (operands > 1) strut_put(writer, ", "), put_operand(writer, program, second, OF_SUM);
+  strut_put(writer, ")");
+}
+
+static void put_operator(strut_writer *writer, const strut_instruction *program, size_t end,
+                         int level) {
+  const char *word = operations[program[end - 1].operation].word;
+  if (level == OF_SIGN) {
+    strut_put(writer, word);
+    put_operand(writer, program, end - 1, OF_SIGN);
+    return;
+  }
+  size_t second = end - 1, first = begin_of(program, second);
+  bool power = level == OF_POWER;
+  put_operand(writer, program, first, power ? OF_PRIMARY : level);
+  strut_put(writer, power ? "" : " ");
+  strut_put(writer, word);
+  strut_put(writer, power ? "" : " ");
+  put_operand(writer, program, second, power ? OF_PRIMARY : level + 1);
+}
+
+/* The operand that ends before `end`, in parentheses where it binds less tightly than `least`. */
+static void put_operand(strut_writer *writer, const strut_instruction *program, size_t end,
+                        int least) {
+  const strut_instruction *last = &program[end - 1];
+  int level = binding(last);
+  bool enclosed = level < least;
+  if (enclosed) strut_put(writer, "(");
+  if (last->operation == STRUT_OPERATION_NUMBER)
+    put_number(writer, last);
+  else if (last->operation == STRUT_OPERATION_COLUMN)
+    put_column(writer, last->column);
+  else if (level == OF_PRIMARY)
+    put_call(writer, program, end);
+  else
+    put_operator(writer, program, end, level);
+  if (enclosed) strut_put(writer, ")");
+}
+
+/* The expression as a text of its own, in quotes. */
+static void put_expression(strut_writer *writer, const strut_quantity_definition *d) {
+  strut_writer part = {.scene = writer->scene};
+  put_operand(&part, d->program, d->length, OF_SUM);
+  if (part.failed || !part.text)
+    writer->failed = true;
+  else
+    strut_put_quoted(writer, part.text);
+  strut_release(part.text);
+}
+
+static void put_absolute(strut_writer *writer, bool *first, const strut_quantity_definition *d) {
+  if (!(d->accuracy_absolute > 0.0)) return;
+  strut_put_key(writer, first, "accuracy");
+  strut_put(writer, "\"");
+  strut_put_number(writer, d->accuracy_absolute);
+  strut_put(writer, " ");
+  strut_put(writer, d->unit);
+  strut_put(writer, "\"");
+}
+
+void strut_put_quantities(strut_writer *writer, bool *first) {
+  static const char *const takes[] = {"mean", "min",   "max",    "range",
+                                      "rms",  "final", "change", "rate"};
+  const strut_experiment *e = &writer->scene->experiment;
+  if (!e->quantity_count) return;
+  strut_put_key(writer, first, "quantities");
+  strut_put(writer, "{");
+  for (size_t i = 0; i < e->quantity_count; i++) {
+    const strut_quantity_definition *d = &e->quantities[i];
+    bool inner = true;
+    strut_put(writer, i ? ", " : "");
+    strut_put_name(writer, d->name);
+    strut_put(writer, ": {");
+    strut_put_key(writer, &inner, "of");
+    put_expression(writer, d);
+    if (d->take != STRUT_TAKE_MEAN) {
+      strut_put_key(writer, &inner, "take");
+      strut_put(writer, takes[d->take]);
+    }
+    strut_put_value(writer, &inner, "accuracy", d->accuracy);
+    put_absolute(writer, &inner, d);
+    strut_put(writer, "}");
+  }
+  strut_put(writer, "}");
+}

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Configurations, the search for equilibria and the initial state, as YAML. See writer.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/write/writer.h"
+
+/* Same bits? -0 and 0 differ. */
+static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
+
+/* "[[n1, n4], [n2]]": always a list of lists, which cannot be taken for a position. */
+static void put_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
+  strut_put(writer, "[");
+  for (size_t i = 0; i < count; i++) {
+    strut_put(writer, i ? ", [" : "[");
+    for (size_t n = 0; n < sets[i].count; n++) {
+      if (n) strut_put(writer, ", ");
+      strut_put_name(writer, writer->scene->nodes[sets[i].node[n]].name);
+    }
+    strut_put(writer, "]");
+  }
+  strut_put(writer, "]");
+}
+
+/* The positions that are not as drawn. */
+static void put_shape(strut_writer *writer, const strut_configuration *c) {
+  bool first = true;
+  strut_put(writer, "{");
+  for (size_t i = 0; i < writer->scene->node_count; i++) {
+    const strut_node *node = &writer->scene->nodes[i];
+    if (same(c->position[i], node->position)) continue;
+    if (!first) strut_put(writer, ", ");
+    first = false;
+    strut_put_name(writer, node->name);
+    strut_put(writer, ": ");
+    strut_put_pair(writer, c->position[i]);
+  }
+  strut_put(writer, "}");
+}
+
+static void put_configurations(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  if (scene->configuration_count) strut_put(writer, "configurations:\n");
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const strut_configuration *c = &scene->configurations[i];
+    bool first = true;
+    strut_put(writer, "  ");
+    strut_put_name(writer, c->name);
+    strut_put(writer, ": {");
+    if (c->set_count) {
+      strut_put_key(writer, &first, "contacts");
+      put_sets(writer, c->sets, c->set_count);
+    }
+    if (c->shaped) {
+      strut_put_key(writer, &first, "shape");
+      put_shape(writer, c);
+    }
+    strut_put(writer, "}\n");
+  }
+}
+
+static void put_search(strut_writer *writer) {
+  const strut_search *search = &writer->scene->search;
+  bool first = true;
+  if (!search->support_count && !search->starts && search->seed == 1) return;
+  strut_put(writer, "equilibria: {");
+  if (search->support_count) {
+    strut_put_key(writer, &first, "supports");
+    put_sets(writer, search->supports, search->support_count);
+  }
+  strut_put_value(writer, &first, "starts", (double)search->starts);
+  strut_put_key(writer, &first, "seed");
+  strut_put_number(writer, (double)search->seed);
+  strut_put(writer, "}\n");
+}
+
+static bool is_configuration(const strut_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->configuration_count; i++)
+    if (strcmp(scene->configurations[i].name, name) == 0) return true;
+  return false;
+}
+
+/* A configuration's own name, or a parameter's that leads to it where the own one is taken for a
+   parameter. */
+static const char *leading_name(const strut_scene *scene, const char *name) {
+  const char *leading = name;
+  bool taken = false;
+  for (size_t i = 0; i < scene->parameter_count; i++) {
+    const strut_parameter *p = &scene->parameters[i];
+    if (!isnan(p->value)) continue; /* no text */
+    if (strcmp(p->name, name) == 0) taken = true;
+    if (strcmp(p->text, name) == 0 && !is_configuration(scene, p->name)) leading = p->name;
+  }
+  return taken ? leading : name;
+}
+
+static void put_initial_pair(strut_writer *writer, bool *begun, bool *listed, const char *key,
+                             const char *node, const double pair[2]) {
+  if (!*begun) strut_put(writer, "initial:\n");
+  if (!*listed) strut_put(writer, key);
+  *begun = *listed = true;
+  strut_put(writer, "    ");
+  strut_put_name(writer, node);
+  strut_put(writer, ": ");
+  strut_put_pair(writer, pair);
+  strut_put(writer, "\n");
+}
+
+static void put_settle(strut_writer *writer, const strut_settle *settle) {
+  bool first = true;
+  strut_put(writer, "  settle: {");
+  strut_put_value(writer, &first, "speed", settle->speed);
+  strut_put_value(writer, &first, "acceleration", settle->acceleration);
+  strut_put_value(writer, &first, "limit", settle->limit);
+  if (settle->evaluations > 0.0)
+    strut_put_value(writer, &first, "evaluations", settle->evaluations);
+  if (settle->step != 0.0 && settle->step != writer->scene->experiment.step)
+    strut_put_value(writer, &first, "step", fmax(0.0, settle->step));
+  if (settle->perturb) strut_put(writer, ", perturb: yes");
+  if (settle->friction) strut_put(writer, ", friction: kept");
+  strut_put(writer, "}\n");
+}
+
+static void put_initial(strut_writer *writer) {
+  static const double rest[2] = {0.0, 0.0};
+  const strut_scene *scene = writer->scene;
+  bool begun = false, positions = false, velocities = false;
+  if (scene->start_equilibrium >= 0) {
+    strut_put(writer, "initial:\n  equilibrium: ");
+    strut_put_name(writer,
+                   leading_name(scene, scene->configurations[scene->start_equilibrium].name));
+    strut_put(writer, "\n");
+    begun = true;
+  }
+  for (size_t i = 0; i < scene->node_count && scene->start_equilibrium < 0; i++) {
+    const strut_node *node = &scene->nodes[i];
+    if (!same(node->start, node->position))
+      put_initial_pair(writer, &begun, &positions, "  positions:\n", node->name, node->start);
+  }
+  for (size_t i = 0; i < scene->node_count; i++) {
+    const strut_node *node = &scene->nodes[i];
+    if (!same(node->velocity, rest))
+      put_initial_pair(writer, &begun, &velocities, "  velocities:\n", node->name, node->velocity);
+  }
+  if (!scene->settle.wanted) return;
+  if (!begun) strut_put(writer, "initial:\n");
+  put_settle(writer, &scene->settle);
+}
+
+void strut_put_shapes(strut_writer *writer) {
+  put_configurations(writer);
+  put_search(writer);
+  put_initial(writer);
+}

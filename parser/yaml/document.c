@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/yaml/document.h"
+
+#include <string.h>
+#include <time.h>
+
+#include "parser/yaml/document_parts.h"
+#include "parser/yaml/text.h"
+
+enum {
+  DEPTH_MOST = 64,
+  SLAB = 256,          /* nodes taken from the arena at once */
+  RECENT_SLOTS = 1024, /* short scalars seen lately, to share their text */
+  RECENT_LENGTH = 24,
+  PROBLEMS_MOST = 1000, /* then reading stops */
+};
+static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
+
+/* A list or map whose end has not come yet. */
+typedef struct frame {
+  strut_tree *node, *last; /* last child so far */
+  uint64_t weight;
+  size_t height; /* of the highest child so far */
+  size_t anchor; /* 1 + index, or 0 */
+  bool bracketed;
+  bool value_next; /* map: a key waits for its value */
+} frame;
+
+typedef struct reader {
+  yaml_parser_t yaml;
+  strut_document *document;
+  strut_diagnostics *diagnostics;
+  strut_cursor cursor;
+  frame stack[DEPTH_MOST];
+  size_t depth;
+  strut_tree *spare; /* unused nodes of the newest slab */
+  size_t spare_count;
+  uint64_t nodes, expanded;
+  strut_anchors anchors;
+  strut_key_table keys;
+  const char *recent[RECENT_SLOTS];
+  bool ended, no_memory;
+} reader;
+
+static strut_place place_of(const yaml_event_t *event) {
+  size_t length = event->end_mark.index - event->start_mark.index;
+  return (strut_place){(uint32_t)event->start_mark.line + 1, (uint32_t)event->start_mark.column + 1,
+                       (uint32_t)length};
+}
+
+/* Functions below return false where reading cannot go on. */
+static bool out_of_memory(reader *r) {
+  r->no_memory = true;
+  return false;
+}
+
+/* libyaml's mark of an anchored node is its anchor: moves on to the node itself. */
+static void skip_anchor(reader *r, const yaml_event_t *event, strut_place *place) {
+  strut_cursor *at = &r->cursor;
+  strut_cursor_to_index(at, event->start_mark.index);
+  bool in_word = true, in_comment = false;
+  for (; at->offset < at->length; strut_cursor_step(at)) {
+    char c = at->text[at->offset];
+    bool end_of_line = strut_text_break(at->text + at->offset, at->length - at->offset) > 0;
+    bool blank = c == ' ' || c == '\t' || end_of_line;
+    if (end_of_line) in_comment = false;
+    if (blank)
+      in_word = false;
+    else if (c == '#' && !in_word)
+      in_comment = true;
+    else if (!in_word && !in_comment)
+      break;
+  }
+  size_t end = event->end_mark.index;
+  place->line = at->line;
+  place->column = at->column;
+  place->length = end > at->index ? (uint32_t)(end - at->index) : 0;
+}
+
+static bool over_limit(reader *r, strut_place place, const char *what, uint64_t most) {
+  strut_diagnose(r->diagnostics, place, "more than %llu %s", (unsigned long long)most, what);
+  return false;
+}
+
+static strut_tree *new_node(reader *r, strut_tree_kind kind, strut_place place) {
+  if (r->nodes >= NODES_MOST) {
+    over_limit(r, place, "values", NODES_MOST);
+    return NULL;
+  }
+  if (!r->spare_count) {
+    r->spare = strut_arena_allocate(&r->document->arena, SLAB, sizeof *r->spare);
+    if (!r->spare) {
+      out_of_memory(r);
+      return NULL;
+    }
+    r->spare_count = SLAB;
+  }
+  r->nodes++;
+  r->spare_count--;
+  strut_tree *node = r->spare++;
+  *node = (strut_tree){.kind = (uint32_t)kind & 3u, .place = place, .text = ""};
+  return node;
+}
+
+/* Links a node to the open list or map, or makes it the root. */
+static void attach(reader *r, strut_tree *node, uint64_t weight, size_t height) {
+  if (!r->depth) {
+    r->document->root = node;
+    return;
+  }
+  frame *open = &r->stack[r->depth - 1];
+  if (open->last)
+    open->last->next = node;
+  else
+    open->node->first = node;
+  open->last = node;
+  open->weight += weight;
+  if (open->height < height) open->height = height;
+  if (open->node->kind == STRUT_TREE_LIST || open->value_next) open->node->count++;
+  if (open->node->kind == STRUT_TREE_MAP) open->value_next = !open->value_next;
+}
+
+static bool key_expected(const reader *r) {
+  const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
+  return open && open->node->kind == STRUT_TREE_MAP && !open->value_next;
+}
+
+/* Names the node; *index is 1 + the anchor's, or 0 without one. */
+static bool read_anchor(reader *r, const yaml_char_t *name, strut_tree *node, size_t *index) {
+  *index = 0;
+  if (!name) return true;
+  if (r->anchors.count >= STRUT_ANCHOR_MOST)
+    return over_limit(r, node->place, "anchors", STRUT_ANCHOR_MOST);
+  const char *text = (const char *)name;
+  text = strut_arena_text(&r->document->arena, text, strlen(text));
+  if (!text || !strut_anchors_add(&r->anchors, text, node)) return out_of_memory(r);
+  *index = r->anchors.count;
+  return true;
+}
+
+static void check_tag(reader *r, const yaml_char_t *tag, const yaml_event_t *event) {
+  if (!tag) return;
+  strut_place place = place_of(event);
+  place.length = 1;
+  strut_diagnose(r->diagnostics, place, "tags (words that begin with '!') are not allowed");
+}
+
+/* Escapes can make what the text itself must not hold. */
+static bool check_escapes(reader *r, const char *text, size_t length, strut_place place) {
+  for (size_t at = 0; at < length;) {
+    uint32_t code;
+    at += strut_text_decode(text + at, length - at, &code);
+    if (!strut_text_forbidden(code)) continue;
+    strut_diagnose(r->diagnostics, place, "an escape makes the control character U+%04X",
+                   (unsigned)code);
+    return false;
+  }
+  return true;
+}
+
+/* The scalar's text in the arena; a short one that was seen lately is shared. */
+static const char *keep_text(reader *r, const char *text, size_t length) {
+  if (!length) return "";
+  if (length > RECENT_LENGTH) return strut_arena_text(&r->document->arena, text, length);
+  size_t slot = (size_t)strut_text_hash(text, length, 0) % RECENT_SLOTS;
+  const char *known = r->recent[slot];
+  if (known && strncmp(known, text, length) == 0 && known[length] == '\0') return known;
+  return r->recent[slot] = strut_arena_text(&r->document->arena, text, length);
+}
+
+static bool read_scalar(reader *r, const yaml_event_t *event) {
+  const char *text = (const char *)event->data.scalar.value;
+  size_t length = event->data.scalar.length, anchor;
+  strut_place place = place_of(event);
+  bool quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
+  check_tag(r, event->data.scalar.tag, event);
+  if (event->data.scalar.anchor) skip_anchor(r, event, &place);
+  strut_tree *node = new_node(r, STRUT_TREE_SCALAR, place);
+  if (!node || !read_anchor(r, event->data.scalar.anchor, node, &anchor)) return false;
+  if (event->data.scalar.style == YAML_DOUBLE_QUOTED_SCALAR_STYLE &&
+      !check_escapes(r, text, length, place))
+    length = 0;
+  node->quoted = quoted;
+  node->text = keep_text(r, text, length);
+  if (!node->text) return out_of_memory(r);
+  if (anchor) r->anchors.items[anchor - 1].weight = 1;
+  attach(r, node, 1, 0);
+  return true;
+}
+
+static bool read_alias(reader *r, const yaml_event_t *event) {
+  const char *name = (const char *)event->data.alias.anchor;
+  strut_place place = place_of(event);
+  const strut_anchor *anchor = strut_anchors_find(&r->anchors, name);
+  if (key_expected(r)) {
+    strut_diagnose(r->diagnostics, place, "a key must be a plain text, not an alias");
+    return false;
+  }
+  if (!anchor || !anchor->weight) {
+    strut_diagnose(
+        r->diagnostics, place,
+        anchor ? "alias '*%.64s' stands inside what it repeats" : "unknown alias '*%.64s'", name);
+    return false;
+  }
+  r->expanded += anchor->weight;
+  if (r->expanded > EXPANDED_MOST)
+    return over_limit(r, place, "values repeated by aliases", EXPANDED_MOST);
+  if (r->depth + anchor->height > DEPTH_MOST)
+    return over_limit(r, place, "levels of nesting", DEPTH_MOST);
+  strut_tree *node = new_node(r, STRUT_TREE_SCALAR, place);
+  if (!node) return false;
+  *node = *anchor->node;
+  node->place = place;
+  node->next = NULL;
+  attach(r, node, anchor->weight, anchor->height);
+  return true;
+}
+
+static bool open_collection(reader *r, const yaml_event_t *event) {
+  bool map = event->type == YAML_MAPPING_START_EVENT;
+  const yaml_char_t *anchor =
+      map ? event->data.mapping_start.anchor : event->data.sequence_start.anchor;
+  strut_place place = place_of(event);
+  check_tag(r, map ? event->data.mapping_start.tag : event->data.sequence_start.tag, event);
+  if (anchor) skip_anchor(r, event, &place);
+  place.length = 1;
+  if (key_expected(r)) {
+    strut_diagnose(r->diagnostics, place, "a key must be a plain text, not a %s",
+                   map ? "mapping" : "list");
+    return false;
+  }
+  if (r->depth == DEPTH_MOST) return over_limit(r, place, "levels of nesting", DEPTH_MOST);
+  strut_tree *node = new_node(r, map ? STRUT_TREE_MAP : STRUT_TREE_LIST, place);
+  bool bracketed = map ? event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE
+                       : event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE;
+  frame open = {.node = node, .weight = 1, .bracketed = bracketed};
+  if (!node || !read_anchor(r, anchor, node, &open.anchor)) return false;
+  r->stack[r->depth++] = open;
+  return true;
+}
+
+static bool close_collection(reader *r, const yaml_event_t *event) {
+  frame closed = r->stack[--r->depth];
+  strut_tree *node = closed.node;
+  /* The length of a bracketed one on one line; a block is shown by its first character. */
+  size_t line = event->end_mark.line + 1, column = event->end_mark.column + 1;
+  if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
+      column > node->place.column)
+    node->place.length = (uint32_t)column - node->place.column;
+  if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, &r->keys, r->diagnostics))
+    return out_of_memory(r);
+  if (closed.anchor) {
+    strut_anchor *anchor = &r->anchors.items[closed.anchor - 1];
+    anchor->weight = closed.weight;
+    anchor->height = closed.height + 1;
+  }
+  attach(r, node, closed.weight, closed.height + 1);
+  return true;
+}
+
+/* Behind the document only comments and its end mark may stand; libyaml need not look there. */
+static bool check_rest(reader *r, const yaml_event_t *event) {
+  strut_cursor *at = &r->cursor;
+  strut_cursor_to_index(at, event->end_mark.index);
+  bool comment = false;
+  while (at->offset < at->length) {
+    const char *here = at->text + at->offset;
+    size_t left = at->length - at->offset;
+    bool end_of_line = strut_text_break(here, left) > 0;
+    if (end_of_line)
+      comment = false;
+    else if (*here == '#')
+      comment = true;
+    bool dots = at->column == 1 && left >= 3 && memcmp(here, "...", 3) == 0;
+    if (dots && !comment)
+      strut_cursor_to_offset(at, at->offset + 2);
+    else if (!comment && !end_of_line && *here != ' ' && *here != '\t')
+      break;
+    strut_cursor_step(at);
+  }
+  if (at->offset >= at->length) return true;
+  bool next = at->length - at->offset >= 3 && memcmp(at->text + at->offset, "---", 3) == 0;
+  strut_place place = {at->line, at->column, next ? 3 : 1};
+  strut_diagnose(r->diagnostics, place,
+                 next ? "a second document; a file holds one" : "text behind the document's end");
+  return false;
+}
+
+static bool read_end(reader *r, const yaml_event_t *event) {
+  const strut_tree *root = r->document->root;
+  r->ended = true;
+  if (root && (root->kind != STRUT_TREE_SCALAR || root->quoted || root->text[0] != '\0'))
+    return event->type != YAML_DOCUMENT_END_EVENT || check_rest(r, event);
+  strut_diagnose(r->diagnostics, (strut_place){0, 0, 0}, "the file is empty");
+  return false;
+}
+
+static bool take_event(reader *r, const yaml_event_t *event) {
+  switch (event->type) {
+    case YAML_SCALAR_EVENT:
+      return read_scalar(r, event);
+    case YAML_ALIAS_EVENT:
+      return read_alias(r, event);
+    case YAML_MAPPING_START_EVENT:
+    case YAML_SEQUENCE_START_EVENT:
+      return open_collection(r, event);
+    case YAML_MAPPING_END_EVENT:
+    case YAML_SEQUENCE_END_EVENT:
+      return close_collection(r, event);
+    case YAML_DOCUMENT_END_EVENT:
+    case YAML_STREAM_END_EVENT:
+      return read_end(r, event);
+    default:
+      return true;
+  }
+}
+
+static bool read_events(reader *r) {
+  size_t mark = strut_text_mark(r->diagnostics->text, r->diagnostics->length);
+  if (!yaml_parser_initialize(&r->yaml)) return out_of_memory(r);
+  yaml_parser_set_encoding(&r->yaml, YAML_UTF8_ENCODING);
+  yaml_parser_set_input_string(&r->yaml, (const unsigned char *)r->diagnostics->text + mark,
+                               r->diagnostics->length - mark);
+  bool fine = true;
+  while (fine && !r->ended) {
+    yaml_event_t event;
+    if (yaml_parser_parse(&r->yaml, &event)) {
+      fine = take_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
+      yaml_event_delete(&event);
+    } else {
+      const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
+      const strut_tree *bracket = open && open->bracketed ? open->node : NULL;
+      fine = false;
+      if (!strut_document_syntax_error(&r->yaml, bracket, r->diagnostics)) out_of_memory(r);
+    }
+  }
+  yaml_parser_delete(&r->yaml);
+  return fine;
+}
+
+strut_status strut_document_read(strut_document *document, strut_diagnostics *diagnostics) {
+  size_t before = diagnostics->count;
+  document->root = NULL;
+  if (!strut_document_scan(diagnostics))
+    return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
+  reader *r = strut_allocate(1, sizeof *r);
+  if (!r) return STRUT_NO_MEMORY;
+  r->document = document;
+  r->diagnostics = diagnostics;
+  r->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  r->keys.seed = r->anchors.seed = (uint64_t)(uintptr_t)r ^ (uint64_t)time(NULL) << 20;
+  if (!read_events(r)) document->root = NULL;
+  bool no_memory = r->no_memory || diagnostics->out_of_memory;
+  strut_anchors_free(&r->anchors);
+  strut_release(r->keys.slots);
+  strut_release(r);
+  if (no_memory) document->root = NULL;
+  if (no_memory) return STRUT_NO_MEMORY;
+  return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;
+}
+
+void strut_document_free(strut_document *document) {
+  strut_arena_free(&document->arena);
+  document->root = NULL;
+}
+
+strut_tree *strut_tree_find(const strut_tree *map, const char *key, strut_tree **key_node) {
+  for (strut_tree *k = map->kind == STRUT_TREE_MAP ? map->first : NULL; k; k = k->next->next) {
+    if (strcmp(k->text, key) != 0) continue;
+    if (key_node) *key_node = k;
+    return k->next;
+  }
+  return NULL;
+}

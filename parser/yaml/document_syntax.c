@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <string.h>
+
+#include "parser/yaml/document_parts.h"
+#include "parser/yaml/text.h"
+
+/* What libyaml says, in whose context, and what a person wants to hear. */
+static const struct rule {
+  const char *problem, *context; /* stretches of libyaml's words; NULL: any */
+  const char *message;
+  const char *begun; /* what began in the context's line, appended; or NULL */
+  bool at_context;   /* the place is where the context begins */
+  bool at_margin;    /* true only where the line begins; elsewhere something is left over */
+} rules[] = {
+    {.problem = "mapping values are not allowed",
+     .message = "unexpected ':'; a key begins a new line, and a text that holds ': ' needs quotes"},
+    {.problem = "tab character", .message = "a tab is not allowed as indentation; use spaces"},
+    {.problem = "end of stream",
+     .context = "quoted scalar",
+     .at_context = true,
+     .message = "this quote is never closed"},
+    {.problem = "document indicator",
+     .context = "quoted scalar",
+     .at_context = true,
+     .message = "this quote is not closed before the document ends"},
+    {.problem = "expected ',' or ']'", .begun = "the list begun", .message = "expected ',' or ']'"},
+    {.problem = "expected ',' or '}'",
+     .begun = "the mapping begun",
+     .message = "expected ',' or '}'"},
+    {.problem = "could not find expected ':'",
+     .at_context = true,
+     .message = "expected ':' and a value behind this key"},
+    {.problem = "expected key",
+     .begun = "the mapping begun",
+     .at_margin = true,
+     .message = "expected a key at the same indentation as the other keys"},
+    {.problem = "expected '-' indicator",
+     .begun = "the list begun",
+     .at_margin = true,
+     .message = "expected '- ' at the same indentation as the other items"},
+    {.problem = "block sequence entries are not allowed",
+     .message = "a '- ' item is not allowed here; begin it on a new line, or write [a, b]"},
+    {.problem = "mapping keys are not allowed", .message = "a '? ' key is not allowed here"},
+    {.problem = "expected node content", .message = "a value is missing here"},
+    {.problem = "unknown escape character",
+     .message = "unknown escape; in double quotes a backslash is written '\\\\'"},
+    {.problem = "hexdecimal number",
+     .context = "quoted scalar",
+     .message = "an escape lacks hexadecimal digits"},
+    {.problem = "invalid Unicode", .message = "the escape is not a character of Unicode"},
+    {.problem = "alphabetic or numeric character",
+     .context = "anchor",
+     .message = "expected a name behind '&'; a text that begins with '&' needs quotes"},
+    {.problem = "alphabetic or numeric character",
+     .context = "alias",
+     .message = "expected a name behind '*'; a text that begins with '*' needs quotes"},
+    {.problem = "undefined tag handle",
+     .message = "tags (words that begin with '!') are not allowed"},
+    {.context = "a tag", .message = "tags (words that begin with '!') are not allowed"},
+    {.problem = "incompatible YAML document", .message = "only YAML 1.1 and 1.2 can be read"},
+    {.context = "directive", .message = "expected '%YAML 1.2'"},
+    {.problem = "<document start>", .message = "expected '---' behind a %YAML line"},
+    {.context = "block scalar", .message = "expected '|' or '>' and then a new line"},
+};
+
+static bool has(const char *text, const char *part) {
+  return !part || (text && strstr(text, part));
+}
+
+static strut_place place_at(const strut_diagnostics *diagnostics, yaml_mark_t mark, char *here) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_index(&cursor, mark.index);
+  *here = cursor.offset < cursor.length ? cursor.text[cursor.offset] : '\0';
+  return (strut_place){(uint32_t)mark.line + 1, (uint32_t)mark.column + 1, 1};
+}
+
+/* "found character that cannot start any token" */
+static void report_start(strut_diagnostics *diagnostics, strut_place place, char here) {
+  if (here == '\t')
+    strut_diagnose(diagnostics, place, "a tab is not allowed as indentation; use spaces");
+  else
+    strut_diagnose(diagnostics, place, "a value cannot begin with '%c'; put it in quotes", here);
+}
+
+/* True where something else than blanks stands before the place in its line. */
+static bool behind_something(const strut_diagnostics *diagnostics, strut_place place) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_line(&cursor, place.line);
+  while (cursor.line == place.line && cursor.column < place.column) {
+    char c = cursor.offset < cursor.length ? cursor.text[cursor.offset] : ' ';
+    if (c != ' ' && c != '\t') return true;
+    if (!strut_cursor_step(&cursor)) break;
+  }
+  return false;
+}
+
+bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
+                                 strut_diagnostics *diagnostics) {
+  if (parser->error == YAML_MEMORY_ERROR) return false;
+  char here;
+  strut_place place = place_at(diagnostics, parser->problem_mark, &here);
+  if (has(parser->problem, "cannot start any token")) {
+    report_start(diagnostics, place, here);
+    return true;
+  }
+  if (here == '\0' && open && !has(parser->context, "quoted scalar")) {
+    /* At the end of the text the place of interest is where the bracket stands. */
+    strut_diagnose(diagnostics, open->place, "this '%c' is never closed",
+                   open->kind == STRUT_TREE_LIST ? '[' : '{');
+    return true;
+  }
+  for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
+    const struct rule *rule = &rules[i];
+    if (!has(parser->problem, rule->problem) || !has(parser->context, rule->context)) continue;
+    if (rule->at_context) place = place_at(diagnostics, parser->context_mark, &here);
+    if (rule->at_margin && behind_something(diagnostics, place))
+      strut_diagnose(diagnostics, place, "unexpected text behind a value");
+    else if (rule->begun)
+      strut_diagnose(diagnostics, place, "%s (%s in line %zu)", rule->message, rule->begun,
+                     parser->context_mark.line + 1);
+    else
+      strut_diagnose(diagnostics, place, "%s", rule->message);
+    return true;
+  }
+  strut_diagnose(diagnostics, place, "not valid YAML: %s%s%s",
+                 parser->problem ? parser->problem : "unknown trouble", parser->context ? " " : "",
+                 parser->context ? parser->context : "");
+  return true;
+}
