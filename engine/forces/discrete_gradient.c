@@ -6,7 +6,7 @@
 
 #include "engine/forces/forces.h"
 
-bool strut_averaged_create(const strut_model *model, strut_state *state, strut_averaged *step) {
+bool strut_discrete_gradient_create(const strut_model *model, strut_state *state, strut_discrete_gradient *step) {
   size_t slots = (size_t)model->members.slots;
   double **all[] = {&step->length0, &step->rest0,   &step->rest_rate, &step->sum[0],
                     &step->sum[1],  &step->lengths, &step->tension,   &step->slope};
@@ -16,8 +16,8 @@ bool strut_averaged_create(const strut_model *model, strut_state *state, strut_a
   return true;
 }
 
-void strut_averaged_begin(const strut_model *model, strut_state *state, const double *q,
-                          double begin, double h, strut_averaged *step) {
+void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
+                          double begin, double h, strut_discrete_gradient *step) {
   const strut_member_table *t = &model->members;
   step->begin = begin, step->h = h;
   if (model->plan & STRUT_TERM_DRIVE) {
@@ -76,10 +76,10 @@ static void add_powers(strut_state *state, const average *a, const stretching *m
   double drive = -a->elastic * change / m->h - damped * rest_rate;
   state->power[STRUT_POWER_DRIVE] += drive;
   state->power[STRUT_POWER_MEMBERS] += lost;
-  state->power[STRUT_POWER_MOVED] += fabs(drive) + lost;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
 }
 
-static void add_members(const strut_model *model, strut_state *state, strut_averaged *step,
+static void add_members(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
                         const double *restrict q0, const double *restrict q1) {
   const strut_member_table *t = &model->members;
   double *restrict force = state->force;
@@ -105,7 +105,7 @@ static void add_members(const strut_model *model, strut_state *state, strut_aver
   }
 }
 
-void strut_averaged_forces(const strut_model *model, strut_state *state, strut_averaged *step,
+void strut_discrete_gradient_forces(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
                            const double *q1, const double *u) {
   size_t bytes = (size_t)model->length * sizeof(double);
   state->evaluations++;
@@ -118,7 +118,7 @@ void strut_averaged_forces(const strut_model *model, strut_state *state, strut_a
   add_members(model, state, step, state->q, q1);
 }
 
-void strut_averaged_tensions(const strut_model *model, const strut_state *state, double *tension) {
+void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state, double *tension) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
     double dx = state->q[t->to[j]] - state->q[t->from[j]];

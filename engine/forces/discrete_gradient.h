@@ -17,7 +17,7 @@
 #include "engine/model/state.h"
 
 /** A step, and what its members do: (count) arrays in member order. */
-typedef struct strut_averaged {
+typedef struct strut_discrete_gradient {
   double begin, h;       /* [s] */
   double *length0;       /* at its begin [m] */
   double *rest0;         /* (slots) rest lengths there [m] */
@@ -26,21 +26,21 @@ typedef struct strut_averaged {
   double *lengths;       /* lengths at both ends, added [m] */
   double *tension;       /* on average [N] */
   double *slope;         /* d tension / d length at the end [N/m] */
-} strut_averaged;
+} strut_discrete_gradient;
 
 /** Arrays in the state's arena. False: out of memory. */
-bool strut_averaged_create(const strut_model *model, strut_state *state, strut_averaged *step);
+bool strut_discrete_gradient_create(const strut_model *model, strut_state *state, strut_discrete_gradient *step);
 /** Sets the step off at positions q (length), and rest lengths to those at its end. */
-void strut_averaged_begin(const strut_model *model, strut_state *state, const double *q,
-                          double begin, double h, strut_averaged *step);
+void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
+                          double begin, double h, strut_discrete_gradient *step);
 /**
  * Net forces on the nodes over the step that ends at q1 with velocity u on average, (length) both,
  * into state->force; with the ledger powers, which times h are the works. Loads are taken at the
  * middle of the step. Counts as an evaluation.
  */
-void strut_averaged_forces(const strut_model *model, strut_state *state, strut_averaged *step,
+void strut_discrete_gradient_forces(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
                            const double *q1, const double *u);
 /** Tensions as (1) gives them at the state's q, with its rest lengths, into `tension` (count). */
-void strut_averaged_tensions(const strut_model *model, const strut_state *state, double *tension);
+void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state, double *tension);
 
 #endif

@@ -33,7 +33,7 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
     if (!state->ledger) continue;
     double power = px * v[at] + py * v[at + 1];
     state->power[STRUT_POWER_LOAD] += power;
-    state->power[STRUT_POWER_MOVED] += fabs(power);
+    state->power[STRUT_POWER_EXCHANGED] += fabs(power);
   }
 }
 

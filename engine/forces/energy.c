@@ -56,13 +56,13 @@ static double contact(const strut_model *model, const double *q) {
   return sum;
 }
 
-strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t) {
+strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t) {
   strut_drive_apply(model, state, t);
-  return (strut_stored){strut_energy_kinetic(model, state->v), elastic(model, state),
+  return (strut_energies){strut_energy_kinetic(model, state->v), elastic(model, state),
                         gravity(model, state->q), contact(model, state->q)};
 }
 
-double strut_energy_of_loads(const strut_model *model, const strut_state *state) {
+double strut_energy_load_potential(const strut_model *model, const strut_state *state) {
   const strut_scene *scene = model->scene;
   double sum = 0.0;
   for (size_t i = 0; i < scene->load_count; i++) {
@@ -77,9 +77,9 @@ double strut_energy_of_loads(const strut_model *model, const strut_state *state)
 }
 
 double strut_energy_load_work(const strut_model *model, const strut_state *state) {
-  return strut_energy_of_loads(model, state) - state->load_mark;
+  return strut_energy_load_potential(model, state) - state->load_mark;
 }
 
-void strut_energy_mark(const strut_model *model, strut_state *state) {
-  state->load_mark = strut_energy_of_loads(model, state);
+void strut_energy_reset_load_work(const strut_model *model, strut_state *state) {
+  state->load_mark = strut_energy_load_potential(model, state);
 }

@@ -8,25 +8,25 @@
 #include "engine/model/state.h"
 
 /** All in [J]. */
-typedef struct strut_stored {
+typedef struct strut_energies {
   double kinetic; /* v'Mv / 2 with the scene's mass model */
   double elastic; /* first term of (13); slack cables store nothing; driven rest lengths count */
   double gravity; /* second term of (13), for any gravity vector; zero at the origin */
   double contact; /* of the ground's springs */
-} strut_stored;
+} strut_energies;
 
 /** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
-STRUT_API strut_stored strut_energy_stored(const strut_model *model, strut_state *state, double t);
+STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t);
 
 /** The first of them alone, at velocities v (length) [J]. */
 STRUT_API double strut_energy_kinetic(const strut_model *model, const double *v);
 
 /** Sum of constant load times position [J]: its change is the work of the loads (gravity is none). */
-STRUT_API double strut_energy_of_loads(const strut_model *model, const strut_state *state);
+STRUT_API double strut_energy_load_potential(const strut_model *model, const strut_state *state);
 
-/** Work of the constant loads since strut_energy_mark, which must have been called [J]. */
+/** Work of the constant loads since strut_energy_reset_load_work, which must have been called [J]. */
 STRUT_API double strut_energy_load_work(const strut_model *model, const strut_state *state);
 /** Makes the state's present positions those from which the loads' work counts. */
-STRUT_API void strut_energy_mark(const strut_model *model, strut_state *state);
+STRUT_API void strut_energy_reset_load_work(const strut_model *model, strut_state *state);
 
 #endif

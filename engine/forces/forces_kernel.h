@@ -29,7 +29,7 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
   member_powers powers = {0};
   members_kernel(model, state, q, v, force, ledger, &powers);
   if (!ledger) return;
-  double *power = state->power, drive = 0.0, lost = 0.0, moved = power[STRUT_POWER_MOVED];
+  double *power = state->power, drive = 0.0, lost = 0.0, moved = power[STRUT_POWER_EXCHANGED];
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers.drive[l];
     lost += powers.lost[l];

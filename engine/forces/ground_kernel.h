@@ -21,7 +21,7 @@ STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double da
   state->power[STRUT_POWER_CONTACT] += damped;
   state->power[STRUT_POWER_FRICTION] += rubbed;
   state->power[STRUT_POWER_BELT] += belt;
-  state->power[STRUT_POWER_MOVED] += damped + fabs(rubbed) + fabs(belt);
+  state->power[STRUT_POWER_EXCHANGED] += damped + fabs(rubbed) + fabs(belt);
 }
 
 /* Beyond the spring c d: k d' while going in, or of the Hunt-Crossley law c d chi d', never pulling. */

@@ -170,8 +170,8 @@ STRUT_LANE_INLINE void lane_loads(strut_lane_tables *t, int p, const double *res
     if (!ledger) continue;
     lane_real power = px * lane_row(v, at, p) + py * lane_row(v, at + 1, p);
     lane_put(t->power, STRUT_POWER_LOAD, p, lane_row(t->power, STRUT_POWER_LOAD, p) + power);
-    lane_put(t->power, STRUT_POWER_MOVED, p,
-             lane_row(t->power, STRUT_POWER_MOVED, p) + lane_magnitude(power));
+    lane_put(t->power, STRUT_POWER_EXCHANGED, p,
+             lane_row(t->power, STRUT_POWER_EXCHANGED, p) + lane_magnitude(power));
   }
 }
 
@@ -243,7 +243,7 @@ STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *rest
 /* The members' powers, place by place within groups as a single run sums them. */
 STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
                                        lane_powers (*powers)[LANE_PARTS]) {
-  lane_real drive = {0}, lost = {0}, zero = {0}, moved = lane_row(t->power, STRUT_POWER_MOVED, p);
+  lane_real drive = {0}, lost = {0}, zero = {0}, moved = lane_row(t->power, STRUT_POWER_EXCHANGED, p);
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers[l][p].drive;
     lost += powers[l][p].lost;
@@ -254,7 +254,7 @@ STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
   lane_put(t->power, STRUT_POWER_MEMBERS, p, lost);
   lane_put(t->power, STRUT_POWER_CONTACT, p, zero);
   lane_put(t->power, STRUT_POWER_FRICTION, p, zero);
-  lane_put(t->power, STRUT_POWER_MOVED, p, moved);
+  lane_put(t->power, STRUT_POWER_EXCHANGED, p, moved);
 }
 
 /* Slots of padding pull with no force, and no one asks for the place where they do. */
@@ -326,7 +326,7 @@ STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v
   lane_add(t->power, STRUT_POWER_CONTACT, p, where, damped);
   lane_add(t->power, STRUT_POWER_FRICTION, p, where, rubbed);
   lane_add(t->power, STRUT_POWER_BELT, p, where, belt);
-  lane_add(t->power, STRUT_POWER_MOVED, p, where,
+  lane_add(t->power, STRUT_POWER_EXCHANGED, p, where,
            damped + lane_magnitude(rubbed) + lane_magnitude(belt));
 }
 

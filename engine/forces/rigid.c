@@ -124,7 +124,7 @@ void strut_rigid_begin(const strut_model *model, strut_state *state) {
   memset(g->tension, 0, (size_t)g->bars * sizeof(double));
   strut_rigid_rows(g, state->q);
   if (strut_rigid_factorise(g) >= 0)
-    state->trouble = STRUT_TROUBLE_RIGID;
+    state->trouble = STRUT_FAILURE_RIGID;
   else
     strut_rigid_filter(model, g, state->v, state->scratch);
 }
@@ -221,7 +221,7 @@ static void book(const strut_model *model, strut_state *state, const double *q, 
     double rubbed = -state->friction[i] * slip, belt = state->friction[i] * c->belt_speed;
     state->power[STRUT_POWER_FRICTION] += rubbed;
     state->power[STRUT_POWER_BELT] += belt;
-    state->power[STRUT_POWER_MOVED] += fabs(rubbed) + fabs(belt);
+    state->power[STRUT_POWER_EXCHANGED] += fabs(rubbed) + fabs(belt);
   }
 }
 
@@ -231,7 +231,7 @@ void strut_rigid_accelerate(const strut_model *model, strut_state *state, const 
   int32_t stuck = find_stuck(model, g, q, v), before = stuck;
   for (;;) {
     if (!hold(model, g, q, v, a, stuck)) {
-      state->trouble = STRUT_TROUBLE_RIGID;
+      state->trouble = STRUT_FAILURE_RIGID;
       return;
     }
     if (!release(model, state, g, &stuck)) break;
@@ -278,7 +278,7 @@ bool strut_rigid_project(const strut_model *model, strut_state *state, double *q
   }
   strut_rigid_rows(g, q);
   if (!(left <= FAR) || strut_rigid_factorise(g) >= 0) {
-    state->trouble = STRUT_TROUBLE_RIGID;
+    state->trouble = STRUT_FAILURE_RIGID;
     return false;
   }
   strut_rigid_filter(model, g, v, state->scratch);

@@ -22,7 +22,7 @@ static const double CLOSE = 8.0, STALLED = 1e5;
 static const double ROUNDING = 0x1p-52;
 
 typedef struct midpoint_workspace {
-  strut_averaged step;
+  strut_discrete_gradient step;
   strut_midpoint_matrix matrix;
   double *u, *q1;           /* (length) mean velocity, positions at the end */
   double *before[2];        /* (length) mean velocities of the last two steps, latest first */
@@ -51,7 +51,7 @@ static void *midpoint_create(const strut_model *model, strut_state *state) {
   strut_arena *arena = &state->arena;
   midpoint_workspace *w = strut_arena_allocate(arena, 1, sizeof *w);
   size_t both = (size_t)model->length;
-  if (!w || !strut_averaged_create(model, state, &w->step) ||
+  if (!w || !strut_discrete_gradient_create(model, state, &w->step) ||
       !strut_midpoint_matrix_create(model, arena, &w->matrix))
     return NULL;
   double **all[] = {&w->u,       &w->q1,      &w->before[0], &w->before[1],
@@ -69,7 +69,7 @@ static void midpoint_restart(const strut_model *model, strut_state *state, void 
                              double dt) {
   midpoint_workspace *w = workspace;
   if (model->plan & STRUT_TERM_DRIVE) strut_drive_apply(model, state, (double)state->step * dt);
-  strut_averaged_tensions(model, state, w->held);
+  strut_discrete_gradient_tensions(model, state, w->held);
   w->known = 0;
   w->factor_step = 0.0;
 }
@@ -86,7 +86,7 @@ static bool correct(const strut_model *model, strut_state *state, midpoint_works
   const strut_midpoint_matrix *m = &w->matrix;
   double h = w->step.h;
   for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + h * w->u[i];
-  strut_averaged_forces(model, state, &w->step, w->q1, w->u);
+  strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
   for (int32_t i = 0; i < model->length; i++) w->u[i] -= state->v[i];
   strut_midpoint_matrix_mass(m, w->u, x);
   for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
@@ -172,7 +172,7 @@ static int32_t worst_node(const midpoint_workspace *w) {
 static bool solve(const strut_model *model, strut_state *state, midpoint_workspace *w) {
   if (w->matrix.n == 0) {
     memcpy(w->q1, state->q, (size_t)model->length * sizeof *w->q1);
-    strut_averaged_forces(model, state, &w->step, w->q1, w->u);
+    strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
     return true;
   }
   for (int attempt = 0; attempt < 2; attempt++) {
@@ -203,7 +203,7 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
  */
 static bool take(const strut_model *model, strut_state *state, midpoint_workspace *w, double begin,
                  double h, int halvings) {
-  strut_averaged_begin(model, state, state->q, begin, h, &w->step);
+  strut_discrete_gradient_begin(model, state, state->q, begin, h, &w->step);
   if (solve(model, state, w)) {
     finish(model, state, w);
     return true;
@@ -225,7 +225,7 @@ static void midpoint_advance(const strut_model *model, strut_state *state, void 
     memcpy(w->grid[0], state->q, bytes);
     memcpy(w->grid[1], state->v, bytes);
     if (take(model, state, w, (double)state->step * dt, dt, MOST_HALVINGS)) continue;
-    state->trouble = STRUT_TROUBLE_IMPLICIT;
+    state->trouble = STRUT_FAILURE_IMPLICIT;
     state->trouble_node = w->matrix.n ? worst_node(w) : 0;
     memcpy(state->q, w->grid[0], bytes);
     memcpy(state->v, w->grid[1], bytes);

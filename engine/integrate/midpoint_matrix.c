@@ -111,14 +111,14 @@ bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
 }
 
 /* The direction of a member's force; 0 where it has none. */
-static void way_of(const strut_averaged *step, int32_t j, double way[2]) {
+static void way_of(const strut_discrete_gradient *step, int32_t j, double way[2]) {
   double x = step->sum[0][j], y = step->sum[1][j], size = sqrt(x * x + y * y);
   way[0] = size > 0.0 ? x / size : 0.0;
   way[1] = size > 0.0 ? y / size : 0.0;
 }
 
 /* Adds h^2/2 of what the forces of member j change by with its end: B, -B, B. */
-static void add_member(const strut_averaged *step, int32_t j, double tension,
+static void add_member(const strut_discrete_gradient *step, int32_t j, double tension,
                        strut_midpoint_matrix *m) {
   double half = 0.5 * step->h * step->h, lengths = step->lengths[j], way[2];
   const int32_t *place = m->place + STRUT_MIDPOINT_PLACES * j;
@@ -137,7 +137,7 @@ static void add_member(const strut_averaged *step, int32_t j, double tension,
   }
 }
 
-bool strut_midpoint_matrix_update(const strut_model *model, const strut_averaged *step,
+bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
                             const double *tension, bool stiff, strut_midpoint_matrix *m) {
   for (bool clip = stiff;; clip = true) {
     memcpy(m->matrix->value, m->mass, (size_t)m->matrix->start[m->n] * sizeof *m->mass);
@@ -148,7 +148,7 @@ bool strut_midpoint_matrix_update(const strut_model *model, const strut_averaged
   }
 }
 
-bool strut_midpoint_matrix_stale(const strut_model *model, const strut_averaged *step,
+bool strut_midpoint_matrix_stale(const strut_model *model, const strut_discrete_gradient *step,
                                  const strut_midpoint_matrix *m) {
   const double much = 1e-3;
   for (int32_t j = 0; j < model->members.count; j++) {

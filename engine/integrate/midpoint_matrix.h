@@ -30,14 +30,14 @@ bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena, 
  * with a member; where that leaves no positive definite matrix, or with `stiff`, compression is left
  * out, which makes it one. False: not even then.
  */
-bool strut_midpoint_matrix_update(const strut_model *model, const strut_averaged *step,
+bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
                             const double *tension, bool stiff, strut_midpoint_matrix *m);
 /**
  * Would the factor mislead? A stiff member that has turned by an angle a since, whose force it takes
  * for one along the old direction, moves its ends aside so far that its length changes by
  * (h^2/2 slope sin^2 a / mass) times what was to be undone; and a cable may have gone slack or taut.
  */
-bool strut_midpoint_matrix_stale(const strut_model *model, const strut_averaged *step,
+bool strut_midpoint_matrix_stale(const strut_model *model, const strut_discrete_gradient *step,
                                  const strut_midpoint_matrix *m);
 /** product (n) = M x (length). */
 void strut_midpoint_matrix_mass(const strut_midpoint_matrix *m, const double *x, double *product);

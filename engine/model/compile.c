@@ -200,10 +200,10 @@ static void compile_contacts(strut_model *model, bool *failed) {
 strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
                                  strut_error *error) {
   *result = NULL;
-  strut_status room = strut_room_check(scene, error);
+  strut_status room = strut_memory_check_model(scene, error);
   if (room) return room;
   strut_model *model = strut_allocate(1, sizeof *model);
-  if (!model) return strut_room_fail(scene, error);
+  if (!model) return strut_memory_fail_model(scene, error);
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {compile_nodes,   compile_members,
@@ -211,7 +211,7 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
                                                    compile_loads,   compile_contacts};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
-  strut_status status = failed ? strut_room_fail(scene, error)
+  strut_status status = failed ? strut_memory_fail_model(scene, error)
                                : strut_mass_create(model, &model->mass, error);
   if (status) {
     strut_model_free(model);

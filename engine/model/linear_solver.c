@@ -98,7 +98,7 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
   cholmod_sparse a = view(matrix);
   cholmod_factor *l = cholmod_analyze(&a, &common);
   double nonzeros = common.lnz; /* counted by the analysis */
-  strut_status status = l ? strut_room_check_factor(matrix->n, nonzeros, error) : STRUT_OK;
+  strut_status status = l ? strut_memory_check_factor(matrix->n, nonzeros, error) : STRUT_OK;
   *factor = NULL;
   if (l && !status && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
       cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common)) {
@@ -110,7 +110,7 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
                           "the matrix is not positive definite (row %d of %d)", row, matrix->n);
   }
   if (!*factor && status == STRUT_OK)
-    status = l ? strut_room_fail_factor(matrix->n, nonzeros, error)
+    status = l ? strut_memory_fail_factor(matrix->n, nonzeros, error)
                : strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
   cholmod_free_factor(&l, &common);
   cholmod_finish(&common);
@@ -178,7 +178,7 @@ strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, stru
   l->work = strut_allocate(3 * (size_t)pattern->n, sizeof *l->work);
   strut_status status =
       l->symbolic && l->work
-          ? strut_room_check_factor(pattern->n, l->common.lnz, error)
+          ? strut_memory_check_factor(pattern->n, l->common.lnz, error)
           : strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
   if (status == STRUT_OK) return status;
   strut_ldl_free(l);

@@ -13,7 +13,7 @@ static const double PER_NONZERO = 24.0, PER_ROW = 40.0;
 
 enum { WORDS = 160 };
 
-double strut_room_needed(const strut_scene *scene) {
+double strut_memory_needed(const strut_scene *scene) {
   return PER_NODE * (double)scene->node_count + PER_MEMBER * (double)scene->member_count +
          PER_CONTACT * (double)(scene->ground.present ? scene->node_count : 0) +
          (double)scene->arena.bytes;
@@ -25,14 +25,14 @@ static const char *name_scene(const strut_scene *scene, char words[WORDS]) {
   return words;
 }
 
-strut_status strut_room_check(const strut_scene *scene, strut_error *error) {
+strut_status strut_memory_check_model(const strut_scene *scene, strut_error *error) {
   char words[WORDS];
-  return strut_memory_check(strut_room_needed(scene), name_scene(scene, words), error);
+  return strut_memory_check(strut_memory_needed(scene), name_scene(scene, words), error);
 }
 
-strut_status strut_room_fail(const strut_scene *scene, strut_error *error) {
+strut_status strut_memory_fail_model(const strut_scene *scene, strut_error *error) {
   char words[WORDS];
-  return strut_memory_fail(strut_room_needed(scene), name_scene(scene, words), error);
+  return strut_memory_fail(strut_memory_needed(scene), name_scene(scene, words), error);
 }
 
 static double factor_needs(int32_t rows, double nonzeros, char words[WORDS]) {
@@ -41,7 +41,7 @@ static double factor_needs(int32_t rows, double nonzeros, char words[WORDS]) {
   return PER_NONZERO * nonzeros + PER_ROW * (double)rows;
 }
 
-strut_status strut_room_check_factor(int32_t rows, double nonzeros, strut_error *error) {
+strut_status strut_memory_check_factor(int32_t rows, double nonzeros, strut_error *error) {
   char words[WORDS];
   if (nonzeros > (double)INT32_MAX)
     return strut_fail(
@@ -53,7 +53,7 @@ strut_status strut_room_check_factor(int32_t rows, double nonzeros, strut_error 
   return strut_memory_check(bytes, words, error);
 }
 
-strut_status strut_room_fail_factor(int32_t rows, double nonzeros, strut_error *error) {
+strut_status strut_memory_fail_factor(int32_t rows, double nonzeros, strut_error *error) {
   char words[WORDS];
   double bytes = factor_needs(rows, nonzeros, words);
   return strut_memory_fail(bytes, words, error);

@@ -10,7 +10,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
                                 strut_error *error) {
   strut_state *state = strut_allocate(1, sizeof *state);
   *result = state;
-  if (!state) return strut_room_fail(model->scene, error);
+  if (!state) return strut_memory_fail_model(model->scene, error);
   size_t both = (size_t)model->length, slots = (size_t)model->members.slots;
   size_t contacts = (size_t)model->contacts.count;
   strut_arena *arena = &state->arena;
@@ -28,7 +28,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->normal || !state->friction || !state->scratch) {
     strut_state_free(state);
     *result = NULL;
-    return strut_room_fail(model->scene, error);
+    return strut_memory_fail_model(model->scene, error);
   }
   strut_state_reset(model, state);
   return STRUT_OK;
@@ -41,7 +41,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   state->evaluations = state->events = 0;
   state->interrupt = NULL;
   state->most_evaluations = 0;
-  state->trouble = STRUT_TROUBLE_NONE;
+  state->trouble = STRUT_FAILURE_NONE;
   state->drive_time = (double)NAN;
   state->time_offset = 0.0;
   state->refined_until = -HUGE_VAL;

@@ -20,20 +20,20 @@ typedef enum strut_power {
   STRUT_POWER_MEMBERS,  /* lost in member dampers, > 0 */
   STRUT_POWER_CONTACT,  /* lost in ground dampers, > 0 */
   STRUT_POWER_FRICTION, /* lost in friction, > 0 */
-  STRUT_POWER_MOVED,    /* sum of the absolute values of the above */
+  STRUT_POWER_EXCHANGED,    /* sum of the absolute values of the above */
   STRUT_POWER_COUNT,
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
-typedef enum strut_trouble {
-  STRUT_TROUBLE_NONE,
-  STRUT_TROUBLE_STEP,   /* the step has become too small to matter */
-  STRUT_TROUBLE_NEWTON, /* an implicit step has no solution nearby */
-  STRUT_TROUBLE_RIGID,  /* rigid bars cannot keep their lengths */
-  STRUT_TROUBLE_INTERRUPT, /* *interrupt was set */
-  STRUT_TROUBLE_WORK, /* most_evaluations were made */
-  STRUT_TROUBLE_IMPLICIT /* an implicit step of the whole structure has no solution nearby */
-} strut_trouble;
+typedef enum strut_failure {
+  STRUT_FAILURE_NONE,
+  STRUT_FAILURE_STEP,   /* the step has become too small to matter */
+  STRUT_FAILURE_NEWTON, /* an implicit step has no solution nearby */
+  STRUT_FAILURE_RIGID,  /* rigid bars cannot keep their lengths */
+  STRUT_FAILURE_INTERRUPT, /* *interrupt was set */
+  STRUT_FAILURE_WORK, /* most_evaluations were made */
+  STRUT_FAILURE_IMPLICIT /* an implicit step of the whole structure has no solution nearby */
+} strut_failure;
 
 typedef struct strut_state {
   /* the state proper: filled by strut_state_reset, advanced by an integrator */
@@ -41,7 +41,7 @@ typedef struct strut_state {
   double *q;     /* positions [m] */
   double *v;     /* velocities [m/s] */
   double work[STRUT_POWER_ROOM];  /* powers integrated since t = 0 [J] */
-  double load_mark;               /* strut_energy_mark: where the works count from [J] */
+  double load_mark;               /* strut_energy_reset_load_work: where the works count from [J] */
   double refined_until;           /* methods that refine after touchdowns do so until then [s] */
   int64_t evaluations;            /* of the forces since the reset */
   int64_t events;                 /* switches located in time, since the reset */
@@ -49,8 +49,8 @@ typedef struct strut_state {
                                              it becomes non-zero; NULL after the reset */
   int64_t most_evaluations;       /* of the forces: it gives up soon after so many too; 0: any
                                      number, as after the reset */
-  strut_trouble trouble;          /* why a method could not go on; it stays on the latest grid point */
-  int32_t trouble_node;           /* where, with STRUT_TROUBLE_IMPLICIT */
+  strut_failure trouble;          /* why a method could not go on; it stays on the latest grid point */
+  int32_t trouble_node;           /* where, with STRUT_FAILURE_IMPLICIT */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */

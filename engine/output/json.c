@@ -39,7 +39,7 @@ static void add_accuracy(strut_json *json, cJSON *to, const strut_accuracy_summa
   strut_json_integer(json, accuracy, "check_evaluations", a->check_evaluations);
 }
 
-static void add_limit_fell(strut_json *json, cJSON *to, const strut_limit_fell *fell) {
+static void add_limit_fell(strut_json *json, cJSON *to, const strut_step_limit_violation *fell) {
   if (!(fell->limit > 0.0)) return;
   cJSON *object = strut_json_object(json, to, "step_limit_fell");
   strut_json_number(json, object, "to", fell->limit);

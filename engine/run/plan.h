@@ -26,7 +26,7 @@ typedef struct strut_plan {
   bool runnable;          /* every free coordinate has mass; else the figures below are 0 */
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
-  strut_step_limit limits;  /* of every method: strut_step_limit_of */
+  strut_step_limit limits;  /* of every method: strut_step_limit_of_method */
   bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
   strut_plan_term terms[STRUT_PLAN_TERMS];
 } strut_plan;

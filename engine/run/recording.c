@@ -169,7 +169,7 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
       }
       break;
     case STRUT_CHANNEL_ENERGY: {
-      strut_stored stored = strut_energy_stored(model, state, strut_time_grid_at(&r->grid, state->step));
+      strut_energies stored = strut_energy_evaluate(model, state, strut_time_grid_at(&r->grid, state->step));
       const double *w = state->work;
       double values[] = {stored.kinetic,           stored.elastic,
                          stored.gravity,           stored.contact,

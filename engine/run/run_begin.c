@@ -34,7 +34,7 @@ static strut_status fill_names(strut_run *r) {
   if (e->quantity_count)
     s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
   if (!s->node_names || !s->positions || !s->contacts || (e->quantity_count && !s->measured))
-    return strut_room_fail(r->model->scene, r->error);
+    return strut_memory_fail_model(r->model->scene, r->error);
   s->node_count = scene->node_count;
   s->contact_count = contacts;
   s->measured_count = e->quantity_count;
@@ -100,14 +100,14 @@ strut_status strut_run_prepare(strut_run *r) {
   if (scene->start_equilibrium >= 0)
     return strut_fail(r->error, STRUT_USAGE,
                       "the run wants to start at the equilibrium of configuration '%s'; resolve it "
-                      "into positions first (strut_stand_resolve)",
+                      "into positions first (strut_resolve_start_equilibrium)",
                       scene->configurations[scene->start_equilibrium].name);
   if (!r->model->mass)
     return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
   double *limit = &r->summary->step_limit;
   bool bound = false;
-  status = r->limits ? strut_step_limit_recall(r->model, r->method, r->limits, limit, r->error)
-                     : strut_step_limit_told(r->model, r->method, limit, &bound, r->error);
+  status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
+                     : strut_step_limit_with_bound(r->model, r->method, limit, &bound, r->error);
   if (status) return status;
   if ((status = refuse_large_step(r, bound)) || (status = fill_names(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))
@@ -117,19 +117,19 @@ strut_status strut_run_prepare(strut_run *r) {
   int64_t room = r->more_periods > STRUT_LONGEST_REPEAT ? r->more_periods : STRUT_LONGEST_REPEAT;
   if (!r->workspace ||
       strut_measure_create(r->model, &r->grid, begin, (size_t)room + 1, &r->measure) ||
-      (r->watching && strut_watch_create(r->model, span.period, begin, &r->watch)))
-    return strut_room_fail(r->model->scene, r->error);
+      (r->watching && strut_steady_detector_create(r->model, span.period, begin, &r->watch)))
+    return strut_memory_fail_model(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
   r->state->time_offset = r->grid.offset;
   r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(scene);
   r->state->interrupt = r->options->interrupt;
   r->state->most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
-  if (!strut_guard_create(r->model, r->state, r->method, r->dt, &r->guard) ||
+  if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->guard) ||
       !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
-    return strut_room_fail(r->model->scene, r->error);
-  strut_energy_mark(r->model, r->state);
-  r->initial = strut_energy_stored(r->model, r->state, begin);
+    return strut_memory_fail_model(r->model->scene, r->error);
+  strut_energy_reset_load_work(r->model, r->state);
+  r->initial = strut_energy_evaluate(r->model, r->state, begin);
   strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
   return strut_recording_create(r->model, &r->grid, begin, r->options->sinks, r->options->sink_count,
                                 &r->recording, r->error);

@@ -12,12 +12,12 @@ int64_t strut_run_middle(int64_t period) { return (int64_t)(0.382 * (double)peri
 static void take_orbit(strut_run *r, const double *y) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   double t = (double)r->state->step * r->dt;
-  strut_stored before = strut_energy_stored(r->model, r->state, t);
+  strut_energies before = strut_energy_evaluate(r->model, r->state, t);
   memcpy(r->state->q, y, bytes);
   memcpy(r->state->v, y + r->model->length, bytes);
   r->state->refined_until = t + y[2 * r->model->length];
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
-  strut_stored after = strut_energy_stored(r->model, r->state, t);
+  strut_energies after = strut_energy_evaluate(r->model, r->state, t);
   r->initial.kinetic += after.kinetic - before.kinetic;
   r->initial.elastic += after.elastic - before.elastic;
   r->initial.gravity += after.gravity - before.gravity;
@@ -59,12 +59,12 @@ static strut_status shoot(strut_run *r) {
 
 strut_status strut_run_watch(strut_run *r) {
   int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
-  if (past == strut_run_middle(r->period_steps)) strut_watch_middle(r->state, &r->watch);
+  if (past == strut_run_middle(r->period_steps)) strut_steady_detector_half_period(r->state, &r->watch);
   if (past != 0) return STRUT_OK;
   double x, v;
   bool before = r->watch.known;
   strut_measure_track(r->model, r->state, &r->measure, &x, &v);
-  if (!strut_watch_period(r->state, x, &r->watch) || before) return STRUT_OK;
+  if (!strut_steady_detector_period(r->state, x, &r->watch) || before) return STRUT_OK;
   strut_status status = r->model->scene->experiment.steady.shooting ? shoot(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->watch.period;

@@ -17,14 +17,14 @@ int32_t strut_run_lost_node(const strut_model *model, const strut_state *state) 
 }
 
 strut_status strut_run_diverged(const strut_run *r, int32_t node) {
-  double limit = strut_guard_last_limit(r->model, &r->guard), least = r->summary->step_limit;
+  double limit = strut_step_limit_monitor_last_limit(r->model, &r->guard), least = r->summary->step_limit;
   double seen = (double)r->guard.last * r->dt;
   const char *remedy = r->dt > 0.5 * fmin(limit, least)
                            ? "use a smaller step"
                            : "look for a member or contact that is far too stiff or a load that "
                              "grows without bound; a smaller step may help too";
   if (r->guard.lowest > 0.0 && !r->options->force)
-    return strut_guard_fail(&r->guard, r->state, least, r->error);
+    return strut_step_limit_monitor_fail(&r->guard, r->state, least, r->error);
   if (limit < 0.99 * least)
     return strut_fail(r->error, STRUT_DIVERGED,
                       "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
@@ -40,15 +40,15 @@ strut_status strut_run_diverged(const strut_run *r, int32_t node) {
 
 strut_status strut_run_stuck(const strut_run *r) {
   static const char *const why[] = {
-      [STRUT_TROUBLE_STEP] =
+      [STRUT_FAILURE_STEP] =
           "the step needed for the tolerance became too small to matter; give a "
           "larger solver.tolerance, or look for a member of zero length",
-      [STRUT_TROUBLE_NEWTON] = "the implicit step has no solution nearby; use a smaller step",
-      [STRUT_TROUBLE_RIGID] =
+      [STRUT_FAILURE_NEWTON] = "the implicit step has no solution nearby; use a smaller step",
+      [STRUT_FAILURE_RIGID] =
           "rigid bars cannot keep their lengths; use a smaller step, or look for "
           "bars that hold each other",
-      [STRUT_TROUBLE_INTERRUPT] = "it was interrupted"};
-  if (r->state->trouble == STRUT_TROUBLE_IMPLICIT)
+      [STRUT_FAILURE_INTERRUPT] = "it was interrupted"};
+  if (r->state->trouble == STRUT_FAILURE_IMPLICIT)
     return strut_fail(
         r->error, STRUT_DIVERGED,
         "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g "
@@ -73,11 +73,11 @@ static bool energy_from_nowhere(const strut_run *r) {
 
 strut_status strut_run_watch_step(strut_run *r) {
   if (r->state->step < r->guard.next) return STRUT_OK;
-  strut_stick_band_look(r->model, r->state, &r->band);
+  strut_stick_band_sample(r->model, r->state, &r->band);
   bool garbage = !r->options->force && energy_from_nowhere(r);
-  if (garbage && !(r->guard.lowest > 0.0)) strut_guard_blame(r->model, r->state, &r->guard);
-  if (!garbage) strut_guard_look(r->model, r->state, &r->guard);
+  if (garbage && !(r->guard.lowest > 0.0)) strut_step_limit_monitor_check(r->model, r->state, &r->guard);
+  if (!garbage) strut_step_limit_monitor_sample(r->model, r->state, &r->guard);
   if (r->options->force) return STRUT_OK;
   if (!r->guard.hopeless && !garbage) return STRUT_OK;
-  return strut_guard_fail(&r->guard, r->state, r->summary->step_limit, r->error);
+  return strut_step_limit_monitor_fail(&r->guard, r->state, r->summary->step_limit, r->error);
 }

@@ -46,7 +46,7 @@ static void warn_of_creep(const strut_run *r) {
 }
 
 static void warn_of_limit(const strut_run *r) {
-  const strut_limit_fell *fell = &r->summary->limit_fell;
+  const strut_step_limit_violation *fell = &r->summary->limit_fell;
   if (r->summary->status != STRUT_OK || !(fell->limit > 0.0)) return;
   strut_summary_warn(r->summary, "step_limit",
                      "the largest stable step fell to %.4g s at t = %.9g s, below the step %g s; "
@@ -97,7 +97,7 @@ static const char *passed_over(const strut_run *r) {
 
 /* Likely cause and remedy. */
 static void explain(const strut_run *r, char *text, size_t size) {
-  const strut_balance_watch *b = &r->balance;
+  const strut_balance_monitor *b = &r->balance;
   bool sudden = fabs(b->worst) > 0.5 * fabs(r->summary->energy.residual);
   double offset = r->grid.offset, from = b->from + offset, to = b->to + offset;
   double begin = (double)r->first * r->dt + offset, now = strut_run_time(r);

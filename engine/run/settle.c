@@ -113,7 +113,7 @@ static strut_status relax(strut_relaxation *r, strut_error *error) {
     r->method->advance(r->model, state, r->workspace, dt, 1);
     r->time = before + (double)state->step * dt;
     r->evaluations = spent + state->evaluations;
-    if (state->trouble == STRUT_TROUBLE_INTERRUPT) continue;
+    if (state->trouble == STRUT_FAILURE_INTERRUPT) continue;
     double kinetic = strut_energy_kinetic(r->model, state->v);
     if (state->trouble || !isfinite(kinetic)) return fail_diverged(r, r->time - before, error);
     if (kinetic < previous) {

@@ -19,8 +19,8 @@ static strut_status choose_step(strut_relaxation *r, strut_step_limits *limits,
   double given = settle->step == 0.0 ? r->scene.experiment.step : settle->step, limit = 0.0;
   if (!r->model->mass)
     return strut_fail(error, STRUT_SINGULAR, "some node that can move has no mass");
-  strut_status status = limits ? strut_step_limit_recall(r->model, r->method, limits, &limit, error)
-                               : strut_step_limit_for(r->model, r->method, &limit, error);
+  strut_status status = limits ? strut_step_limit_cached(r->model, r->method, limits, &limit, error)
+                               : strut_step_limit_for_method(r->model, r->method, &limit, error);
   if (status) return status;
   if (given > 0.0 && given <= limit)
     r->step = given;

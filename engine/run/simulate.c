@@ -95,11 +95,11 @@ void strut_run_step(strut_run *r, int64_t stop) {
 }
 
 static void look_at_balance(strut_run *r) {
-  strut_balance_look(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
+  strut_balance_sample(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
                      &r->balance, &r->summary->energy);
 }
 
-strut_status strut_run_look(strut_run *r, int64_t *stop) {
+strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   const strut_run_options *o = r->options;
   int64_t n = r->state->step;
   int32_t lost = strut_run_lost_node(r->model, r->state);
@@ -120,7 +120,7 @@ strut_status strut_run_look(strut_run *r, int64_t *stop) {
   if (n >= r->steps) return STRUT_OK;
   if (o->interrupt && *o->interrupt)
     return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s", strut_run_time(r));
-  if (r->state->trouble == STRUT_TROUBLE_WORK ||
+  if (r->state->trouble == STRUT_FAILURE_WORK ||
       (o->most_evaluations > 0 && r->state->evaluations > o->most_evaluations))
     return strut_fail(r->error, STRUT_WORK_LIMIT,
                       "%s used up the work allowed, %lld evaluations of the forces, by t = %.9g s",
@@ -159,12 +159,12 @@ static void fill_summary(strut_run *r, strut_status status) {
   if (r->state->step == r->grid.last) s->duration = strut_scene_span(r->model->scene).duration;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
-  s->limit_fell = (strut_limit_fell){.limit = r->guard.lowest,
+  s->limit_fell = (strut_step_limit_violation){.limit = r->guard.lowest,
                                      .time = r->guard.lowest_time,
                                      .since = r->guard.first_time,
                                      .steps = r->guard.steps_below};
   strut_measure_finish(r->model, &r->measure, s);
-  if (r->watching) strut_watch_finish(&r->watch, s);
+  if (r->watching) strut_steady_detector_finish(&r->watch, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
   if (r->state->ledger) {
@@ -210,7 +210,7 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
     if (!(summary->reason[i] = error->message[i])) break;
   strut_recording_free(&r->recording);
   strut_measure_free(&r->measure);
-  strut_watch_free(&r->watch);
+  strut_steady_detector_free(&r->watch);
   strut_state_free(r->state);
   return status;
 }
@@ -222,7 +222,7 @@ strut_status strut_simulate(const strut_model *model, const strut_run_options *o
   int64_t stop = INT64_MAX;
   strut_status status = strut_run_begin(model, options, NULL, summary, error ? error : &own, &r);
   while (!status) {
-    status = strut_run_look(&r, &stop);
+    status = strut_run_sample(&r, &stop);
     if (status || stop == r.state->step) break;
     strut_run_step(&r, stop);
   }

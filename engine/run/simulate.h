@@ -39,7 +39,7 @@ typedef struct strut_run_options {
 /**
  * Runs the scene's experiment. The summary is filled whenever a run began: also with
  * STRUT_DIVERGED and STRUT_INTERRUPTED, up to where it came; free it with strut_summary_free.
- * Other failures: STRUT_USAGE (no such method, or a start equilibrium that strut_stand_resolve has not
+ * Other failures: STRUT_USAGE (no such method, or a start equilibrium that strut_resolve_start_equilibrium has not
  * resolved), STRUT_STEP_TOO_LARGE (nothing was run), STRUT_NOT_SETTLED, STRUT_SINGULAR (no
  * mass), STRUT_NO_MEMORY, and what a sink returned.
  */

@@ -37,7 +37,7 @@ static void finish_alone(hall *h, seat *s) {
   while (!status) {
     if (s->stop == s->run.state->step) break;
     strut_run_step(&s->run, s->stop);
-    status = strut_run_look(&s->run, &s->stop);
+    status = strut_run_sample(&s->run, &s->stop);
   }
   end(h, s, status);
 }
@@ -60,7 +60,7 @@ static void seat_next(hall *h, int32_t lane) {
     s->error = (strut_error){0};
     strut_status status = strut_run_begin(s->point.model, s->point.options, &h->limits, &s->summary,
                                           &s->error, &s->run);
-    if (!status) status = strut_run_look(&s->run, &s->stop);
+    if (!status) status = strut_run_sample(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
       end(h, s, status);
     } else if (!fits(h, s)) {
@@ -104,7 +104,7 @@ static void step(hall *h) {
     if (s->run.state->step == s->stop)
       strut_batch_get(h->batch, l, s->run.state);
     else if (measured)
-      strut_batch_look(h->batch, l, s->run.state);
+      strut_batch_sample(h->batch, l, s->run.state);
     if (measured) strut_measure_step(s->run.model, s->run.state, &s->run.measure);
   }
   strut_subnormals_restore(subnormals);
@@ -122,7 +122,7 @@ static void look(hall *h) {
     seat *s = &h->seats[l];
     if (!s->taken || s->run.state->step < s->stop) continue;
     int64_t shot = s->run.shot_periods;
-    strut_status status = strut_run_look(&s->run, &s->stop);
+    strut_status status = strut_run_sample(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
       leave(h, l);
       end(h, s, status);

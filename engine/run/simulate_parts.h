@@ -27,12 +27,12 @@ typedef struct strut_run {
   void *workspace;
   strut_measure measure;
   strut_recording recording;
-  strut_guard guard;
+  strut_step_limit_monitor guard;
   strut_stick_band band;
-  strut_stored initial;
-  strut_balance_watch balance;
+  strut_energies initial;
+  strut_balance_monitor balance;
   bool watching;
-  strut_watch watch;
+  strut_steady_detector watch;
   double dt;
   strut_time_grid grid;
   int64_t first, steps; /* the step number it begins with, and the one it is to end with */
@@ -55,7 +55,7 @@ strut_status strut_run_begin(const strut_model *model, const strut_run_options *
  * Between steps: looks at the state, measures, records. *stop is the step to go on to before the next
  * look, or the present one where the run is over. May change the state's q, v.
  */
-strut_status strut_run_look(strut_run *run, int64_t *stop);
+strut_status strut_run_sample(strut_run *run, int64_t *stop);
 /** From a look to the next one. */
 void strut_run_step(strut_run *run, int64_t stop);
 /** Is the step that is due the last one, and shorter than the others? Only strut_run_step takes it. */

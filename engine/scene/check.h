@@ -48,7 +48,7 @@ typedef struct strut_findings {
 typedef enum strut_purpose {
   STRUT_FOR_STATICS,
   STRUT_FOR_RUN,
-  STRUT_FOR_RUN_TOLD, /* for a run whose step, or the accuracy it is chosen by, is told later */
+  STRUT_FOR_RUN_STEP_LATER, /* for a run whose step, or the accuracy it is chosen by, is told later */
   STRUT_FOR_ANY       /* for a run where the scene says anything about one, else for statics */
 } strut_purpose;
 

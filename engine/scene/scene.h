@@ -76,7 +76,7 @@ typedef struct strut_friction {
 
 /** How the ground damps; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
-  STRUT_DAMPING_PRINTED,      /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
+  STRUT_DAMPING_APPROACH,      /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
   STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */
 } strut_ground_damping;
 
@@ -234,7 +234,7 @@ typedef struct strut_scene {
   strut_parameter *parameters;
   strut_configuration *configurations;
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
-                                it resolved into positions: strut_stand_resolve */
+                                it resolved into positions: strut_resolve_start_equilibrium */
   strut_search search;
   strut_settle settle;
   strut_experiment experiment;

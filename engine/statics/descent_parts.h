@@ -37,7 +37,7 @@ void *strut_curvature_dense_create(const strut_potential *potential);
 void *strut_curvature_sparse_create(const strut_potential *potential);
 
 /** How many Hessians it has taken apart so far: a measure of its work. */
-int64_t strut_minimiser_looks(const strut_minimiser *minimiser);
+int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser);
 
 /**
  * From a saddle at q down one side (+1 or -1) of direction (length), by steps short enough to stay in

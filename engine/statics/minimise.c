@@ -58,7 +58,7 @@ void strut_minimiser_free(strut_minimiser *minimiser) {
   strut_release(minimiser);
 }
 
-int64_t strut_minimiser_looks(const strut_minimiser *m) { return m->looks; }
+int64_t strut_minimiser_hessian_count(const strut_minimiser *m) { return m->looks; }
 
 static bool look(strut_minimiser *m, const double *q) {
   m->looks++;

@@ -8,7 +8,7 @@
 #include "engine/statics/trust_step.h"
 
 typedef struct room {
-  strut_spectrum_room *spectra;
+  strut_spectrum_workspace *spectra;
   strut_spectrum now;
   double *part, *x;  /* (n) the gradient's and the step's share of each mode */
   uint8_t *idle;     /* (n) modes to leave alone */

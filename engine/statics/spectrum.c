@@ -7,7 +7,7 @@
 
 #include "engine/statics/eigen.h"
 
-struct strut_spectrum_room {
+struct strut_spectrum_workspace {
   const strut_potential *potential;
   strut_arena arena;
   strut_sparse *hessian;
@@ -40,8 +40,8 @@ static bool is_uneven(const strut_model *model) {
   return high > 1e7 * low;
 }
 
-strut_spectrum_room *strut_spectrum_create(const strut_potential *potential) {
-  strut_spectrum_room *room = strut_allocate(1, sizeof *room);
+strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential) {
+  strut_spectrum_workspace *room = strut_allocate(1, sizeof *room);
   size_t n = (size_t)potential->n;
   if (!room) return NULL;
   room->potential = potential;
@@ -61,7 +61,7 @@ strut_spectrum_room *strut_spectrum_create(const strut_potential *potential) {
   return NULL;
 }
 
-void strut_spectrum_free(strut_spectrum_room *room) {
+void strut_spectrum_free(strut_spectrum_workspace *room) {
   if (!room) return;
   strut_arena_free(&room->arena);
   strut_release(room);
@@ -76,7 +76,7 @@ static void sort_order(const double *value, int32_t n, int32_t *order) {
   }
 }
 
-static bool fill_dense(strut_spectrum_room *room) {
+static bool fill_dense(strut_spectrum_workspace *room) {
   const strut_sparse *h = room->hessian;
   size_t n = (size_t)h->n;
   memset(room->dense, 0, n * n * sizeof *room->dense);
@@ -90,7 +90,7 @@ static bool fill_dense(strut_spectrum_room *room) {
 }
 
 /* The change of a coordinate in mode i; 0 where it is held. */
-static double moved(const strut_spectrum_room *room, const double *mode, uint32_t at) {
+static double moved(const strut_spectrum_workspace *room, const double *mode, uint32_t at) {
   int32_t row = room->potential->row_of[at];
   return row < 0 ? 0.0 : mode[row];
 }
@@ -99,7 +99,7 @@ static double moved(const strut_spectrum_room *room, const double *mode, uint32_
  * Adds stiffness * x x' + geometric * y y' to the form on `count` modes, where x, y are how a member
  * stretches and turns in them; and to each mode's noise what the rounding of both amounts to.
  */
-static void add_form(strut_spectrum_room *room, int32_t count, double stiffness, double geometric,
+static void add_form(strut_spectrum_workspace *room, int32_t count, double stiffness, double geometric,
                      double uncertain) {
   const double *x = room->along, *y = room->across;
   for (int32_t i = 0; i < count; i++) {
@@ -113,7 +113,7 @@ static void add_form(strut_spectrum_room *room, int32_t count, double stiffness,
   }
 }
 
-static void add_members(strut_spectrum_room *room, const double *q, int32_t count) {
+static void add_members(strut_spectrum_workspace *room, const double *q, int32_t count) {
   const strut_member_table *t = &room->potential->model->members;
   size_t n = (size_t)room->potential->n;
   for (int32_t j = 0; j < t->count; j++) {
@@ -136,7 +136,7 @@ static void add_members(strut_spectrum_room *room, const double *q, int32_t coun
   }
 }
 
-static void add_contacts(strut_spectrum_room *room, const double *q, int32_t count) {
+static void add_contacts(strut_spectrum_workspace *room, const double *q, int32_t count) {
   const strut_contact_table *c = &room->potential->model->contacts;
   size_t n = (size_t)room->potential->n;
   for (int32_t j = 0; j < c->count && room->potential->ground; j++) {
@@ -154,7 +154,7 @@ static void add_contacts(strut_spectrum_room *room, const double *q, int32_t cou
 }
 
 /* Replaces the first `count` eigenpairs by those of the form summed member by member. */
-static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
+static bool refine(strut_spectrum_workspace *room, const double *q, int32_t count) {
   size_t n = (size_t)room->potential->n, m = (size_t)count;
   memset(room->soft, 0, m * m * sizeof *room->soft);
   memset(room->form_noise, 0, m * sizeof *room->form_noise);
@@ -182,7 +182,7 @@ static bool refine(strut_spectrum_room *room, const double *q, int32_t count) {
   return true;
 }
 
-bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, double least, bool careful,
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least, bool careful,
                             strut_spectrum *spectrum) {
   int32_t n = room->potential->n, soft = 0, lost = 0;
   *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};

@@ -19,17 +19,17 @@ typedef struct strut_spectrum {
 } strut_spectrum;
 
 /** Memory for computations with n free coordinates; for one thread at a time. */
-typedef struct strut_spectrum_room strut_spectrum_room;
+typedef struct strut_spectrum_workspace strut_spectrum_workspace;
 /** NULL: out of memory. */
-strut_spectrum_room *strut_spectrum_create(const strut_potential *potential);
-void strut_spectrum_free(strut_spectrum_room *room);
+strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential);
+void strut_spectrum_free(strut_spectrum_workspace *room);
 
 /**
  * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`: noise is told mode by mode
  * and soft modes are refined in any case; else only where the dense solver's error could matter, and
  * noise is the same for all. False where the Hessian holds numbers that are not finite.
  */
-bool strut_spectrum_compute(strut_spectrum_room *room, const double *q, double least, bool careful,
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least, bool careful,
                             strut_spectrum *spectrum);
 
 #endif

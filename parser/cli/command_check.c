@@ -55,7 +55,7 @@ static void print_limits(const strut_plan *plan) {
   const char *between = "  of other methods   ";
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
-    double limit = strut_step_limit_of(&plan->limits, method);
+    double limit = strut_step_limit_of_method(&plan->limits, method);
     if (method->region == STRUT_REGION_RK4 || !isfinite(limit)) continue;
     printf("%s%s %s", between, method->name, in(limit, "s").text);
     between = ", ";
@@ -81,7 +81,7 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
                                   : "within 1 %");
   print_limits(plan);
   const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
-  double limit = method ? strut_step_limit_of(&plan->limits, method) : plan->step_limit;
+  double limit = method ? strut_step_limit_of_method(&plan->limits, method) : plan->step_limit;
   if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
   if (step > limit) {
     printf("  step               %s: too large, strut run will refuse it\n", in(step, "s").text);
@@ -153,7 +153,7 @@ static strut_status print_sketch(const strut_model *model) {
   }
   char *text = q ? strut_sketch(model, q, columns, SKETCH_ROWS, strut_terminal_unicode()) : NULL;
   strut_release(q);
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   if (*text) printf("\n%s\n", text);
   strut_release(text);
   return STRUT_OK;
@@ -198,7 +198,7 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene
   struct cJSON *limits = strut_json_object(json, root, "step_limits");
   for (size_t i = 0; strut_integrator_at(i) && plan->runnable; i++)
     strut_json_number(json, limits, strut_integrator_at(i)->name,
-                      strut_step_limit_of(&plan->limits, strut_integrator_at(i)));
+                      strut_step_limit_of_method(&plan->limits, strut_integrator_at(i)));
 }
 
 static void add_terms(strut_json *json, const strut_plan *plan) {
@@ -245,7 +245,7 @@ static strut_status print_json(const strut_plan *plan, const strut_scene *scene)
   add_members(&json, scene);
   if (!add_warnings(&json, scene)) json.failed = true;
   char *text = strut_json_end(&json);
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   strut_status status = strut_print(text);
   strut_release(text);
   return status;
@@ -267,7 +267,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_run_settings_apply(&strut_command_check, arguments, &scene);
   if (status == STRUT_OK)
-    status = strut_fidelity_settings_apply(&strut_command_check, arguments, &scene);
+    status = strut_model_options_apply(&strut_command_check, arguments, &scene);
   if (status != STRUT_OK) {
     strut_scene_free(&scene);
     return status;
@@ -279,7 +279,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK && (status = strut_warn_of_scene(&scene))) {
     /* said */
   } else if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
   } else if (arguments->json) {
     status = print_json(&plan, &scene);
   } else {

@@ -82,7 +82,7 @@ static strut_status write_files(strut_results *files, const file_names *names,
   for (size_t i = 0; i < result->count && status == STRUT_OK; i++)
     status = draw(files->stage, names->pictures[i], ONE, result, i, 1, &error);
   if (status == STRUT_OK) status = strut_results_commit(files, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   return status;
 }
 
@@ -92,7 +92,7 @@ static strut_status show(const strut_arguments *arguments, const strut_compare *
                : arguments->csv ? strut_compare_csv(result)
                                 : strut_compare_table(
                                       result, strut_terminal_columns(STDOUT_FILENO, USUAL_COLUMNS));
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   strut_status status = strut_print(text);
   strut_release(text);
   return status;
@@ -106,7 +106,7 @@ static strut_status complain_of_columns(const strut_compare *result) {
     strut_error error = {0};
     if (c->status == STRUT_OK) continue;
     strut_fail(&error, c->status, "%s: %s", c->input->label, c->message);
-    strut_complain(&error);
+    strut_print_error(&error);
     if (status == STRUT_OK) status = c->status;
   }
   return status;
@@ -131,13 +131,13 @@ static strut_status compare(const strut_arguments *arguments, const strut_plot *
     strut_progress_end(&progress);
   }
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
   } else {
     status = write_files(&files, &names, &result);
     if (status == STRUT_OK) status = show(arguments, &result);
     if (status == STRUT_OK && plot->path) {
       status = strut_compare_figure(plot->path, plot->width, &result, 0, result.count, &error);
-      if (status != STRUT_OK) strut_complain(&error);
+      if (status != STRUT_OK) strut_print_error(&error);
     }
     if (status == STRUT_OK) status = complain_of_columns(&result);
   }

@@ -53,7 +53,7 @@ static strut_status read_supports(const strut_arguments *arguments, strut_scene 
   strut_node_set *to = strut_arena_allocate(&scene->arena, 1, sizeof *to);
   char *word = strut_arena_allocate(&scene->arena, most, 1);
   if (to) to->node = strut_arena_allocate(&scene->arena, most, sizeof *to->node);
-  if (!to || !word || !to->node) return strut_complain_of_memory();
+  if (!to || !word || !to->node) return strut_print_out_of_memory();
   for (const char *at = text;; at++) {
     size_t length = strcspn(at, ","), found = 0;
     memcpy(word, at, length);
@@ -90,11 +90,11 @@ static strut_status report(const strut_arguments *arguments, const strut_equilib
                            const strut_model *model) {
   strut_error error = {0};
   char *json = strut_equilibria_json(all, model), *table = strut_equilibria_table(all, model);
-  strut_status status = json && table ? STRUT_OK : strut_complain_of_memory();
+  strut_status status = json && table ? STRUT_OK : strut_print_out_of_memory();
   if (!status && arguments->output) {
     status = strut_directory_create(arguments->output, &error);
     if (!status) status = strut_file_write_text(arguments->output, "equilibria.json", json, &error);
-    if (status) strut_complain(&error);
+    if (status) strut_print_error(&error);
   }
   if (!status) status = strut_print(arguments->json ? json : table);
   strut_release(json);
@@ -114,16 +114,16 @@ static strut_status search(const strut_arguments *arguments, const strut_plot *p
   status = strut_model_compile(scene, &model, &error);
   if (!status) status = strut_equilibria_find(model, &options_read, &all, &error);
   if (status) {
-    strut_complain(&error);
+    strut_print_error(&error);
   } else {
     status = report(arguments, &all, model);
     if (!status && plot->path && all.count > 0) {
       status = strut_equilibria_figure(plot->path, plot->width, model, &all, &error);
-      if (status) strut_complain(&error);
+      if (status) strut_print_error(&error);
     }
     if (!status && all.count == 0) {
       strut_fail(&error, status = STRUT_NOT_SETTLED, "%s", all.remark);
-      strut_complain(&error);
+      strut_print_error(&error);
     }
   }
   strut_equilibria_free(&all);
@@ -134,7 +134,7 @@ static strut_status search(const strut_arguments *arguments, const strut_plot *p
 static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_plot plot;
-  strut_status status = strut_try_output(arguments, file_names);
+  strut_status status = strut_check_output_writable(arguments, file_names);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_equilibria, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);

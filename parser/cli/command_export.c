@@ -59,7 +59,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = write_matrices(arguments, directory, model, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   strut_model_free(model);
   strut_scene_free(&scene);
   return status;

@@ -65,10 +65,10 @@ static strut_status show(const strut_arguments *arguments, const strut_scene *sc
   char *model = arguments->output ? strut_scene_write(scene) : NULL;
   char *text = silent ? NULL : text_for(arguments, scene, form);
   strut_status status = STRUT_OK;
-  if ((arguments->output && !model) || (!silent && !text)) status = strut_complain_of_memory();
+  if ((arguments->output && !model) || (!silent && !text)) status = strut_print_out_of_memory();
   if (status == STRUT_OK && model) {
     status = strut_file_write_path(arguments->output, model, &error);
-    if (status != STRUT_OK) strut_complain(&error);
+    if (status != STRUT_OK) strut_print_error(&error);
   }
   if (status == STRUT_OK && text) status = strut_print(text);
   strut_release(model);
@@ -96,7 +96,7 @@ static strut_status find(const strut_arguments *arguments, const strut_form_opti
   strut_status status = strut_form_find(scene, wanted, &form, &error);
   if (status == STRUT_OK) status = show(arguments, scene, &form);
   if (status == STRUT_OK) status = draw(plot, scene, (const double(*)[2])drawn, &error);
-  if (error.message[0]) strut_complain(&error);
+  if (error.message[0]) strut_print_error(&error);
   return status;
 }
 
@@ -112,7 +112,7 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   double(*drawn)[2] = strut_arena_allocate(&arena, scene.node_count, sizeof *drawn);
-  status = drawn ? find(arguments, &wanted, &plot, &scene, drawn) : strut_complain_of_memory();
+  status = drawn ? find(arguments, &wanted, &plot, &scene, drawn) : strut_print_out_of_memory();
   strut_arena_free(&arena);
   strut_scene_free(&scene);
   return status;

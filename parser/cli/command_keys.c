@@ -8,7 +8,7 @@
 static strut_status run(const strut_arguments *arguments) {
   (void)arguments;
   char *page = strut_keys_page();
-  if (!page) return strut_complain_of_memory();
+  if (!page) return strut_print_out_of_memory();
   strut_status status = strut_print(page);
   strut_release(page);
   return status;

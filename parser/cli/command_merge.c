@@ -26,7 +26,7 @@ static strut_status run(const strut_arguments *arguments) {
   allow_many_files();
   strut_status status = strut_merge(arguments->model, &merged, &error);
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   if (!arguments->quiet) {

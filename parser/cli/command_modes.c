@@ -47,7 +47,7 @@ static strut_status write_files(const char *directory, const strut_model *model,
 static strut_status show(const strut_arguments *arguments, const strut_model *model,
                          const strut_modes *modes) {
   char *text = arguments->json ? strut_modes_json(model, modes) : strut_modes_table(model, modes);
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   strut_status status = strut_print(text);
   strut_release(text);
   return status;
@@ -58,13 +58,13 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
                            const strut_model *model, const strut_modes *modes, size_t panels) {
   strut_error error = {0};
   if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return error.status;
   }
   strut_status status = show(arguments, model, modes);
   if (status != STRUT_OK || !plot->path) return status;
   status = strut_modes_figure(plot->path, plot->width, model, modes, panels, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   return status;
 }
 
@@ -79,7 +79,7 @@ static strut_status run(const strut_arguments *arguments) {
                                              MOST_MODES, &count);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_modes, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
-  status = strut_try_output(arguments, file_names);
+  status = strut_check_output_writable(arguments, file_names);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
@@ -89,7 +89,7 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = strut_modes_find(model, &wanted, &modes, &error);
   if (status != STRUT_OK)
-    strut_complain(&error);
+    strut_print_error(&error);
   else
     status = report(arguments, &plot, model, &modes, (size_t)count);
   strut_modes_free(&modes);

@@ -45,7 +45,7 @@ static strut_status write_files(const char *directory, const strut_path *path,
 static strut_status show(const strut_arguments *arguments, const strut_path *path,
                          const strut_scene *scene) {
   char *text = arguments->json ? strut_path_json(path, scene) : strut_path_table(path, scene);
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   strut_status status = strut_print(text);
   strut_release(text);
   return status;
@@ -62,7 +62,7 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
     if (status != STRUT_OK || !plot->path) return status;
     status = strut_path_figure(plot->path, plot->width, model, path, &error);
   }
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   return status;
 }
 
@@ -76,7 +76,7 @@ static strut_status follow(const strut_arguments *arguments, const strut_plot *p
   if (status == STRUT_OK)
     status = report(arguments, plot, model, &path);
   else
-    strut_complain(&error);
+    strut_print_error(&error);
   strut_path_free(&path);
   strut_model_free(model);
   return status;
@@ -93,7 +93,7 @@ static strut_status run(const strut_arguments *arguments) {
   wanted.steps = (int32_t)steps;
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_path, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
-  status = strut_try_output(arguments, file_names);
+  status = strut_check_output_writable(arguments, file_names);
   if (status != STRUT_OK) return status;
   status = strut_open_model_text(arguments, &source.text, &source.length, &scene);
   if (status != STRUT_OK) return status;

@@ -142,7 +142,7 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
 
 static strut_status draw_bargains(const strut_arguments *arguments, const strut_plot *plot,
                                   const strut_table *table, strut_error *error) {
-  strut_table_bargains_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
+  strut_table_savings_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
                                         .width = plot->width,
                                         .y = table->column_count > 1 ? 1 : 0,
                                         .by = STRUT_NO_COLUMN,
@@ -151,7 +151,7 @@ static strut_status draw_bargains(const strut_arguments *arguments, const strut_
               read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
               read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
               read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.label);
-  return good ? strut_table_bargains(plot->path, &figure, table, error) : STRUT_USAGE;
+  return good ? strut_table_savings(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
 static strut_status draw_curves(const strut_arguments *arguments, const strut_plot *plot,
@@ -213,7 +213,7 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_table_read(arguments->model, &table);
   if (status != STRUT_OK) return status;
   status = draws[kind](arguments, &plot, &table, &error);
-  if (error.message[0]) strut_complain(&error);
+  if (error.message[0]) strut_print_error(&error);
   strut_arena_free(&table.arena);
   return status;
 }

@@ -66,14 +66,14 @@ static strut_status run(const strut_arguments *arguments) {
   strut_model *model = NULL;
   strut_error error = {0};
   strut_plot plot;
-  strut_status status = strut_try_output(arguments, file_names);
+  strut_status status = strut_check_output_writable(arguments, file_names);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_rigidity, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
   if (status == STRUT_OK) status = look(arguments, &plot, model, &error);
-  if (status != STRUT_OK && error.message[0]) strut_complain(&error);
+  if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   strut_model_free(model);
   strut_scene_free(&scene);
   return status;

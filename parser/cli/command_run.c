@@ -114,7 +114,7 @@ static strut_status print_summary(const strut_arguments *arguments, const strut_
   if (arguments->quiet && !arguments->json) return STRUT_OK;
   char *text = arguments->json ? strut_summary_json(summary, scene, true)
                                : strut_summary_table(summary, scene);
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   strut_status status = strut_print(text);
   strut_release(text);
   return status;
@@ -131,7 +131,7 @@ static strut_status make_film(strut_run_pictures *pictures, const strut_model *m
   strut_error error = {0};
   fflush(stdout);
   strut_status status = strut_run_pictures_film(pictures, model, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   return status;
 }
 
@@ -141,12 +141,12 @@ static strut_status run_model(const strut_arguments *arguments, const strut_mode
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
   strut_status status = simulate(model, arguments, &keep, pictures, &summary, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   if (began(status)) {
     warn(&summary);
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
-    if (written != STRUT_OK) strut_complain(&late);
+    if (written != STRUT_OK) strut_print_error(&late);
     /* That nothing came to be drawn is no news of a run that failed. */
     if (written == STRUT_USAGE && status != STRUT_OK) written = status;
     if (written != STRUT_OK) status = written;
@@ -170,7 +170,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_run_settings_apply(&strut_command_run, arguments, &scene);
   if (status == STRUT_OK)
-    status = strut_fidelity_settings_apply(&strut_command_run, arguments, &scene);
+    status = strut_model_options_apply(&strut_command_run, arguments, &scene);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
     strut_scene_free(&scene);
@@ -183,7 +183,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK) {
     status = run_model(arguments, model, &pictures);
   } else {
-    strut_complain(&error);
+    strut_print_error(&error);
   }
   strut_run_pictures_free(&pictures);
   strut_model_free(model);

@@ -32,7 +32,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: of a task, such as 12:00:00"},
     {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit slurm: of a task, such as 2G"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
-    {STRUT_OPTION_TALLY, "count", NULL, "only tell how many points and which columns there are"},
+    {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only tell how many points and which columns there are"},
     {STRUT_OPTION_STATUS, "status", NULL, "only tell what is done, missing and failed in DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "print nothing and show no progress"},
@@ -53,7 +53,7 @@ static const char *inside(strut_sweep_study *study, const char *directory, const
 }
 
 static strut_status complain(strut_status status, const strut_error *error) {
-  if (status != STRUT_OK) strut_complain(error);
+  if (status != STRUT_OK) strut_print_error(error);
   return status;
 }
 
@@ -74,7 +74,7 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
   if (status) return complain(status, &error);
   if (shard->count) strut_shard_points(*shard, &study->slots);
   *path = strut_shard_path(arguments->output, *shard, &study->plan.arena);
-  return *path ? STRUT_OK : strut_complain_of_memory();
+  return *path ? STRUT_OK : strut_print_out_of_memory();
 }
 
 static strut_status show_status(const strut_arguments *arguments, strut_sweep_study *study) {
@@ -128,7 +128,7 @@ static strut_status finish(const strut_arguments *arguments, strut_sweep_study *
   strut_slots *const sources[] = {slots};
   const char *table = shard.count ? "one shard: 'strut merge' makes the table of all"
                                   : inside(study, arguments->output, table_name);
-  if (!table) return strut_complain_of_memory();
+  if (!table) return strut_print_out_of_memory();
   strut_status status =
       shard.count ? STRUT_OK
                   : strut_study_table_write(arguments->output, table_name, sources, 1, &error);

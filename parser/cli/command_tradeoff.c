@@ -30,7 +30,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_POINTS, "points", "N", "drawn with --vary; 40 if not given"},
     {STRUT_OPTION_SEED, "seed", "N", "of what is drawn; 1 if not given"},
     {STRUT_OPTION_BUDGET, "budget", "TIME", "CPU time to spend about; 2 min if not given"},
-    {STRUT_OPTION_OWN, "own-model", NULL, "leave out other models of the scene"},
+    {STRUT_OPTION_OWN_MODEL, "own-model", NULL, "leave out other models of the scene"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
@@ -145,7 +145,7 @@ static strut_status show(const strut_arguments *arguments, const strut_tradeoff 
   if (arguments->json) return strut_print(json);
   if (arguments->quiet) return STRUT_OK;
   char *table = strut_tradeoff_table(result);
-  if (!table) return strut_complain_of_memory();
+  if (!table) return strut_print_out_of_memory();
   strut_status status = strut_print(table);
   strut_release(table);
   return status;
@@ -155,12 +155,12 @@ static strut_status report(const strut_arguments *arguments, strut_results *file
                            const strut_tradeoff *result, const strut_operating_points *points) {
   strut_error error = {0};
   char *json = strut_tradeoff_json(result, points->list);
-  if (!json) return strut_complain_of_memory();
+  if (!json) return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
   if (files->stage) {
     status = write_files(files->stage, result, json, &error);
     if (status == STRUT_OK) status = strut_results_commit(files, &error);
-    if (status != STRUT_OK) strut_complain(&error);
+    if (status != STRUT_OK) strut_print_error(&error);
   }
   if (status == STRUT_OK) status = show(arguments, result, json);
   strut_release(json);
@@ -186,7 +186,7 @@ static strut_status study(const strut_arguments *arguments, wishes *w,
   if (status == STRUT_OK)
     status = report(arguments, &files, &result, points);
   else
-    strut_complain(&error);
+    strut_print_error(&error);
   strut_tradeoff_free(&result);
   strut_results_abandon(&files); /* nothing where they are complete */
   return status;

@@ -100,7 +100,7 @@ static strut_status show(const strut_arguments *arguments, const strut_opened *o
                        .yaml = yaml};
     status = write_page(arguments, &page, interrupt, &error);
   }
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   strut_release(yaml);
   strut_equilibria_free(&all);
   return status;

@@ -16,7 +16,7 @@ static strut_status run(const strut_arguments *arguments) {
   strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
   if (status != STRUT_OK) return status;
   char *text = strut_scene_write(&scene);
-  status = text ? strut_print(text) : strut_complain_of_memory();
+  status = text ? strut_print(text) : strut_print_out_of_memory();
   strut_release(text);
   strut_scene_free(&scene);
   return status;

@@ -51,7 +51,7 @@ strut_status strut_export_vtk(const strut_command *command, const strut_argument
   strut_trajectory still = {0};
   strut_error error = {0};
   strut_vtk_written written = {0};
-  strut_status status = strut_try_output(arguments, none);
+  strut_status status = strut_check_output_writable(arguments, none);
   if (status == STRUT_OK)
     status = strut_open_run(command, arguments, STRUT_OPEN_FOR_ANY, STRUT_TRAJECTORY_ROOM, &opened);
   if (status != STRUT_OK) return status;
@@ -66,7 +66,7 @@ strut_status strut_export_vtk(const strut_command *command, const strut_argument
   if (status == STRUT_OK) {
     say(arguments, motion, &written);
   } else {
-    strut_complain(&error);
+    strut_print_error(&error);
   }
   strut_arena_free(&arena);
   strut_opened_free(&opened);

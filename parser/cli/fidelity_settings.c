@@ -19,7 +19,7 @@ static strut_status read_word(const strut_command *command, const strut_argument
 static strut_status refuse(const char *option, const char *needs) {
   strut_error error = {0};
   strut_fail(&error, STRUT_USAGE, "--%s %s", option, needs);
-  strut_complain(&error);
+  strut_print_error(&error);
   return STRUT_USAGE;
 }
 
@@ -54,7 +54,7 @@ static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
   return STRUT_OK;
 }
 
-strut_status strut_fidelity_settings_apply(const strut_command *command,
+strut_status strut_model_options_apply(const strut_command *command,
                                            const strut_arguments *arguments, strut_scene *scene) {
   int bars = -1, mass = -1, friction = -1, damping = -1;
   const struct {

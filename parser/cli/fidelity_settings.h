@@ -21,7 +21,7 @@
   }
 
 /** Puts the options into the scene. STRUT_USAGE with the reason on stderr. */
-strut_status strut_fidelity_settings_apply(const strut_command *command,
+strut_status strut_model_options_apply(const strut_command *command,
                                            const strut_arguments *arguments, strut_scene *scene);
 
 #endif

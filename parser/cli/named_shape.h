@@ -13,7 +13,7 @@ typedef struct strut_named_shape {
   const double *q;  /* (length) positions [m], in the arena */
 } strut_named_shape;
 
-/** STRUT_OK, or what strut_stand_find fails with. */
+/** STRUT_OK, or what strut_rest_state_find fails with. */
 strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
                                     strut_arena *arena, strut_named_shape *shape,
                                     strut_error *error);

@@ -57,7 +57,7 @@ static strut_status read_scene(const source *from, const strut_override *overrid
     if (messages) fputs(messages, stderr);
     if (!messages) status = STRUT_NO_MEMORY;
   }
-  if (status == STRUT_NO_MEMORY) strut_complain_of_memory();
+  if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
   strut_diagnostics_free(&diagnostics);
   return status;
 }
@@ -75,7 +75,7 @@ static strut_status sort_settings(const strut_arguments *arguments, const strut_
   strut_compare_input *input = &compared->inputs[number];
   const char **without = strut_arena_allocate(&compared->arena, count + 1, sizeof *without);
   from->known = strut_arena_allocate(&compared->arena, count + 1, sizeof *from->known);
-  if (!without || !from->known) return strut_complain_of_memory();
+  if (!without || !from->known) return strut_print_out_of_memory();
   for (size_t i = 0; i < count; i++) {
     if (has_parameter(scene, arguments->overrides[i].name))
       from->known[from->known_count++] = arguments->overrides[i];
@@ -95,10 +95,10 @@ static strut_status open_one(const strut_arguments *arguments, strut_compared *c
   strut_error error = {0};
   input->scene = scene;
   input->label = label_of(compared, number, path);
-  if (!input->label) return strut_complain_of_memory();
+  if (!input->label) return strut_print_out_of_memory();
   strut_status status = strut_file_read(path, &from.text, &from.length, &error);
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   status = read_scene(&from, NULL, 0, scene);
@@ -144,7 +144,7 @@ static strut_status check_settings(const strut_command *command, const strut_arg
 static strut_status find_differences(strut_compared *compared) {
   strut_status status = STRUT_OK;
   char *first = strut_scene_write(&compared->scenes[0]);
-  if (!first) return strut_complain_of_memory();
+  if (!first) return strut_print_out_of_memory();
   for (size_t i = 1; i < compared->count && status == STRUT_OK; i++) {
     strut_compare_input *input = &compared->inputs[i];
     strut_difference *list = NULL;
@@ -154,7 +154,7 @@ static strut_status find_differences(strut_compared *compared) {
                   : STRUT_NO_MEMORY;
     input->differences = list;
     strut_release(text);
-    if (status != STRUT_OK) strut_complain_of_memory();
+    if (status != STRUT_OK) strut_print_out_of_memory();
   }
   strut_release(first);
   return status == STRUT_OK ? STRUT_OK : STRUT_NO_MEMORY;
@@ -185,7 +185,7 @@ strut_status strut_compared_open(const strut_command *command, const strut_argum
   if (status != STRUT_OK) return status;
   compared->inputs = strut_arena_allocate(&compared->arena, count, sizeof *compared->inputs);
   compared->scenes = strut_arena_allocate(&compared->arena, count, sizeof *compared->scenes);
-  if (!compared->inputs || !compared->scenes) status = strut_complain_of_memory();
+  if (!compared->inputs || !compared->scenes) status = strut_print_out_of_memory();
   for (size_t i = 0; i < count && status != STRUT_NO_MEMORY; i++) {
     strut_status here = open_one(arguments, compared, i);
     compared->count = i + 1;

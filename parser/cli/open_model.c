@@ -24,9 +24,9 @@ static strut_status read_source(const strut_arguments *arguments, const source *
                                 strut_purpose purpose, strut_scene *scene) {
   strut_diagnostics diagnostics = {0};
   strut_error error = {0};
-  strut_status status = strut_document_room_check(from->name, from->text, from->length, &error);
+  strut_status status = strut_memory_check_document(from->name, from->text, from->length, &error);
   if (status == STRUT_NO_MEMORY) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   status = strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
@@ -43,8 +43,8 @@ static strut_status read_source(const strut_arguments *arguments, const source *
     if (!notes) status = STRUT_NO_MEMORY;
   }
   if (status == STRUT_NO_MEMORY) {
-    strut_document_room_fail(from->name, from->text, from->length, &error);
-    strut_complain(&error);
+    strut_memory_fail_document(from->name, from->text, from->length, &error);
+    strut_print_error(&error);
   }
   strut_diagnostics_free(&diagnostics);
   return status;
@@ -56,19 +56,19 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
   strut_error error = {0};
   strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   bool told = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
               strut_option_text(arguments, STRUT_OPTION_STEP);
-  strut_purpose run = told ? STRUT_FOR_RUN_TOLD : STRUT_FOR_RUN;
+  strut_purpose run = told ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
   status =
       read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, scene);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
-  status = strut_stand_resolve(scene, &error);
+  status = strut_resolve_start_equilibrium(scene, &error);
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     strut_scene_free(scene);
   }
   return status;
@@ -80,7 +80,7 @@ strut_status strut_warn_of_scene(const strut_scene *scene) {
   for (size_t i = 0; i < warnings.count && !status; i++)
     fprintf(stderr, "strut: warning: %s\n", warnings.items[i].message);
   strut_findings_free(&warnings);
-  return status ? strut_complain_of_memory() : STRUT_OK;
+  return status ? strut_print_out_of_memory() : STRUT_OK;
 }
 
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
@@ -90,7 +90,7 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
   strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
   *text = NULL;
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   status = read_source(arguments, &from, STRUT_FOR_ANY, scene);
@@ -103,12 +103,12 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
   return STRUT_OK;
 }
 
-strut_status strut_try_output(const strut_arguments *arguments, const char *const *names) {
+strut_status strut_check_output_writable(const strut_arguments *arguments, const char *const *names) {
   strut_results results = {0};
   strut_error error = {0};
   if (!arguments->output) return STRUT_OK;
   strut_status status = strut_results_begin_named(&results, arguments->output, names, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   strut_results_abandon(&results);
   return status;
 }
@@ -118,7 +118,7 @@ strut_status strut_try_file(const char *path) {
   strut_error error = {0};
   if (!path) return STRUT_OK;
   strut_status status = strut_file_open_path(&file, path, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   strut_file_abandon(&file);
   return status;
 }

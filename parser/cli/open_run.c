@@ -91,7 +91,7 @@ strut_status strut_open_run(const strut_command *command, const strut_arguments 
     status = strut_open_model(arguments, purpose, &opened->scene);
     if (status == STRUT_OK) status = strut_model_compile(&opened->scene, &opened->model, &error);
   }
-  if (status != STRUT_OK && error.status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK && error.status != STRUT_OK) strut_print_error(&error);
   if (status != STRUT_OK) strut_opened_free(opened);
   strut_arena_free(&arena);
   return status;

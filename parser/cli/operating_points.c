@@ -62,7 +62,7 @@ static strut_status open_one(const strut_command *command, const strut_arguments
   size_t varied = arguments->varied_count, set = arguments->override_count;
   strut_override *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
   char(*texts)[MOST_TEXT] = strut_allocate(varied + 1, sizeof *texts);
-  strut_status status = overrides && texts ? STRUT_OK : strut_complain_of_memory();
+  strut_status status = overrides && texts ? STRUT_OK : strut_print_out_of_memory();
   for (size_t i = 0; i < set && status == STRUT_OK; i++) overrides[i] = arguments->overrides[i];
   for (size_t i = 0; i < varied && status == STRUT_OK; i++) {
     choose(arguments->varied[i].value, draw(seed), texts[i]);
@@ -100,7 +100,7 @@ strut_status strut_operating_points_open(const strut_command *command,
   if (status != STRUT_OK) return status;
   points->scenes = strut_allocate(count, sizeof *points->scenes);
   points->list = strut_allocate(count, sizeof *points->list);
-  if (!points->scenes || !points->list) status = strut_complain_of_memory();
+  if (!points->scenes || !points->list) status = strut_print_out_of_memory();
   for (size_t p = 0; p < count && status == STRUT_OK; p++) {
     status = open_one(command, arguments, &seed, p, &points->scenes[p]);
     points->list[p] = &points->scenes[p];

@@ -117,7 +117,7 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     case STRUT_OPTION_STUCK:
       to->stuck = true;
       break;
-    case STRUT_OPTION_OWN:
+    case STRUT_OPTION_OWN_MODEL:
       to->own = true;
       break;
     case STRUT_OPTION_CSV:
@@ -129,7 +129,7 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     case STRUT_OPTION_NO_STATES:
       to->no_states = true;
       break;
-    case STRUT_OPTION_TALLY:
+    case STRUT_OPTION_COUNT_POINTS:
       to->tally = true;
       break;
     case STRUT_OPTION_STATUS:

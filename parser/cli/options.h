@@ -25,12 +25,12 @@ typedef enum strut_option_id {
   STRUT_OPTION_JSON,
   STRUT_OPTION_FORCE,
   STRUT_OPTION_STUCK,
-  STRUT_OPTION_OWN,
+  STRUT_OPTION_OWN_MODEL,
   STRUT_OPTION_CSV,
   STRUT_OPTION_NO_MOTION,
   STRUT_OPTION_NO_STATES,
   STRUT_OPTION_VARY,
-  STRUT_OPTION_TALLY, /* how many points a study has */
+  STRUT_OPTION_COUNT_POINTS, /* how many points a study has */
   STRUT_OPTION_STATUS, /* how far a study is */
   STRUT_OPTION_RETRY,  /* of a study's points that failed */
   /* kept as text: strut_option_text, and option_values.h for numbers */

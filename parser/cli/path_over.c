@@ -132,7 +132,7 @@ static strut_status open_source(const strut_arguments *arguments, const char *na
   strut_diagnostics_free(&unused);
   source->settings = strut_allocate(arguments->override_count + 1, sizeof *source->settings);
   const strut_declared *declared = status ? NULL : find_declared(source->source, name);
-  if (!declared || !source->settings) return strut_complain_of_memory();
+  if (!declared || !source->settings) return strut_print_out_of_memory();
   for (size_t i = 0; i < arguments->override_count; i++)
     if (strcmp(arguments->overrides[i].name, name) != 0)
       source->settings[source->setting_count++] = (strut_setting){

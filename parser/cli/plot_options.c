@@ -47,7 +47,7 @@ static strut_status try_path(const char *path) {
   if (status == STRUT_OK) {
     strut_file_abandon(&file);
   } else {
-    strut_complain(&error);
+    strut_print_error(&error);
   }
   return status;
 }

@@ -45,7 +45,7 @@ strut_status strut_run_film_read(const strut_command *command, const strut_argum
                          &film->fps);
   if (status != STRUT_OK) return status;
   status = strut_film_check(film->path, &error);
-  if (status != STRUT_OK) strut_complain(&error);
+  if (status != STRUT_OK) strut_print_error(&error);
   return status;
 }
 

@@ -10,7 +10,7 @@
 static strut_status refuse(const char *message) {
   strut_error error = {0};
   strut_fail(&error, STRUT_USAGE, "%s", message);
-  strut_complain(&error);
+  strut_print_error(&error);
   return STRUT_USAGE;
 }
 

@@ -43,13 +43,13 @@ int strut_streams_close(strut_status status) {
   return strut_status_exit_code(STRUT_FILE_TROUBLE);
 }
 
-void strut_complain(const strut_error *error) {
+void strut_print_error(const strut_error *error) {
   fprintf(stderr, "strut: error: %s\n",
           error->message[0] ? error->message : strut_status_text(error->status));
 }
 
-strut_status strut_complain_of_memory(void) {
+strut_status strut_print_out_of_memory(void) {
   strut_error error = {STRUT_NO_MEMORY, ""};
-  strut_complain(&error);
+  strut_print_error(&error);
   return STRUT_NO_MEMORY;
 }

@@ -17,8 +17,8 @@ int strut_streams_close(strut_status status);
 /** Prints a text on stdout; a failure is told on stderr and returned as STRUT_FILE_TROUBLE. */
 strut_status strut_print(const char *text);
 /** Prints a sentence on stderr as the program's error. */
-void strut_complain(const strut_error *error);
+void strut_print_error(const strut_error *error);
 /** The same for memory, which has nothing else to say; returns STRUT_NO_MEMORY. */
-strut_status strut_complain_of_memory(void);
+strut_status strut_print_out_of_memory(void);
 
 #endif

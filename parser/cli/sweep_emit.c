@@ -42,7 +42,7 @@ static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   if (getcwd(folder, PATH_MAX)) return STRUT_OK;
   strut_error error = {0};
   strut_fail(&error, STRUT_FILE_TROUBLE, "the current directory has no name: %s", strerror(errno));
-  strut_complain(&error);
+  strut_print_error(&error);
   return STRUT_FILE_TROUBLE;
 }
 
@@ -70,10 +70,10 @@ static strut_status print_script(const strut_arguments *arguments, strut_slurm_s
   script->program = program;
   script->folder = folder;
   script->words = words_of(arguments, arena, &script->word_count);
-  if (!script->words) return strut_complain_of_memory();
+  if (!script->words) return strut_print_out_of_memory();
   status = write_script(script, slurm, &text, &error);
   if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
-  if (status == STRUT_NO_MEMORY) strut_complain(&error);
+  if (status == STRUT_NO_MEMORY) strut_print_error(&error);
   if (status == STRUT_OK) status = strut_print(text);
   strut_release(text);
   return status;

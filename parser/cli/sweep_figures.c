@@ -173,7 +173,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
                          const strut_study_figure *f, strut_table *table) {
   strut_error error = {0};
   const char *file = strut_arena_format(&table->arena, "%s/%s.svg", directory, f->name);
-  if (!file) return strut_complain_of_memory();
+  if (!file) return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
   if (f->kind == STRUT_FIGURE_MOTION)
     status = draw_motion(plan, directory, f, file, &error);
@@ -181,7 +181,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
     status = strut_study_pictures(plan, directory, f, PAGE, &error);
   else
     status = draw_table(f, file, table, &error);
-  if (error.message[0]) strut_complain(&error);
+  if (error.message[0]) strut_print_error(&error);
   return status;
 }
 

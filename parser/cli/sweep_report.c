@@ -73,7 +73,7 @@ void strut_sweep_progress_end(strut_sweep_progress *progress) {
 
 static strut_status print_buffer(strut_buffer *b) {
   char *text = strut_buffer_take(b);
-  if (!text) return strut_complain_of_memory();
+  if (!text) return strut_print_out_of_memory();
   strut_status status = strut_print(text);
   strut_release(text);
   return status;

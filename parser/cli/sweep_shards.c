@@ -11,10 +11,10 @@ static strut_status add_shard(strut_buffer *b, const char *directory, strut_shar
   strut_slots *slots = NULL;
   strut_slots_plan plan;
   char *path = strut_shard_path(directory, shard, arena);
-  if (!path) return strut_complain_of_memory();
+  if (!path) return strut_print_out_of_memory();
   strut_status status = strut_slots_read(path, &slots, &plan, &error);
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
@@ -44,7 +44,7 @@ strut_status strut_sweep_print_shards(const char *directory, const strut_shards_
   }
   if (json) strut_buffer_add(&b, "]}\n");
   char *text = strut_buffer_take(&b);
-  if (status == STRUT_OK) status = text ? strut_print(text) : strut_complain_of_memory();
+  if (status == STRUT_OK) status = text ? strut_print(text) : strut_print_out_of_memory();
   strut_release(text);
   return status;
 }

@@ -15,11 +15,11 @@ enum { MOST_MESSAGES = 50 };
 static strut_status complain(strut_study_file *file, strut_status status, strut_error *error) {
   if (status == STRUT_BAD_SCENE && !error->message[0]) {
     const char *messages = strut_study_messages(file, MOST_MESSAGES);
-    if (!messages) return strut_complain_of_memory();
+    if (!messages) return strut_print_out_of_memory();
     fputs(messages, stderr);
   } else if (status != STRUT_OK) {
     if (!error->message[0]) strut_fail(error, status, "%s", strut_status_text(status));
-    strut_complain(error);
+    strut_print_error(error);
   }
   return status;
 }

@@ -204,10 +204,10 @@ static strut_status read_text(reader *r) {
   if (!r->failed && !r->diagnostics.count && !r->table->row_count)
     strut_diagnose(&r->diagnostics, (strut_place){0, 0, 0}, "the table has a header but no rows");
   if (!r->failed && !r->diagnostics.count && !make_columns(r)) r->failed = true;
-  if (r->failed) return strut_complain_of_memory();
+  if (r->failed) return strut_print_out_of_memory();
   if (!r->diagnostics.count) return STRUT_OK;
   const char *messages = strut_diagnostics_render(&r->diagnostics, MOST_MESSAGES);
-  if (!messages) return strut_complain_of_memory();
+  if (!messages) return strut_print_out_of_memory();
   fputs(messages, stderr);
   return STRUT_BAD_SCENE;
 }
@@ -219,7 +219,7 @@ strut_status strut_table_read(const char *path, strut_table *table) {
   *table = (strut_table){0};
   strut_status status = strut_file_read(path, &text, &length, &error);
   if (status != STRUT_OK) {
-    strut_complain(&error);
+    strut_print_error(&error);
     return status;
   }
   reader r = {.at = text, .end = text + length, .line = 1, .column = 1, .table = table};

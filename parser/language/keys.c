@@ -45,11 +45,11 @@ const strut_key *strut_key_at(int key) {
   return &table[key];
 }
 
-int strut_room_first(strut_room room) { return first[room]; }
-int strut_room_size(strut_room room) { return first[room + 1] - first[room]; }
-const char *strut_room_name(strut_room room) { return room_names[room]; }
+int strut_section_first(strut_section room) { return first[room]; }
+int strut_section_size(strut_section room) { return first[room + 1] - first[room]; }
+const char *strut_section_name(strut_section room) { return room_names[room]; }
 
-int strut_key_find(strut_room room, const char *name) {
+int strut_key_find(strut_section room, const char *name) {
   for (int key = first[room]; key < first[room + 1]; key++)
     if (strcmp(table[key].name, name) == 0) return key;
   return -1;

@@ -14,7 +14,7 @@
 #include "parser/expression/units.h"
 
 /** The mappings of the language. */
-typedef enum strut_room {
+typedef enum strut_section {
   STRUT_ROOM_SCENE,
   STRUT_ROOM_NODE,
   STRUT_ROOM_MEMBER,
@@ -44,7 +44,7 @@ typedef enum strut_room {
   STRUT_ROOM_CHECK,
   STRUT_ROOM_FIGURE,
   STRUT_ROOM_COUNT
-} strut_room;
+} strut_section;
 
 typedef enum strut_key_type {
   STRUT_TYPE_VERSION,       /* the integer 1 */
@@ -97,7 +97,7 @@ typedef enum strut_key_range {
 
 /** One line of the table. */
 typedef struct strut_key {
-  strut_room room;
+  strut_section room;
   const char *name;
   strut_key_type type;
   strut_measure measure;
@@ -119,12 +119,12 @@ enum { STRUT_MOST_KEYS = 24 }; /* of one room */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a room. */
-STRUT_API int strut_room_first(strut_room room);
-STRUT_API int strut_room_size(strut_room room);
+STRUT_API int strut_section_first(strut_section room);
+STRUT_API int strut_section_size(strut_section room);
 /** The key of that name in a room, or -1. */
-STRUT_API int strut_key_find(strut_room room, const char *name);
+STRUT_API int strut_key_find(strut_section room, const char *name);
 /** "node", "half_sine", ... */
-STRUT_API const char *strut_room_name(strut_room room);
+STRUT_API const char *strut_section_name(strut_section room);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */

@@ -4,7 +4,7 @@
 
 #include "parser/read/reader.h"
 
-static const strut_room rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
+static const strut_section rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
 
 enum { ROOMS = 3 };
 
@@ -13,7 +13,7 @@ static const char *group_name(const void *context, size_t i) {
   return i < reader->group_count ? reader->groups[i].name : NULL;
 }
 
-static size_t room_index(strut_room room) {
+static size_t room_index(strut_section room) {
   size_t i = 0;
   while (rooms[i] != room) i++;
   return i;
@@ -37,7 +37,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     if (found < 0) found = item.key[r];
   }
   if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {
-    strut_say(reader, key->place, "a group cannot have a group, found '%s' in %s", key->text,
+    strut_report_error(reader, key->place, "a group cannot have a group, found '%s' in %s", key->text,
               strut_owner_text(reader, owner));
     group->broken = true;
     return;
@@ -55,12 +55,12 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
   strut_read_slot(reader, found, key, key->next, owner, &item.slot);
   const strut_tree *other = rival(group, found);
   if (other) {
-    strut_say(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
+    strut_report_error(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
               strut_owner_text(reader, owner), other->text, key->text);
     item.slot.state = STRUT_BROKEN;
   }
   if (item.slot.state == STRUT_GIVEN && strut_key_at(found)->type == STRUT_TYPE_MAP) {
-    item.nested = strut_take(reader, &reader->scratch, 1, sizeof *item.nested);
+    item.nested = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *item.nested);
     if (!item.nested) return;
     strut_read_fields(reader, STRUT_ROOM_FRICTION, key->next,
                       (strut_owner){"the friction of group", group->name}, item.nested);
@@ -74,20 +74,20 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
   *group = (strut_group){.name = key->text, .key = key};
   if (!strut_read_name(reader, key, "group")) group->broken = true;
   if (map->kind != STRUT_TREE_MAP) {
-    strut_say(reader, map->place, "expected keys of a member, a node or a contact for %s, found %s",
+    strut_report_error(reader, map->place, "expected keys of a member, a node or a contact for %s, found %s",
               strut_owner_text(reader, owner), strut_found(reader, map));
     group->broken = true;
     return;
   }
-  group->items = strut_take(reader, &reader->scratch, map->count, sizeof *group->items);
+  group->items = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *group->items);
   for (const strut_tree *k = map->first; k && group->items; k = k->next->next)
     read_item(reader, group, k, owner);
 }
 
 void strut_read_groups(strut_reader *reader) {
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_GROUPS);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
   if (!map) return;
-  reader->groups = strut_take(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  reader->groups = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
   for (const strut_tree *key = map->first; key && reader->groups; key = key->next->next) {
     read_group(reader, key, &reader->groups[reader->group_count]);
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
@@ -113,7 +113,7 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
        known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUPS)->state != STRUT_BROKEN;
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
   if (value->kind == STRUT_TREE_LIST && value->count > STRUT_MOST_GROUPS) {
-    strut_say(reader, value->place, "%s names %u groups, expected at most %d",
+    strut_report_error(reader, value->place, "%s names %u groups, expected at most %d",
               strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
     return false;
   }
@@ -126,9 +126,9 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
 
 /* True where the fields have the key, or another one of its set, already. */
 static bool taken(strut_fields *fields, int key) {
-  int first = strut_room_first(fields->room), set = strut_key_at(key)->set;
+  int first = strut_section_first(fields->room), set = strut_key_at(key)->set;
   if (strut_slot_of(fields, key)->state != STRUT_ABSENT) return true;
-  for (int i = 0; set && i < strut_room_size(fields->room); i++)
+  for (int i = 0; set && i < strut_section_size(fields->room); i++)
     if (strut_key_at(first + i)->set == set && fields->slot[i].state != STRUT_ABSENT) return true;
   return false;
 }
@@ -149,9 +149,9 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
     } else if (!item->refused[room]) {
       item->refused[room] = true;
       if (item->slot.state == STRUT_BROKEN) continue;
-      strut_say(reader, item->slot.key->place, "group '%s' gives '%s' to %s, but a %s has no '%s'",
+      strut_report_error(reader, item->slot.key->place, "group '%s' gives '%s' to %s, but a %s has no '%s'",
                 group->name, item->slot.key->text, strut_owner_text(reader, owner),
-                strut_room_name(fields->room), item->slot.key->text);
+                strut_section_name(fields->room), item->slot.key->text);
     }
   }
   if (group->broken) fields->broken = true;
@@ -163,7 +163,7 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   strut_group *groups[STRUT_MOST_GROUPS];
   if (slot->state == STRUT_BROKEN) {
     reader->groups_unknown = true;
-    strut_excuse(fields);
+    strut_suppress_missing(fields);
   }
   if (slot->state != STRUT_GIVEN) return;
   bool fine = check_names(reader, slot->value, strut_key_at(group_key)->name, owner);
@@ -172,7 +172,7 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   if (fine) return;
   reader->groups_unknown = true;
   fields->broken = true; /* what the unknown group would have given is not missing */
-  strut_excuse(fields);
+  strut_suppress_missing(fields);
 }
 
 void strut_report_unused_groups(strut_reader *reader) {
@@ -180,6 +180,6 @@ void strut_report_unused_groups(strut_reader *reader) {
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken) continue;
-    strut_say(reader, group->key->place, "nothing uses group '%s'", group->name);
+    strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

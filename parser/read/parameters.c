@@ -41,19 +41,19 @@ static void report_circle(strut_reader *reader, const strut_parameter_state *p) 
   size_t first = 0;
   bool given = p->set && !p->set->known && p->set->place.line;
   while (reader->parameter_stack[first] != p) first++;
-  strut_say(reader, given ? p->set->place : p->key->place, "parameter '%s' depends on itself: %s",
-            p->name, strut_circle(reader, stacked_name, first, reader->parameter_depth));
+  strut_report_error(reader, given ? p->set->place : p->key->place, "parameter '%s' depends on itself: %s",
+            p->name, strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
 }
 
 /* Reports about what was given from outside: where a study gives it, else where it is declared. */
 static void object(strut_reader *reader, const strut_setting *set, strut_place declared,
                    const char *message) {
   if (set->place.line)
-    strut_say(reader, set->place, "in '%s' of the study: %s", strut_shown(reader, set->name),
+    strut_report_error(reader, set->place, "in '%s' of the study: %s", strut_sanitised_text(reader, set->name),
               message);
   else
-    strut_say(reader, declared, "--set %s=%s: %s", strut_shown(reader, set->name),
-              strut_shown(reader, set->text), message);
+    strut_report_error(reader, declared, "--set %s=%s: %s", strut_sanitised_text(reader, set->name),
+              strut_sanitised_text(reader, set->text), message);
 }
 
 /* The expression of a parameter in the file. */
@@ -98,8 +98,8 @@ static void note_scale(strut_reader *reader, const strut_parameter_state *p,
   strut_note(reader->diagnostics, p->value->place,
              "--set %s=%s is taken as %s in SI units, %.6g times the %s here, since a plain number "
              "is in SI units; write --set %s=\"%s %s\" if that is meant",
-             p->name, strut_shown(reader, given), given, times, p->value->text, p->name,
-             strut_shown(reader, given), *unit ? unit : "UNIT");
+             p->name, strut_sanitised_text(reader, given), given, times, p->value->text, p->name,
+             strut_sanitised_text(reader, given), *unit ? unit : "UNIT");
 }
 
 /* Does what is given fit what the file declares? A bare value takes the declared dimension. */
@@ -122,7 +122,7 @@ static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_qu
 static void resolve(strut_reader *reader, strut_parameter_state *p) {
   if (p->state != STRUT_UNREAD) return;
   if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
-    strut_say(reader, p->key->place, "parameters depend on each other more than %d deep",
+    strut_report_error(reader, p->key->place, "parameters depend on each other more than %d deep",
               STRUT_DEEPEST_PARAMETER);
     p->state = STRUT_FAILED;
     return;
@@ -151,7 +151,7 @@ static int look_up(void *context, const char *name, size_t length, strut_quantit
   if (!p) return 0;
   p->used = true;
   if (p->text) {
-    strut_say(reader, asking_place(reader), "parameter '%s' is a text and has no value here",
+    strut_report_error(reader, asking_place(reader), "parameter '%s' is a text and has no value here",
               p->name);
     return -1;
   }
@@ -176,13 +176,13 @@ static bool name_fits(strut_reader *reader, const strut_tree *key) {
   size_t length = strlen(c);
   if (!strut_read_name(reader, key, "parameter")) return false;
   if (strcmp(c, "pi") == 0 || strut_function_find(c, length)) {
-    strut_say(reader, key->place, "'%s' cannot be the name of a parameter: expressions use it", c);
+    strut_report_error(reader, key->place, "'%s' cannot be the name of a parameter: expressions use it", c);
     return false;
   }
   for (size_t i = 0; i < length; i++) {
     bool letter = (c[i] >= 'a' && c[i] <= 'z') || (c[i] >= 'A' && c[i] <= 'Z') || c[i] == '_';
     if (letter || (i && c[i] >= '0' && c[i] <= '9')) continue;
-    strut_say(reader, key->place,
+    strut_report_error(reader, key->place,
               "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
               "and '_', so that it can stand in expressions",
               c);
@@ -208,11 +208,11 @@ static void set(strut_reader *reader, const strut_setting *setting) {
   if (!p) {
     snprintf(
         message, sizeof message, "the scene has no parameter '%s'%s",
-        strut_shown(reader, setting->name),
+        strut_sanitised_text(reader, setting->name),
         strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
     object(reader, setting, section_place(reader), message);
   } else if (p->set) {
-    strut_say(reader, setting->place.line ? setting->place : p->key->place, "%s%s is given twice",
+    strut_report_error(reader, setting->place.line ? setting->place : p->key->place, "%s%s is given twice",
               setting->place.line ? "" : "--set ", p->name);
   } else {
     p->set = setting;
@@ -224,7 +224,7 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
   bool known = slot->state != STRUT_BROKEN;
   const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
   reader->parameters =
-      strut_take(reader, &reader->scratch, map ? map->count : 0, sizeof *reader->parameters);
+      strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0, sizeof *reader->parameters);
   if (!reader->parameters) return;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
     declare(reader, key, &reader->parameters[reader->parameter_count]);
@@ -238,7 +238,7 @@ void strut_keep_parameters(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   if (reader->failed) return; /* nobody will see the scene */
   scene->parameters =
-      strut_take(reader, &scene->arena, reader->parameter_count, sizeof *scene->parameters);
+      strut_reader_allocate(reader, &scene->arena, reader->parameter_count, sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
     const strut_parameter_state *p = &reader->parameters[i];
     if (p->value->kind != STRUT_TREE_SCALAR) return; /* reported */

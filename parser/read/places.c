@@ -143,6 +143,6 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);
-    if (fresh) strut_say(reader, place, "%s", finding->message);
+    if (fresh) strut_report_error(reader, place, "%s", finding->message);
   }
 }

@@ -25,14 +25,14 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
 
 static void read_actuators(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_ACTUATORS);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_ACTUATORS);
   if (!map) return;
-  scene->actuators = strut_take(reader, &scene->arena, map->count, sizeof *scene->actuators);
+  scene->actuators = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->actuators);
   reader->actuator_source =
-      strut_take(reader, &reader->scratch, map->count, sizeof *reader->actuator_source);
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->actuator_source);
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = strut_next_thing(reader, &scene->actuator_count);
+    size_t i = strut_next_entry(reader, &scene->actuator_count);
     scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
@@ -66,16 +66,16 @@ static bool read_load(strut_reader *reader, const strut_tree *key, strut_load *l
 
 static void read_loads(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_LOADS);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_LOADS);
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_LOADS)->state == STRUT_BROKEN)
     reader->ends_unknown = true;
   if (!map) return;
-  scene->loads = strut_take(reader, &scene->arena, map->count, sizeof *scene->loads);
+  scene->loads = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->loads);
   reader->load_source =
-      strut_take(reader, &reader->scratch, map->count, sizeof *reader->load_source);
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->load_source);
   if (!scene->loads || !reader->load_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = strut_next_thing(reader, &scene->load_count);
+    size_t i = strut_next_entry(reader, &scene->load_count);
     scene->loads[i] =
         (strut_load){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
     strut_add_name(reader, &reader->load_names, scene->loads[i].name, i);

@@ -7,7 +7,7 @@
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
   assert(strut_key_at(key)->room == fields->room);
-  return &fields->slot[key - strut_room_first(fields->room)];
+  return &fields->slot[key - strut_section_first(fields->room)];
 }
 
 double strut_number_or(strut_fields *fields, int key, double fallback) {
@@ -15,21 +15,21 @@ double strut_number_or(strut_fields *fields, int key, double fallback) {
   return slot->state == STRUT_GIVEN ? slot->number[0] : fallback;
 }
 
-void strut_excuse(strut_fields *fields) {
-  for (int i = 0; i < strut_room_size(fields->room); i++)
+void strut_suppress_missing(strut_fields *fields) {
+  for (int i = 0; i < strut_section_size(fields->room); i++)
     if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
 }
 
 /* The keys of some rooms, one after the other, for suggestions. */
 typedef struct rooms_context {
-  const strut_room *rooms;
+  const strut_section *rooms;
   size_t count;
 } rooms_context;
 
 static int key_of_rooms(const rooms_context *rooms, size_t i) {
   for (size_t r = 0; r < rooms->count; r++) {
-    size_t size = (size_t)strut_room_size(rooms->rooms[r]);
-    if (i < size) return strut_room_first(rooms->rooms[r]) + (int)i;
+    size_t size = (size_t)strut_section_size(rooms->rooms[r]);
+    if (i < size) return strut_section_first(rooms->rooms[r]) + (int)i;
     i -= size;
   }
   return -1;
@@ -40,13 +40,13 @@ static const char *name_of_rooms(const void *context, size_t i) {
   return key < 0 ? NULL : strut_key_at(key)->name;
 }
 
-int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_room *rooms,
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *rooms,
                       size_t count, strut_owner owner) {
   rooms_context context = {rooms, count};
   const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
                          ? NULL
                          : strut_did_you_mean(key->text, name_of_rooms, &context);
-  strut_say(reader, key->place, "unknown key '%s' in %s%s%s%s", strut_shown(reader, key->text),
+  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s", strut_sanitised_text(reader, key->text),
             strut_owner_text(reader, owner), near ? "; did you mean '" : "", near ? near : "",
             near ? "'?" : "");
   for (int i = 0; near && key_of_rooms(&context, (size_t)i) >= 0; i++) {
@@ -82,8 +82,8 @@ static bool read_word(strut_reader *reader, const strut_key *key, const strut_tr
   while (words.count < 32 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
-  strut_say(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
-            strut_owner_text(reader, owner), strut_shown(reader, value->text),
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
+            strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
             strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
   return false;
 }
@@ -98,7 +98,7 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
     if (!read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
-      strut_say(reader, item->place, "'%s' stands twice in '%s' of %s", item->text, key->name,
+      strut_report_error(reader, item->place, "'%s' stands twice in '%s' of %s", item->text, key->name,
                 strut_owner_text(reader, owner));
       fine = false;
     } else {
@@ -119,7 +119,7 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
 
 static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
   char expected[300];
-  strut_say(reader, value->place, "expected %s for '%s' of %s, found %s",
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
             strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
             strut_owner_text(reader, owner), strut_found(reader, value));
   return false;
@@ -163,10 +163,10 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
 
 static bool read_version(strut_reader *reader, const strut_tree *value) {
   if (strcmp(value->text, "1") == 0) return true;
-  strut_say(reader, value->place,
+  strut_report_error(reader, value->place,
             "expected the language version 1 for 'strut', found '%s'; "
             "this program knows version 1 only",
-            strut_shown(reader, value->text));
+            strut_sanitised_text(reader, value->text));
   return false;
 }
 
@@ -206,8 +206,8 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
 
 /* Another key of the same set that the mapping itself gives, or NULL. */
 static const strut_tree *rival(const strut_fields *fields, int key) {
-  int first = strut_room_first(fields->room), set = strut_key_at(key)->set;
-  for (int i = 0; set && i < strut_room_size(fields->room); i++)
+  int first = strut_section_first(fields->room), set = strut_key_at(key)->set;
+  for (int i = 0; set && i < strut_section_size(fields->room); i++)
     if (first + i != key && strut_key_at(first + i)->set == set && fields->slot[i].key)
       return fields->slot[i].key;
   return NULL;
@@ -227,7 +227,7 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
   const strut_tree *other = rival(fields, key);
   strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
   if (other) {
-    strut_say(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
+    strut_report_error(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
               strut_owner_text(reader, owner), other->text, key_tree->text);
     slot->state = STRUT_BROKEN;
   }
@@ -241,20 +241,20 @@ static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
   const strut_slot *rival = statics->key ? statics : kinetics;
   if (!mu->key || !rival->key) return;
-  strut_say(reader, mu->key->place,
+  strut_report_error(reader, mu->key->place,
             "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
             strut_owner_text(reader, owner), rival->key->text);
   fields->broken = true;
 }
 
-void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *map,
+void strut_read_fields(strut_reader *reader, strut_section room, const strut_tree *map,
                        strut_owner owner, strut_fields *fields) {
   *fields = (strut_fields){.room = room, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
-    strut_say(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
+    strut_report_error(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
               strut_owner_text(reader, owner), strut_found(reader, map));
     fields->broken = true;
-    strut_excuse(fields);
+    strut_suppress_missing(fields);
     return;
   }
   for (const strut_tree *k = map->first; k; k = k->next->next)
@@ -264,13 +264,13 @@ void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *
 
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place) {
-  int first = strut_room_first(fields->room);
-  for (int i = 0; i < strut_room_size(fields->room); i++) {
+  int first = strut_section_first(fields->room);
+  for (int i = 0; i < strut_section_size(fields->room); i++) {
     char expected[300];
     strut_slot *slot = &fields->slot[i];
     if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
     if (!reader->holes)
-      strut_say(reader, place, "%s lacks '%s', expected %s", strut_owner_text(reader, owner),
+      strut_report_error(reader, place, "%s lacks '%s', expected %s", strut_owner_text(reader, owner),
                 strut_key_at(first + i)->name,
                 strut_key_expected(first + i, expected, sizeof expected));
     slot->state = STRUT_BROKEN;
@@ -278,17 +278,17 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
   }
 }
 
-bool strut_section(strut_reader *reader, int key, strut_room room, const char *owner,
+bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
                    strut_fields *fields) {
   const strut_slot *slot = strut_slot_of(&reader->top, key);
   *fields = (strut_fields){.room = room, .broken = slot->state == STRUT_BROKEN};
-  if (fields->broken) strut_excuse(fields);
+  if (fields->broken) strut_suppress_missing(fields);
   if (slot->state != STRUT_GIVEN) return false;
   strut_read_fields(reader, room, slot->value, (strut_owner){owner, NULL}, fields);
   return true;
 }
 
-const strut_tree *strut_things(strut_reader *reader, int key) {
+const strut_tree *strut_entries(strut_reader *reader, int key) {
   const strut_slot *slot = strut_slot_of(&reader->top, key);
   return slot->state == STRUT_GIVEN ? slot->value : NULL;
 }

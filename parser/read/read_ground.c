@@ -46,7 +46,7 @@ static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owne
 
 static void lacks_speed(strut_reader *reader, const friction_layers *f, const char *key) {
   char expected[200];
-  strut_say(reader, f->last->place, "%s lacks '%s', expected %s",
+  strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
             strut_owner_text(reader, f->owner), key,
             strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
 }
@@ -66,7 +66,7 @@ static bool finish_friction(strut_reader *reader, friction_layers *f, const stru
   if (*said == f->last) return false;
   *said = f->last;
   if (missing)
-    strut_say(reader, f->last->place, "%s lacks '%s', expected a number such as 0.5",
+    strut_report_error(reader, f->last->place, "%s lacks '%s', expected a number such as 0.5",
               strut_owner_text(reader, f->owner), missing);
   if (!stick) lacks_speed(reader, f, "stick_velocity");
   if (!width) lacks_speed(reader, f, "width");
@@ -140,7 +140,7 @@ static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_say(reader, item->place, "node '%s' stands twice in 'nodes' of the ground", item->text);
+      strut_report_error(reader, item->place, "node '%s' stands twice in 'nodes' of the ground", item->text);
       fine = false;
     } else {
       touches[node] = 1;
@@ -165,7 +165,7 @@ static bool find_entries(strut_reader *reader, const unsigned char *touches, boo
     }
     fine = false;
     if (node >= 0 && complete)
-      strut_say(reader, key->place, "node '%s' has a contact, but 'nodes' of the ground lacks it",
+      strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of the ground lacks it",
                 key->text);
   }
   return fine;
@@ -174,11 +174,11 @@ static bool find_entries(strut_reader *reader, const unsigned char *touches, boo
 static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
   strut_scene *scene = reader->scene;
   size_t count = scene->node_count;
-  unsigned char *touches = strut_take(reader, &reader->scratch, count, 1);
-  const strut_tree **entry = strut_take(reader, &reader->scratch, count, sizeof *entry);
-  scene->contacts = strut_take(reader, &scene->arena, count, sizeof *scene->contacts);
+  unsigned char *touches = strut_reader_allocate(reader, &reader->scratch, count, 1);
+  const strut_tree **entry = strut_reader_allocate(reader, &reader->scratch, count, sizeof *entry);
+  scene->contacts = strut_reader_allocate(reader, &scene->arena, count, sizeof *scene->contacts);
   reader->contact_source =
-      strut_take(reader, &reader->scratch, count, sizeof *reader->contact_source);
+      strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->contact_source);
   if (!touches || !entry || !scene->contacts || !reader->contact_source) return;
   bool complete = mark_nodes(reader, touches);
   if (!find_entries(reader, touches, complete, entry) || !complete) reader->ground.broken = true;
@@ -194,7 +194,7 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
 void strut_read_ground(strut_reader *reader) {
   strut_fields *fields = &reader->ground;
   strut_owner owner = {"the ground", NULL};
-  if (!strut_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields)) return;
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields)) return;
   strut_require(reader, fields, owner,
                 strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place);
   strut_ground *ground = &reader->scene->ground;

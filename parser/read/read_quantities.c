@@ -253,7 +253,7 @@ static void keep_program(strut_reader *reader, const strut_compiler *c,
                          strut_quantity_definition *d) {
   strut_scene *scene = reader->scene;
   char unit[STRUT_SUFFIX_TEXT];
-  d->program = strut_take(reader, &scene->arena, c->length, sizeof *d->program);
+  d->program = strut_reader_allocate(reader, &scene->arena, c->length, sizeof *d->program);
   if (!d->program) return;
   d->length = c->length;
   d->depth = c->depth;
@@ -272,14 +272,14 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   size_t most = strlen(value->text) + 1;
   strut_compiler compiler = {.column = find_column, .pair = find_pair, .context = reader};
   strut_quantity q;
-  compiler.program = strut_take(reader, &reader->scratch, most, sizeof *compiler.program);
+  compiler.program = strut_reader_allocate(reader, &reader->scratch, most, sizeof *compiler.program);
   if (!compiler.program) return false;
   if (!strut_read_program(reader, value, "of", owner, &compiler, &q)) {
     reader->failed = true;
     return false;
   }
   if (!q.varies) {
-    strut_say(reader, value->place,
+    strut_report_error(reader, value->place,
               "'of' of %s does not change in time, expected a column of the motion such as com.vy, "
               "NODE.y or MEMBER.force",
               strut_owner_text(reader, owner));
@@ -302,14 +302,14 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
   bool relative = q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE);
   bool plain = strut_dimension_equal(dimension, STRUT_DIM_NONE);
   if (!relative && known && !strut_dimension_equal(q.dimension, dimension))
-    strut_say(reader, slot->value->place,
+    strut_report_error(reader, slot->value->place,
               "expected a number without unit such as '1 %%'%s%s for 'accuracy' of %s, found %s",
               plain ? "" : " or ",
               plain ? "" : strut_dimension_name(dimension, expected, sizeof expected),
               strut_owner_text(reader, owner),
               strut_dimension_name(q.dimension, found, sizeof found));
   else if (!(q.value > 0.0))
-    strut_say(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
+    strut_report_error(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
               strut_owner_text(reader, owner), q.value);
   else
     *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
@@ -321,7 +321,7 @@ static bool ends_at_comma(strut_reader *reader, const strut_tree *of, strut_owne
   if (!of || of->kind != STRUT_TREE_SCALAR || of->quoted) return false;
   for (const char *c = of->text; *c; c++) open += *c == '(' ? 1 : *c == ')' ? -1 : 0;
   if (open <= 0 || !of->next) return false;
-  strut_say(
+  strut_report_error(
       reader, of->place,
       "in 'of' of %s: the text ends here, since a comma ends it within '{...}'; put the whole "
       "expression in quotes",
@@ -362,7 +362,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
 static bool may_be_called(strut_reader *reader, const strut_tree *key) {
   if (!strut_read_name(reader, key, "quantity")) return false;
   if (strut_word_find(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, key->text) < 0) return true;
-  strut_say(reader, key->place,
+  strut_report_error(reader, key->place,
             "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
             key->text);
   return false;
@@ -372,7 +372,7 @@ void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
   strut_experiment *e = &reader->scene->experiment;
   if (slot->state != STRUT_GIVEN) return;
   const strut_tree *map = slot->value;
-  e->quantities = strut_take(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
+  e->quantities = strut_reader_allocate(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
   if (!e->quantities) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     strut_quantity_definition *d = &e->quantities[e->quantity_count++];

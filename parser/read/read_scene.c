@@ -80,7 +80,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
   if (is_study(reader->document.root)) {
-    strut_say(reader, strut_root_place(reader),
+    strut_report_error(reader, strut_root_place(reader),
               "this is a study, expected a model; 'strut sweep' runs studies");
     return;
   }

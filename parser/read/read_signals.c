@@ -57,15 +57,15 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
 }
 
 /* A sine, half-sine, square or ramp. The keys of their rooms have the same names. */
-static bool read_wave(strut_reader *reader, strut_room room, const strut_tree *map,
+static bool read_wave(strut_reader *reader, strut_section room, const strut_tree *map,
                       strut_owner owner, meaning *m, strut_signal *signal) {
   strut_fields fields;
   strut_read_fields(reader, room, map, owner, &fields);
   strut_require(reader, &fields, owner, map->place);
   bool fine = !fields.broken;
-  for (int i = 0; i < strut_room_size(room); i++) {
+  for (int i = 0; i < strut_section_size(room); i++) {
     const strut_slot *slot = &fields.slot[i];
-    const char *name = strut_key_at(strut_room_first(room) + i)->name;
+    const char *name = strut_key_at(strut_section_first(room) + i)->name;
     if (slot->state != STRUT_GIVEN) continue;
     if (strcmp(name, "amplitude") == 0) {
       fine = read_value(reader, slot->value, name, owner, m, &signal->amplitude) && fine;
@@ -84,13 +84,13 @@ static bool read_wave(strut_reader *reader, strut_room room, const strut_tree *m
 
 static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
                        strut_signal *signal) {
-  double *time = strut_take(reader, &reader->scene->arena, list->count, sizeof *time);
-  double *value = strut_take(reader, &reader->scene->arena, list->count, sizeof *value);
+  double *time = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *time);
+  double *value = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *value);
   bool fine = true;
   if (!time || !value) return false;
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
-      strut_say(reader, point->place,
+      strut_report_error(reader, point->place,
                 "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
                 strut_owner_text(reader, owner), strut_found(reader, point));
       fine = false;
@@ -112,7 +112,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
 
 static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
                      strut_signal *signal) {
-  int32_t *terms = strut_take(reader, &reader->scene->arena, list->count, sizeof *terms);
+  int32_t *terms = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *terms);
   bool fine = terms != NULL;
   for (const strut_tree *item = terms ? list->first : NULL; item; item = item->next) {
     const strut_dimension *expected = m->expected ? m->expected : m->bare ? NULL : &m->dimension;
@@ -134,13 +134,13 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
-  static const strut_room rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
+  static const strut_section rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
                                      STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
   strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, owner, &fields);
   if (map->count != 1 && !fields.broken)
-    strut_say(reader, map->place, "expected one kind of signal for %s, found %u",
+    strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
               strut_owner_text(reader, owner), (unsigned)map->count);
   if (map->count != 1 || fields.broken) return -1;
   int chosen = 0;
@@ -171,12 +171,12 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   if (named->state == STRUT_SIGNAL_READING) {
     size_t first = 0;
     while (reader->signal_stack[first] != named) first++;
-    strut_say(reader, named->key->place, "signal '%s' contains itself: %s", named->name,
-              strut_circle(reader, stacked_name, first, reader->signal_depth));
+    strut_report_error(reader, named->key->place, "signal '%s' contains itself: %s", named->name,
+              strut_format_cycle(reader, stacked_name, first, reader->signal_depth));
     return -1;
   }
   if (reader->signal_depth >= STRUT_DEEPEST_SIGNAL) {
-    strut_say(reader, named->key->place, "signals contain each other more than %d deep",
+    strut_report_error(reader, named->key->place, "signals contain each other more than %d deep",
               STRUT_DEEPEST_SIGNAL);
     return -1;
   }
@@ -187,7 +187,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   int32_t index = read_signal(reader, value, named->name, owner, NULL);
   if (index >= 0 && value->kind == STRUT_TREE_SCALAR) {
     /* Another name for a signal: a sum of one term. */
-    int32_t *term = strut_take(reader, &reader->scene->arena, 1, sizeof *term);
+    int32_t *term = strut_reader_allocate(reader, &reader->scene->arena, 1, sizeof *term);
     strut_signal sum = strut_signal_default(STRUT_SUM);
     meaning m = {NULL, reader->signal_state[index].dimension, reader->signal_state[index].bare};
     if (term) *term = index;
@@ -217,7 +217,7 @@ static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
     state->dimension = *expected;
   }
   if (strut_dimension_equal(state->dimension, *expected)) return true;
-  strut_say(reader, value->place, "expected %s here, but signal '%s' is %s",
+  strut_report_error(reader, value->place, "expected %s here, but signal '%s' is %s",
             strut_expected_number(*expected, wanted, sizeof wanted), value->text,
             strut_dimension_name(state->dimension, found, sizeof found));
   return false;
@@ -244,9 +244,9 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
 }
 
 void strut_read_signals(strut_reader *reader) {
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_SIGNALS);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
   if (!map) return;
-  reader->named = strut_take(reader, &reader->scratch, map->count, sizeof *reader->named);
+  reader->named = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->named);
   for (const strut_tree *key = map->first; key && reader->named; key = key->next->next) {
     strut_named_signal *named = &reader->named[reader->named_count];
     *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
@@ -257,7 +257,7 @@ void strut_read_signals(strut_reader *reader) {
 
 void strut_keep_signals(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  scene->signals = strut_take(reader, &scene->arena, reader->signal_count, sizeof *scene->signals);
+  scene->signals = strut_reader_allocate(reader, &scene->arena, reader->signal_count, sizeof *scene->signals);
   if (!scene->signals) return;
   if (reader->signal_count)
     memcpy(scene->signals, reader->signals, reader->signal_count * sizeof *scene->signals);

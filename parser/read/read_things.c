@@ -25,7 +25,7 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
     return strut_read_pair(reader, value, "position", owner, STRUT_DIM_LENGTH, node->position) &&
            fine;
   if (value->kind == STRUT_TREE_SCALAR) {
-    strut_say(reader, value->place,
+    strut_report_error(reader, value->place,
               "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
               strut_owner_text(reader, owner), strut_found(reader, value));
     return false;
@@ -47,14 +47,14 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
 
 void strut_read_nodes(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_NODES);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_NODES);
   if (!map) return;
-  scene->nodes = strut_take(reader, &scene->arena, map->count, sizeof *scene->nodes);
+  scene->nodes = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->nodes);
   reader->node_source =
-      strut_take(reader, &reader->scratch, map->count, sizeof *reader->node_source);
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->node_source);
   if (!scene->nodes || !reader->node_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = strut_next_thing(reader, &scene->node_count);
+    size_t i = strut_next_entry(reader, &scene->node_count);
     scene->nodes[i] = strut_node_default();
     scene->nodes[i].name = strut_keep_text(reader, key->text);
     strut_add_name(reader, &reader->node_names, scene->nodes[i].name, i);
@@ -112,16 +112,16 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
 
 void strut_read_members(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  const strut_tree *map = strut_things(reader, STRUT_KEY_SCENE_MEMBERS);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_MEMBERS);
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state == STRUT_BROKEN)
     reader->ends_unknown = true;
   if (!map) return;
-  scene->members = strut_take(reader, &scene->arena, map->count, sizeof *scene->members);
+  scene->members = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->members);
   reader->member_source =
-      strut_take(reader, &reader->scratch, map->count, sizeof *reader->member_source);
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->member_source);
   if (!scene->members || !reader->member_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    size_t i = strut_next_thing(reader, &scene->member_count);
+    size_t i = strut_next_entry(reader, &scene->member_count);
     scene->members[i] = strut_member_default();
     scene->members[i].name = strut_keep_text(reader, key->text);
     strut_add_name(reader, &reader->member_names, scene->members[i].name, i);
@@ -138,7 +138,7 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
     double pair[2];
     int32_t node = strut_name_map_find(&reader->node_names, k->text);
     if (node < 0 && known)
-      strut_say(reader, k->place, "unknown node '%s' in %s%s", strut_shown(reader, k->text),
+      strut_report_error(reader, k->place, "unknown node '%s' in %s%s", strut_sanitised_text(reader, k->text),
                 strut_owner_text(reader, owner),
                 strut_hint(reader, k->text, strut_node_name, reader, reader->scene->node_count));
     if (!strut_read_pair(reader, k->next, k->text, owner, dimension, pair) || node < 0)

@@ -10,7 +10,7 @@
 /* Longest text from the file in a message, and most names compared for suggestions. */
 enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 64 };
 
-void strut_say(strut_reader *reader, strut_place place, const char *format, ...) {
+void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
   char text[1200] = "";
   va_list arguments;
   va_start(arguments, format);
@@ -20,7 +20,7 @@ void strut_say(strut_reader *reader, strut_place place, const char *format, ...)
   strut_diagnose(reader->diagnostics, place, "%s", text);
 }
 
-void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
+void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
   void *block = strut_arena_allocate(arena, count, size);
   if (!block) reader->out_of_memory = true;
   return block;
@@ -31,7 +31,7 @@ void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name,
   if (strut_name_map_add(map, name, (int32_t)index) == -2) reader->out_of_memory = true;
 }
 
-size_t strut_next_thing(const strut_reader *reader, size_t *count) {
+size_t strut_next_entry(const strut_reader *reader, size_t *count) {
   return strut_diagnostics_full(reader->diagnostics) ? *count : (*count)++;
 }
 
@@ -50,7 +50,7 @@ static const char *kept(strut_reader *reader, const char *text) {
   return "?";
 }
 
-const char *strut_shown(strut_reader *reader, const char *text) {
+const char *strut_sanitised_text(strut_reader *reader, const char *text) {
   size_t length = strlen(text), end = length;
   if (strut_diagnostics_full(reader->diagnostics)) return "";
   if (length > SHOWN) {
@@ -67,7 +67,7 @@ const char *strut_shown(strut_reader *reader, const char *text) {
 const char *strut_owner_text(strut_reader *reader, strut_owner owner) {
   if (!owner.name || strut_diagnostics_full(reader->diagnostics)) return owner.kind;
   return kept(reader, strut_arena_format(&reader->scratch, "%s '%s'", owner.kind,
-                                         strut_shown(reader, owner.name)));
+                                         strut_sanitised_text(reader, owner.name)));
 }
 
 bool strut_hints_left(const strut_reader *reader) {
@@ -88,7 +88,7 @@ strut_place strut_root_place(const strut_reader *reader) {
   return (strut_place){place.line, place.column, 1};
 }
 
-const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
+const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
                          size_t first, size_t depth) {
   const char *text = "";
   if (strut_diagnostics_full(reader->diagnostics)) return "";
@@ -120,13 +120,13 @@ const char *strut_found(strut_reader *reader, const strut_tree *value) {
   if (strut_is_null(value)) return "nothing";
   if (!*value->text) return "an empty text";
   return kept(reader, strut_arena_format(arena, value->quoted ? "the text '%s'" : "'%s'",
-                                         strut_shown(reader, value->text)));
+                                         strut_sanitised_text(reader, value->text)));
 }
 
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected) {
   if (value->kind == STRUT_TREE_SCALAR && !strut_is_null(value)) return true;
-  strut_say(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
             strut_owner_text(reader, owner), strut_found(reader, value));
   return false;
 }
@@ -161,7 +161,7 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   reader->asking_set = set_before;
   if (!fine && scope.names) reader->suggestions += reader->parameter_count;
   if (!fine && error.message[0])
-    strut_say(reader, place_within(value, &error), "in '%s' of %s: %s", key,
+    strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s", key,
               strut_owner_text(reader, owner), error.message);
   return fine;
 }
@@ -171,7 +171,7 @@ static bool in_range(strut_reader *reader, const strut_tree *value, const char *
   bool below = range == STRUT_RANGE_NOT_NEGATIVE ? number < 0.0
                                                  : range == STRUT_RANGE_ABOVE_ZERO && number <= 0.0;
   if (!below) return true;
-  strut_say(reader, value->place, "'%s' of %s must %s, found %g", key,
+  strut_report_error(reader, value->place, "'%s' of %s must %s, found %g", key,
             strut_owner_text(reader, owner),
             range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
   return false;
@@ -188,7 +188,7 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
   }
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
-    strut_say(reader, value->place, "expected %s for '%s' of %s, found %s",
+    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
               strut_expected_number(dimension, expected, sizeof expected), key,
               strut_owner_text(reader, owner),
               strut_dimension_name(quantity.dimension, found, sizeof found));
@@ -206,7 +206,7 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
     return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
   }
   const char *example = strut_dimension_example(dimension);
-  strut_say(reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
+  strut_report_error(reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
             example ? example : "1", key, strut_owner_text(reader, owner),
             strut_found(reader, value));
   return false;
@@ -220,8 +220,8 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
   if (!strut_read_scalar(reader, value, key, owner, expected)) return -1;
   int32_t index = strut_name_map_find(map, value->text);
   if (index < 0)
-    strut_say(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
-              strut_shown(reader, value->text), key, strut_owner_text(reader, owner),
+    strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
+              strut_sanitised_text(reader, value->text), key, strut_owner_text(reader, owner),
               strut_hint(reader, value->text, names, reader, count));
   return index;
 }
@@ -239,11 +239,11 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
   plain.quoted = false;
   if (length && !*c && length <= LONGEST_NAME && !strut_is_null(&plain)) return true;
   if (length > LONGEST_NAME && !*c)
-    strut_say(reader, key->place, "the name of a %s may have %d bytes, found %zu", kind,
+    strut_report_error(reader, key->place, "the name of a %s may have %d bytes, found %zu", kind,
               (int)LONGEST_NAME, length);
   else
-    strut_say(reader, key->place,
+    strut_report_error(reader, key->place,
               "'%s' cannot be the name of a %s, expected letters, digits, '_', '-' and '.'",
-              strut_shown(reader, key->text), kind);
+              strut_sanitised_text(reader, key->text), kind);
   return false;
 }

@@ -37,7 +37,7 @@ typedef struct strut_slot {
 
 /** The keys of one mapping. */
 typedef struct strut_fields {
-  strut_room room;
+  strut_section room;
   bool broken;           /* some value, or the mapping itself, could not be read */
   const strut_tree *map; /* NULL: there is none */
   strut_slot slot[STRUT_MOST_KEYS];
@@ -135,12 +135,12 @@ typedef struct strut_reader {
  * Reports at a place. Once the diagnostics are full a message is only counted, and the functions below
  * that make its parts return "".
  */
-void strut_say(strut_reader *reader, strut_place place, const char *format, ...)
+void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /** "member 'm1'", for use within a message; lives in scratch. */
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);
 /** Text from the file, shortened and without control characters; lives in scratch. */
-const char *strut_shown(strut_reader *reader, const char *text);
+const char *strut_sanitised_text(strut_reader *reader, const char *text);
 /** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
                        const void *context, size_t count);
@@ -151,7 +151,7 @@ const char *strut_found(strut_reader *reader, const strut_tree *value);
 /** The beginning of the file, for what is about all of it. */
 strut_place strut_root_place(const strut_reader *reader);
 /** "a -> b -> a" from the names of a stack, shortened in the middle; lives in scratch. */
-const char *strut_circle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
+const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
                          size_t first, size_t depth);
 /** True for a plain empty scalar, ~ and null. */
 bool strut_is_null(const strut_tree *value);
@@ -180,13 +180,13 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
 /** Adds a name to a map; remembers when memory is out. */
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
 /** count * size zeroed bytes of an arena; remembers when memory is out. */
-void *strut_take(strut_reader *reader, strut_arena *arena, size_t count, size_t size);
+void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size);
 
 /**
  * The index of the next thing of an array. Once the diagnostics are full, things are read for their
  * errors only, all into the same place behind the last one that is kept, and without names.
  */
-size_t strut_next_thing(const strut_reader *reader, size_t *count);
+size_t strut_next_entry(const strut_reader *reader, size_t *count);
 
 /** A copy in the scene's own memory; "" where that is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
@@ -194,7 +194,7 @@ const char *strut_keep_text(strut_reader *reader, const char *text);
 /* read_fields.c: mappings */
 
 /** Reads a mapping by the table. A value that is not a mapping is reported. */
-void strut_read_fields(strut_reader *reader, strut_room room, const strut_tree *map,
+void strut_read_fields(strut_reader *reader, strut_section room, const strut_tree *map,
                        strut_owner owner, strut_fields *fields);
 /** Reports what is required and absent, at the place given. */
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
@@ -205,17 +205,17 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
 /** The slot of a key: fields->room must be the key's. */
 strut_slot *strut_slot_of(strut_fields *fields, int key);
 /** Reports an unknown key; returns the key of the rooms that was probably meant, or -1. */
-int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_room *rooms,
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *rooms,
                       size_t count, strut_owner owner);
 /** Number in a field, or the fallback where it is absent or broken. */
 double strut_number_or(strut_fields *fields, int key, double fallback);
 /** Marks every absent key as broken, so that nothing is said to be missing. */
-void strut_excuse(strut_fields *fields);
+void strut_suppress_missing(strut_fields *fields);
 /** True where the mapping behind a key of the scene is there and could be read. */
-bool strut_section(strut_reader *reader, int key, strut_room room, const char *owner,
+bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
                    strut_fields *fields);
 /** The mapping of things behind a key of the scene, or NULL. */
-const strut_tree *strut_things(strut_reader *reader, int key);
+const strut_tree *strut_entries(strut_reader *reader, int key);
 
 /* groups.c */
 

@@ -113,14 +113,14 @@ static void put_type(strut_writer *writer, const strut_key *key) {
   if (key->range == STRUT_RANGE_ABOVE_ZERO) strut_put(writer, ", above zero");
 }
 
-static void put_room(strut_writer *writer, strut_room room) {
+static void put_room(strut_writer *writer, strut_section room) {
   strut_put(writer, "\n## ");
-  strut_put(writer, strut_room_name(room));
+  strut_put(writer, strut_section_name(room));
   strut_put(writer, "\n\n");
   strut_put(writer, introductions[room]);
   strut_put(writer, "\n\n| key | value | default | meaning |\n|---|---|---|---|\n");
-  for (int i = 0; i < strut_room_size(room); i++) {
-    const strut_key *key = strut_key_at(strut_room_first(room) + i);
+  for (int i = 0; i < strut_section_size(room); i++) {
+    const strut_key *key = strut_key_at(strut_section_first(room) + i);
     bool words = strchr(key->fallback, ' ') && !strchr(key->fallback, '[');
     strut_put(writer, "| `");
     strut_put(writer, key->name);
@@ -145,7 +145,7 @@ char *strut_keys_page(void) {
       "A number is an expression with units, such as `2*amplitude + 0.1 mm`; a plain number is in "
       "the SI unit given here.\nGroups take the keys of a [member](#member), a [node](#node) or a "
       "[contact](#contact), except `group`.\n");
-  for (int room = 0; room < STRUT_ROOM_COUNT; room++) put_room(&result, (strut_room)room);
+  for (int room = 0; room < STRUT_ROOM_COUNT; room++) put_room(&result, (strut_section)room);
   if (!result.failed) return result.text;
   strut_release(result.text);
   return NULL;

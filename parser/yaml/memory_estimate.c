@@ -62,7 +62,7 @@ static const char *name_text(const char *name, char words[WORDS]) {
   return words;
 }
 
-strut_status strut_document_room_check(const char *name, const char *text, size_t length,
+strut_status strut_memory_check_document(const char *name, const char *text, size_t length,
                                        strut_error *error) {
   char words[WORDS];
   const char *whose;
@@ -71,7 +71,7 @@ strut_status strut_document_room_check(const char *name, const char *text, size_
   return strut_memory_check(strut_document_needs(text, length), name_text(name, words), error);
 }
 
-strut_status strut_document_room_fail(const char *name, const char *text, size_t length,
+strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
                                       strut_error *error) {
   char words[WORDS];
   return strut_memory_fail(strut_document_needs(text, length), name_text(name, words), error);

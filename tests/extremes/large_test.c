@@ -62,18 +62,18 @@ static double fastest(const motion *m) {
 }
 
 /* Of all that was exchanged [1]; times and losses are in the state's ledger. */
-static double residual(const motion *m, const strut_stored *begin) {
+static double residual(const motion *m, const strut_energies *begin) {
   strut_energy e;
   strut_balance_fill(m->model, m->state, begin, (double)m->state->step * m->step, &e);
   assert_true(e.dissipated_contact > 0 && e.moved > 0);
   return e.residual / e.moved;
 }
 
-static void begin(motion *m, const strut_scene *scene, double step, strut_stored *stored) {
+static void begin(motion *m, const strut_scene *scene, double step, strut_energies *stored) {
   motion_begin(m, scene, step);
   m->state->ledger = true;
-  strut_energy_mark(m->model, m->state);
-  *stored = strut_energy_stored(m->model, m->state, 0);
+  strut_energy_reset_load_work(m->model, m->state);
+  *stored = strut_energy_evaluate(m->model, m->state, 0);
 }
 
 /* Tenth by tenth: what a node and step takes must not grow, nor memory. */
@@ -99,7 +99,7 @@ static void march(motion *m, int64_t count) {
 static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
   strut_scene scene;
   motion m;
-  strut_stored stored;
+  strut_energies stored;
   double size, start = seconds();
   falling(&scene, n, mass, mu);
   begin(&m, &scene, mu > 0 ? ROUGH_STEP : STEP, &stored);

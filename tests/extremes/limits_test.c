@@ -138,7 +138,7 @@ static void test_the_limit_is_predicted(void **unused) {
       oscillator(&scene, zeta[i]);
       strut_model *model = motion_compile(&scene);
       assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
-      double predicted = strut_step_limit_of(&limit, strut_integrator_find(METHODS[k].name));
+      double predicted = strut_step_limit_of_method(&limit, strut_integrator_find(METHODS[k].name));
       assert_relative(predicted * sqrt(K / MASS), limit_of(&METHODS[k], zeta[i]), 1e-2);
       strut_model_free(model);
       strut_scene_free(&scene);

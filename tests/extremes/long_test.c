@@ -25,7 +25,7 @@ static void oscillator(strut_scene *scene) {
 }
 
 static double energy(const motion *m) {
-  strut_stored e = strut_energy_stored(m->model, m->state, 0);
+  strut_energies e = strut_energy_evaluate(m->model, m->state, 0);
   return e.kinetic + e.elastic;
 }
 

@@ -38,7 +38,7 @@ static void test_orbits_of_zero_rest_length_close(void **unused) {
     scene.experiment.tolerance = 1e-13;
     motion_begin_by(&m, &scene, method, step);
     motion_steps(&m, 500); /* a quarter: nearest to the support */
-    assert_int_equal(m.state->trouble, STRUT_TROUBLE_NONE);
+    assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
     assert_near(m.state->q[2], 0, 2 * PI * late + 1e-15);
     assert_near(m.state->q[3], miss, miss * 1e-5);
     motion_steps(&m, 19500); /* ten periods in all */

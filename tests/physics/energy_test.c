@@ -195,7 +195,7 @@ static void test_an_interrupted_step_is_undone_with_its_works(void **unused) {
   assert_int_equal(setitimer(ITIMER_REAL, &soon, NULL), 0);
   motion_steps(&m, 1);
   assert_int_equal(sigaction(SIGALRM, &before, NULL), 0);
-  assert_int_equal(m.state->trouble, STRUT_TROUBLE_INTERRUPT);
+  assert_int_equal(m.state->trouble, STRUT_FAILURE_INTERRUPT);
   assert_true(m.state->evaluations > 100); /* it had gone somewhere */
   assert_int_equal(m.state->step, 0);
   assert_true(m.state->q[2] == 1.01 && m.state->v[2] == 0);

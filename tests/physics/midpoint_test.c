@@ -76,12 +76,12 @@ static void test_energy_of_a_stiff_frame(void **unused) {
   double step = 100.0 * explicit_limit(&scene), most = 0.0;
   motion m;
   motion_begin_by(&m, &scene, "midpoint", step);
-  strut_stored start = strut_energy_stored(m.model, m.state, 0.0);
+  strut_energies start = strut_energy_evaluate(m.model, m.state, 0.0);
   double whole = start.kinetic + start.elastic;
   for (int k = 0; k < 1000; k++) {
     motion_steps(&m, 100);
     assert_int_equal(m.state->trouble, 0);
-    strut_stored now = strut_energy_stored(m.model, m.state, (double)m.state->step * step);
+    strut_energies now = strut_energy_evaluate(m.model, m.state, (double)m.state->step * step);
     most = fmax(most, fabs(now.kinetic + now.elastic - whole));
   }
   print_message("1e5 steps at 100 times the limit: energy within %.2g of itself, %.1f evaluations a "

@@ -20,9 +20,9 @@ static void keep_energy(double z, int64_t steps, double stretch) {
   build_member(&scene, STRUT_SPRING, 0, 1, k, 0, 0);
   scene.nodes[1].start[0] = 1 + stretch, scene.nodes[1].velocity[0] = 6 * stretch;
   motion_begin(&m, &scene, z / omega);
-  strut_stored before = strut_energy_stored(m.model, m.state, 0);
+  strut_energies before = strut_energy_evaluate(m.model, m.state, 0);
   motion_steps(&m, steps);
-  strut_stored after = strut_energy_stored(m.model, m.state, 0);
+  strut_energies after = strut_energy_evaluate(m.model, m.state, 0);
   double ratio = (after.kinetic + after.elastic) / (before.kinetic + before.elastic);
   double per_step = -pow(z, 6) / 72 + pow(z, 8) / 576;
   assert_relative(ratio, exp((double)steps * log1p(per_step)), 1e-9);

@@ -84,10 +84,10 @@ static void check_powers(const strut_state *state, const slow_model *slow) {
   const long double expected[] = {slow->drive,   slow->load,    slow->belt,
                                   slow->members, slow->contact, slow->rubbed};
   double scale = 0;
-  for (int p = 0; p < STRUT_POWER_MOVED; p++) scale += (double)fabsl(expected[p]);
-  for (int p = 0; p < STRUT_POWER_MOVED; p++)
+  for (int p = 0; p < STRUT_POWER_EXCHANGED; p++) scale += (double)fabsl(expected[p]);
+  for (int p = 0; p < STRUT_POWER_EXCHANGED; p++)
     assert_near(state->power[p], (double)expected[p], TOLERANCE * scale);
-  assert_true(state->power[STRUT_POWER_MOVED] >= scale * (1 - TOLERANCE));
+  assert_true(state->power[STRUT_POWER_EXCHANGED] >= scale * (1 - TOLERANCE));
 }
 
 static void check_acceleration(const strut_scene *scene, const strut_model *model,

@@ -94,7 +94,7 @@ static void test_lengths_hold_over_a_long_tumble(void **unused) {
   memcpy(kept, m.state->rigid->length, sizeof kept);
   for (int i = 0; i < 200; i++) {
     motion_steps(&m, 500);
-    assert_int_equal(m.state->trouble, STRUT_TROUBLE_NONE);
+    assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
     for (int b = 0; b < 4; b++) {
       const double *p = m.state->q + 2 * b, *v = m.state->v + 2 * b;
       double d[2] = {p[2] - p[0], p[3] - p[1]};

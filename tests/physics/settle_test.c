@@ -218,8 +218,8 @@ static void statics_start_from_the_same_bits(void **unused) {
     settled s = settle(&scene);
     strut_model *model = motion_compile(&scene);
     strut_arena arena = {0};
-    strut_stand stand;
-    assert_int_equal(strut_stand_find(model, NULL, &arena, &stand, NULL), STRUT_OK);
+    strut_rest_state stand;
+    assert_int_equal(strut_rest_state_find(model, NULL, &arena, &stand, NULL), STRUT_OK);
     assert_memory_equal(stand.q, s.q, (size_t)model->length * sizeof *s.q);
     assert_true(stand.at_rest);
     assert_int_equal(stand.settle.unstable, !perturb);

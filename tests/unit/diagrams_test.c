@@ -157,12 +157,12 @@ static void test_thinning(void **state) {
 static void test_front(void **state) {
   (void)state;
   enum { COUNT = 60 };
-  strut_bargain b[COUNT];
+  strut_saving b[COUNT];
   bool front[COUNT];
   uint64_t seed = 3;
   for (int round = 0; round < 200; round++) {
     for (size_t i = 0; i < COUNT; i++)
-      b[i] = (strut_bargain){.cost = 1 + floor(10 * random_between(&seed, 0, 1)),
+      b[i] = (strut_saving){.cost = 1 + floor(10 * random_between(&seed, 0, 1)),
                              .error = random_between(&seed, 0, 1) < 0.1
                                           ? (double)NAN
                                           : 1 + floor(10 * random_between(&seed, 0, 1)),

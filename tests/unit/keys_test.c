@@ -18,12 +18,12 @@ static void rooms_divide_the_table(void **state) {
   (void)state;
   int key = 0;
   for (int room = 0; room < STRUT_ROOM_COUNT; room++) {
-    assert_int_equal(strut_room_first((strut_room)room), key);
-    assert_true(strut_room_size((strut_room)room) >= 1);
-    assert_true(strut_room_size((strut_room)room) <= STRUT_MOST_KEYS);
-    for (int i = 0; i < strut_room_size((strut_room)room); i++, key++) {
+    assert_int_equal(strut_section_first((strut_section)room), key);
+    assert_true(strut_section_size((strut_section)room) >= 1);
+    assert_true(strut_section_size((strut_section)room) <= STRUT_MOST_KEYS);
+    for (int i = 0; i < strut_section_size((strut_section)room); i++, key++) {
       assert_int_equal(strut_key_at(key)->room, room);
-      assert_int_equal(strut_key_find((strut_room)room, strut_key_at(key)->name), key);
+      assert_int_equal(strut_key_find((strut_section)room, strut_key_at(key)->name), key);
       assert_true(strlen(strut_key_at(key)->description) > 3);
     }
   }
@@ -34,12 +34,12 @@ static void rooms_divide_the_table(void **state) {
 /* A group's key is read once for all rooms that have it: it must mean the same in each. */
 static void shared_keys_of_groups_agree(void **state) {
   (void)state;
-  static const strut_room rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
+  static const strut_section rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
   int shared = 0;
   for (size_t a = 0; a < 3; a++)
     for (size_t b = 0; b < a; b++)
-      for (int i = 0; i < strut_room_size(rooms[a]); i++) {
-        const strut_key *key = strut_key_at(strut_room_first(rooms[a]) + i);
+      for (int i = 0; i < strut_section_size(rooms[a]); i++) {
+        const strut_key *key = strut_key_at(strut_section_first(rooms[a]) + i);
         int other = strut_key_find(rooms[b], key->name);
         if (other < 0) continue;
         shared++;

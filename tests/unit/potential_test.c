@@ -185,9 +185,9 @@ static void it_agrees_with_the_engine(void **state) {
     assert_int_equal(strut_state_create(quiet, &still, NULL), STRUT_OK);
     memcpy(still->q, f.q, (size_t)f.model->length * sizeof *f.q);
     memset(still->v, 0, (size_t)f.model->length * sizeof *f.q);
-    strut_stored stored = strut_energy_stored(quiet, still, 0);
+    strut_energies stored = strut_energy_evaluate(quiet, still, 0);
     double sum = stored.elastic + stored.gravity + stored.contact;
-    double loads = strut_energy_of_loads(quiet, still);
+    double loads = strut_energy_load_potential(quiet, still);
     double scale = fabs(stored.elastic) + fabs(stored.gravity) + fabs(loads) + stored.contact;
     assert_near(strut_potential_value(all, f.q), sum - loads, 1e-13 * scale);
     assert_near(strut_potential_energy(all, f.q), stored.elastic + stored.gravity, 1e-13 * scale);

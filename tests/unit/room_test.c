@@ -69,7 +69,7 @@ static void test_more_than_the_process_may_have(void **unused) {
 static void test_a_small_scene_has_room(void **unused) {
   (void)unused;
   strut_scene scene = {.node_count = 100, .member_count = 100};
-  assert_int_equal(strut_room_check(&scene, NULL), STRUT_OK);
+  assert_int_equal(strut_memory_check_model(&scene, NULL), STRUT_OK);
 }
 
 /* A plane grid's matrix, whose factor fills in: counted, refused, and not computed. */
@@ -111,7 +111,7 @@ static void test_a_factor(void **unused) {
 static void test_a_factor_that_cannot_be_counted(void **unused) {
   (void)unused;
   strut_error error = {0};
-  assert_int_equal(strut_room_check_factor(100000000, 3e9, &error), STRUT_NO_MEMORY);
+  assert_int_equal(strut_memory_check_factor(100000000, 3e9, &error), STRUT_NO_MEMORY);
   assert_non_null(strstr(error.message, "3e+09 nonzeros"));
 }
 
@@ -162,7 +162,7 @@ static void test_a_large_text(void **unused) {
   assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
   now = before, now.rlim_cur = 300000000;
   assert_int_equal(setrlimit(RLIMIT_AS, &now), 0);
-  strut_status status = strut_document_room_check("large.yaml", text, 5 * PAIRS, &error);
+  strut_status status = strut_memory_check_document("large.yaml", text, 5 * PAIRS, &error);
   assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
   assert_int_equal(status, STRUT_NO_MEMORY);
   print_message("%s\n", error.message);

@@ -35,13 +35,13 @@ static void done(found *f) {
   strut_scene_free(&f->scene);
 }
 
-static int32_t count(const found *f, strut_fate fate) {
+static int32_t count(const found *f, strut_outcome fate) {
   int32_t n = 0;
   for (size_t i = 0; i < f->all.count; i++) n += f->all.list[i].fate == fate;
   return n;
 }
 
-static const strut_equilibrium *first(const found *f, strut_fate fate) {
+static const strut_equilibrium *first(const found *f, strut_outcome fate) {
   for (size_t i = 0; i < f->all.count; i++)
     if (f->all.list[i].fate == fate) return &f->all.list[i];
   fail_msg("nothing has that fate");
@@ -72,10 +72,10 @@ static void test_a_triangle_stands_on_every_side(void **unused) {
   triangle(&f.scene, 0.4);
   search(&f);
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
-  assert_int_equal(count(&f, STRUT_FATE_STANDS), 3);
+  assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 3);
   for (size_t i = 0; i < f.all.count; i++) {
     const strut_equilibrium *e = &f.all.list[i];
-    if (e->fate != STRUT_FATE_STANDS) continue;
+    if (e->fate != STRUT_OUTCOME_STANDS) continue;
     assert_string_equal(e->verdict, "stands");
     assert_int_equal(e->ends_as, i);
     double sum = 0, below = 0;
@@ -96,7 +96,7 @@ static void test_it_tips_over_its_foot(void **unused) {
   found f;
   triangle(&f.scene, 2.5);
   search(&f);
-  const strut_equilibrium *e = first(&f, STRUT_FATE_TIPS);
+  const strut_equilibrium *e = first(&f, STRUT_OUTCOME_TIPS);
   assert_int_equal(e->supports->node[0], 0);
   assert_int_equal(e->supports->node[1], 1);
   assert_true(e->reaction[0][1] < 0);
@@ -104,7 +104,7 @@ static void test_it_tips_over_its_foot(void **unused) {
   assert_says(e->verdict, "tips over n2 onto n2 and n3: ");
   assert_int_equal(e->contacts[0], 1);
   assert_int_equal(e->contacts[1], 2);
-  assert_int_equal(f.all.list[e->ends_as].fate, STRUT_FATE_STANDS);
+  assert_int_equal(f.all.list[e->ends_as].fate, STRUT_OUTCOME_STANDS);
   done(&f);
 }
 
@@ -123,7 +123,7 @@ static void test_a_truss_snaps(void **unused) {
   found f;
   truss(&f.scene);
   search(&f);
-  assert_int_equal(count(&f, STRUT_FATE_STANDS), 2);
+  assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 2);
   double flat = 1000 * pow(hypot(1, 0.3) - 1, 2);
   assert_true(f.all.barrier_count == 2);
   for (int i = 0; i < 2; i++) {
@@ -147,7 +147,7 @@ static void test_one_motion_needs_one_support(void **unused) {
   build_contact(&f.scene, 1, 1e5, 100);
   f.scene.gravity[1] = -G;
   search(&f);
-  const strut_equilibrium *e = first(&f, STRUT_FATE_STANDS);
+  const strut_equilibrium *e = first(&f, STRUT_OUTCOME_STANDS);
   assert_int_equal(e->supports->count, 1);
   assert_near(e->point.q[2], 0.8, 1e-4); /* 0.6, 0.8, 1 */
   assert_near(e->point.q[3], 0, 0);
@@ -160,7 +160,7 @@ static void test_what_falls(void **unused) {
   (void)unused;
   found f;
   strut_arena arena = {0};
-  strut_stand stand;
+  strut_rest_state stand;
   strut_error error = {0};
   strut_scene_init(&f.scene);
   build_node(&f.scene, 0, 0);
@@ -170,7 +170,7 @@ static void test_what_falls(void **unused) {
   search(&f);
   assert_int_equal(f.all.count, 0);
   assert_string_equal(f.all.remark, "nothing holds the structure: it falls freely, all nodes");
-  assert_int_equal(strut_stand_find(f.model, NULL, &arena, &stand, &error), STRUT_NOT_SETTLED);
+  assert_int_equal(strut_rest_state_find(f.model, NULL, &arena, &stand, &error), STRUT_NOT_SETTLED);
   assert_says(error.message, "it falls freely, all nodes");
   strut_arena_free(&arena);
   done(&f);
@@ -200,7 +200,7 @@ static void test_a_mechanism(void **unused) {
   for (int i = 1; i < 4; i++) build_member(&f.scene, STRUT_BAR, i, (i + 1) % 4, 1000, 0, 0);
   search(&f);
   assert_true(f.all.count > 0);
-  const strut_equilibrium *e = first(&f, STRUT_FATE_FLOPPY);
+  const strut_equilibrium *e = first(&f, STRUT_OUTCOME_FLOPPY);
   assert_int_equal(e->point.label, STRUT_FLOPPY);
   assert_string_equal(e->verdict, "nodes n3 and n4 move together without stiffness");
   assert_says(f.all.remark, "nodes n3 and n4 move together without stiffness");
@@ -215,7 +215,7 @@ static void test_a_push_along_the_ground(void **unused) {
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
   build_load(&f.scene, 2, 2.5 * weight, 0, -1);
   search(&f);
-  assert_int_equal(count(&f, STRUT_FATE_STANDS), 0);
+  assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 0);
   assert_says(f.all.remark, "a coefficient of at least 2.5 holds it");
   done(&f);
 }
@@ -225,7 +225,7 @@ static void test_one_node(void **unused) {
   (void)unused;
   strut_scene scene;
   strut_arena arena = {0};
-  strut_stand stand;
+  strut_rest_state stand;
   strut_error error = {0};
   strut_scene_init(&scene);
   build_node(&scene, 0, 0);
@@ -233,7 +233,7 @@ static void test_one_node(void **unused) {
   build_contact(&scene, 0, 1e5, 10);
   scene.gravity[1] = -G;
   strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_stand_find(model, "start", &arena, &stand, &error), STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, "start", &arena, &stand, &error), STRUT_OK);
   assert_near(stand.q[1], -G / 1e5, 1e-15);
   strut_arena_free(&arena);
   strut_model_free(model);
@@ -258,9 +258,9 @@ static void test_a_slope(void **unused) {
   search(&steep);
   assert_int_equal(level.all.count, steep.all.count);
   assert_true(steep.all.count >= 3);
-  assert_int_equal(count(&steep, STRUT_FATE_STANDS), 0);
+  assert_int_equal(count(&steep, STRUT_OUTCOME_STANDS), 0);
   assert_says(steep.all.remark, "a coefficient of at least 0.1003 holds it"); /* tan 0.1 */
-  assert_string_equal(first(&steep, STRUT_FATE_NO_REST)->verdict,
+  assert_string_equal(first(&steep, STRUT_OUTCOME_NO_REST)->verdict,
                       "slides along the ground without friction");
   for (size_t i = 0; i < steep.all.count; i++) {
     const double *a = level.all.list[i].point.q, *b = steep.all.list[i].point.q;
@@ -311,14 +311,14 @@ static void test_stands(void **unused) {
   (void)unused;
   strut_scene scene;
   strut_arena arena = {0};
-  strut_stand drawn, start, one, two;
+  strut_rest_state drawn, start, one, two;
   strut_error error = {0};
   with_configurations(&scene);
   strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_stand_find(model, "drawn", &arena, &drawn, &error), STRUT_OK);
-  assert_int_equal(strut_stand_find(model, NULL, &arena, &start, &error), STRUT_OK);
-  assert_int_equal(strut_stand_find(model, "I", &arena, &one, &error), STRUT_OK);
-  assert_int_equal(strut_stand_find(model, "II", &arena, &two, &error), STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, "drawn", &arena, &drawn, &error), STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, NULL, &arena, &start, &error), STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, "I", &arena, &one, &error), STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, "II", &arena, &two, &error), STRUT_OK);
   assert_false(drawn.at_rest); /* nothing carries it where it is drawn */
   assert_near(drawn.q[2], 0.0965109, 0);
   assert_near(drawn.scale, 0.14 * G, 1e-12);
@@ -333,7 +333,7 @@ static void test_stands(void **unused) {
   assert_near(one.normal[0], two.normal[0], 1e-8);
   assert_near(two.q[3], one.q[1], 1e-12);
   assert_true(one.residual < 1e-10 * one.scale);
-  assert_int_equal(strut_stand_find(model, "III", &arena, &two, &error), STRUT_USAGE);
+  assert_int_equal(strut_rest_state_find(model, "III", &arena, &two, &error), STRUT_USAGE);
   assert_says(error.message, "choose among: start, drawn, I, II");
   strut_arena_free(&arena);
   strut_model_free(model);
@@ -354,10 +354,10 @@ static void test_a_run_wants_it_resolved(void **unused) {
   assert_says(error.message, "'II'");
   strut_summary_free(&summary);
   strut_model_free(model);
-  assert_int_equal(strut_stand_resolve(&scene, &error), STRUT_OK);
+  assert_int_equal(strut_resolve_start_equilibrium(&scene, &error), STRUT_OK);
   assert_int_equal(scene.start_equilibrium, -1);
   assert_true(fabs(scene.nodes[1].start[1]) < 1e-4 && scene.nodes[0].start[1] > 0.02);
-  assert_int_equal(strut_stand_resolve(&scene, &error), STRUT_OK);
+  assert_int_equal(strut_resolve_start_equilibrium(&scene, &error), STRUT_OK);
   for (size_t i = 0; i < scene.actuator_count; i++) scene.signals[0].amplitude = 0;
   summary = motion_simulate(&scene);
   for (size_t k = 0; k < 10; k++) /* it stays */
@@ -370,13 +370,13 @@ static void test_no_such_equilibrium(void **unused) {
   (void)unused;
   strut_scene scene;
   strut_arena arena = {0};
-  strut_stand stand;
+  strut_rest_state stand;
   strut_error error = {0};
   with_configurations(&scene);
   int32_t nodes[2] = {2, 3}; /* it does not stand on these two */
   scene.configurations[1].sets[0].node = nodes;
   strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_stand_find(model, "II", &arena, &stand, &error), STRUT_NOT_SETTLED);
+  assert_int_equal(strut_rest_state_find(model, "II", &arena, &stand, &error), STRUT_NOT_SETTLED);
   assert_says(error.message, "no equilibrium fits configuration 'II'");
   strut_arena_free(&arena);
   strut_model_free(model);

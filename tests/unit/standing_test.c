@@ -34,9 +34,9 @@ static void hanging(strut_scene *scene) {
 }
 
 /* Where the scene stands, by equilibria that may be known already. */
-static void resolve(strut_standing *standing, strut_scene *scene, double at[2]) {
+static void resolve(strut_equilibrium_cache *standing, strut_scene *scene, double at[2]) {
   strut_error error = {0};
-  strut_status status = strut_standing_resolve(standing, scene, &error);
+  strut_status status = strut_equilibrium_cache_resolve(standing, scene, &error);
   if (status) fail_msg("%s", error.message);
   assert_int_equal(scene->start_equilibrium, -1);
   memcpy(at, scene->nodes[2].start, 2 * sizeof *at);
@@ -59,7 +59,7 @@ static bool change(strut_scene *s, int which) {
 
 static void test_each_structure_has_equilibria_of_its_own(void **unused) {
   (void)unused;
-  strut_standing *shared = strut_standing_create();
+  strut_equilibrium_cache *shared = strut_equilibrium_cache_create();
   double first[2], again[2];
   assert_non_null(shared);
   for (int which = -1;; which++) {
@@ -73,7 +73,7 @@ static void test_each_structure_has_equilibria_of_its_own(void **unused) {
       strut_scene_free(&copy);
       break;
     }
-    strut_standing *own = strut_standing_create();
+    strut_equilibrium_cache *own = strut_equilibrium_cache_create();
     assert_non_null(own);
     resolve(shared, &scene, found);
     resolve(own, &copy, alone);
@@ -82,18 +82,18 @@ static void test_each_structure_has_equilibria_of_its_own(void **unused) {
       memcpy(first, found, sizeof first);
     else if (!(hypot(found[0] - first[0], found[1] - first[1]) > 1e-5))
       fail_msg("change %d moves nothing", which);
-    strut_standing_free(own);
+    strut_equilibrium_cache_free(own);
     strut_scene_free(&scene);
     strut_scene_free(&copy);
   }
   for (int c = 0; c < 2; c++) assert_same_bits(again[c], first[c]);
-  strut_standing_free(shared);
+  strut_equilibrium_cache_free(shared);
 }
 
 /* What stands alike is looked for once: friction and the run's step change nothing of where. */
 static void test_points_that_stand_alike_share(void **unused) {
   (void)unused;
-  strut_standing *shared = strut_standing_create();
+  strut_equilibrium_cache *shared = strut_equilibrium_cache_create();
   double at[2], other[2];
   assert_non_null(shared);
   strut_scene scene, rough;
@@ -107,7 +107,7 @@ static void test_points_that_stand_alike_share(void **unused) {
   resolve(shared, &rough, other);
   assert_true(strut_allocation_count() - before < 20); /* no search */
   for (int c = 0; c < 2; c++) assert_same_bits(other[c], at[c]);
-  strut_standing_free(shared);
+  strut_equilibrium_cache_free(shared);
   strut_scene_free(&scene);
   strut_scene_free(&rough);
 }

@@ -188,7 +188,7 @@ static void check_plain(const strut_model *model, const strut_step_limit *limit)
 
 static void check_implicit(const strut_model *model, const strut_step_limit *limit) {
   dense s = dense_of(model, STRUT_CLOSED_UNDAMPED);
-  double h = strut_step_limit_of(limit, strut_integrator_find("verlet-events"));
+  double h = strut_step_limit_of_method(limit, strut_integrator_find("verlet-events"));
   assert_true(verlet_growth(&s, 0.99 * h) < STAYS);
   assert_true(verlet_growth(&s, 1.01 * h) > GROWS);
   dense_free(&s);

@@ -79,7 +79,7 @@ static void test_limit_of_each_method_on_damped_ground(void **unused) {
       build_mass(&scene, 0, 0.5, mass);
       build_contact(&scene, 0, k, zeta * 2 * sqrt(k * mass));
       strut_model *model = motion_compile(&scene);
-      assert_int_equal(strut_step_limit_for(model, method, &limit, NULL), STRUT_OK);
+      assert_int_equal(strut_step_limit_for_method(model, method, &limit, NULL), STRUT_OK);
       if (method->region == STRUT_REGION_RK4) expected = rk4[z] / omega;
       if (method->region == STRUT_REGION_EULER) expected = 2 / omega * (hypot(zeta, 1) - zeta);
       if (method->region == STRUT_REGION_VERLET)
@@ -128,20 +128,20 @@ static void test_limits_are_recalled_for_the_same_model_only(void **unused) {
       break;
     }
     strut_model *model = motion_compile(&scene);
-    assert_int_equal(strut_step_limit_recall(model, rk4, &kept, &limit, NULL), STRUT_OK);
-    assert_int_equal(strut_step_limit_for(model, rk4, &own, NULL), STRUT_OK);
+    assert_int_equal(strut_step_limit_cached(model, rk4, &kept, &limit, NULL), STRUT_OK);
+    assert_int_equal(strut_step_limit_for_method(model, rk4, &own, NULL), STRUT_OK);
     assert_same_bits(limit, own);
     if (which < 0)
       first = limit;
     else if (limit == first)
       fail_msg("change %d changes no limit", which);
     int64_t found = kept.count;
-    assert_int_equal(strut_step_limit_recall(model, rk4, &kept, &limit, NULL), STRUT_OK);
+    assert_int_equal(strut_step_limit_cached(model, rk4, &kept, &limit, NULL), STRUT_OK);
     assert_int_equal(kept.count, found);
     assert_same_bits(limit, own);
     if (which < 0) {
-      assert_int_equal(strut_step_limit_recall(model, euler, &kept, &limit, NULL), STRUT_OK);
-      assert_int_equal(strut_step_limit_for(model, euler, &own, NULL), STRUT_OK);
+      assert_int_equal(strut_step_limit_cached(model, euler, &kept, &limit, NULL), STRUT_OK);
+      assert_int_equal(strut_step_limit_for_method(model, euler, &own, NULL), STRUT_OK);
       assert_same_bits(limit, own);
     }
     strut_model_free(model);
@@ -250,7 +250,7 @@ static void test_the_limit_is_where_motions_begin_to_grow(void **unused) {
     structure_x_frame(&scene, &frame);
     for (int j = 0; j < 4; j++) scene.members[j].kind = STRUT_SPRING;
     strut_step_limit all = limit_of(&scene);
-    double limit = strut_step_limit_of(&all, method);
+    double limit = strut_step_limit_of_method(&all, method);
     double below = growth(&scene, method->name, 0.99 * limit, 2000);
     double above = growth(&scene, method->name, 1.01 * limit, 2000);
     print_message("%s: %.3g below the limit, %.3g above\n", method->name, below, above);

@@ -88,7 +88,7 @@ STRUT_INLINE double largest_of(largest x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_INLINE double error_of(const strut_model *model, strut_located *l, double h, double *const *v,
+STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, double h, double *const *v,
                              double *const *a) {
   largest position = {0}, velocity = {0}, speed = {0};
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
@@ -123,7 +123,7 @@ static const double STAGE_ERROR = 0.01;
  * Does contact i, as a stage has it, contradict its mode by more than a stage's own error? Where the ends
  * of the step do not, what began within it would have ended within it unseen.
  */
-static bool contradicts_at_stage(const strut_model *model, const strut_located *l, int32_t i) {
+static bool contradicts_at_stage(const strut_model *model, const strut_event_stepper *l, int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
   double most = e->mu_static * o->normal, part = STAGE_ERROR;
@@ -146,7 +146,7 @@ static bool contradicts_at_stage(const strut_model *model, const strut_located *
   return false;
 }
 
-static bool any_contradicts_at_stage(const strut_model *model, const strut_located *l) {
+static bool any_contradicts_at_stage(const strut_model *model, const strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++)
     if (contradicts_at_stage(model, l, l->closed[k])) return true;
   return false;
@@ -154,7 +154,7 @@ static bool any_contradicts_at_stage(const strut_model *model, const strut_locat
 
 /* Earliest point, within the step, where a cable that pulls at both ends is slack, or the other way; 0: none. */
 static double earliest_slack_dip(const strut_model *model, strut_state *state,
-                                 const strut_located *l, double h) {
+                                 const strut_event_stepper *l, double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
   strut_event_measure(model, state, l, l->next);
   for (int32_t k = 0; k < l->cable_count; k++) {
@@ -169,7 +169,7 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
 }
 
 /* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
-static double earliest_dip(const strut_model *model, const strut_located *l, double h) {
+static double earliest_dip(const strut_model *model, const strut_event_stepper *l, double h) {
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
@@ -201,7 +201,7 @@ static const double LEAST_SPLIT = 1e-4;
 /* The error that makes the next step end there. */
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                        double h, bool ledger) {
   double *v[PAIR], *a[PAIR];
   for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
@@ -233,7 +233,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void adaptive_trial(const strut_model *model, strut_state *state, strut_located *l, double t,
+static void adaptive_trial(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                            double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -241,11 +241,11 @@ static void adaptive_trial(const strut_model *model, strut_state *state, strut_l
     take(model, state, l, t, h, false);
 }
 
-static const strut_stepper stepper = {
+static const strut_step_formula stepper = {
     .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true};
 
 static void *create(const strut_model *model, strut_state *state) {
-  return strut_located_create(model, state, &stepper);
+  return strut_event_stepper_create(model, state, &stepper);
 }
 
 const strut_integrator strut_integrator_adaptive = {
@@ -255,6 +255,6 @@ const strut_integrator strut_integrator_adaptive = {
     .evaluations = 6,
     .events = true,
     .create = create,
-    .restart = strut_located_restart,
-    .advance = strut_located_advance,
+    .restart = strut_event_stepper_restart,
+    .advance = strut_event_stepper_advance,
 };

@@ -21,7 +21,7 @@ static void solve_column(const strut_model *model, strut_state *state, uint32_t 
 }
 
 static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
-                                  double *x, double *y, strut_response *r) {
+                                  double *x, double *y, strut_contact_compliance *r) {
   const strut_contact_table *c = &model->contacts;
   uint32_t at = c->at[i];
   solve_column(model, state, at, x);
@@ -63,12 +63,12 @@ static int32_t root_of(int32_t *body, int32_t i) {
 }
 
 /* Joins contacts whose responses share a node. */
-static strut_status find_bodies(const strut_model *model, strut_located *l) {
+static strut_status find_bodies(const strut_model *model, strut_event_stepper *l) {
   size_t nodes = (size_t)model->node_count;
   int32_t *seen = strut_allocate(nodes, sizeof *seen), count = model->contacts.count;
   if (!seen) return STRUT_NO_MEMORY;
   for (int32_t i = 0; i < count; i++) {
-    const strut_response *r = &l->response[i];
+    const strut_contact_compliance *r = &l->response[i];
     l->body[i] = i;
     for (int32_t k = 0; k < r->count; k++) {
       int32_t *first = &seen[r->at[k] / 2]; /* one more than the index; 0: none yet */
@@ -83,7 +83,7 @@ static strut_status find_bodies(const strut_model *model, strut_located *l) {
   return STRUT_OK;
 }
 
-strut_status strut_located_prepare(const strut_model *model, strut_state *state, strut_located *l) {
+strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   const strut_contact_table *c = &model->contacts;
   double *x = l->next->q, *y = l->next->v;
   double fastest = 0.0;
@@ -112,10 +112,10 @@ strut_status strut_located_prepare(const strut_model *model, strut_state *state,
   return find_bodies(model, l);
 }
 
-void strut_located_respond(const strut_model *model, const strut_located *l, int32_t i,
+void strut_apply_contact_impulse(const strut_model *model, const strut_event_stepper *l, int32_t i,
                            double normal, double tangential, double *a) {
   const strut_contact_table *c = &model->contacts;
-  const strut_response *r = &l->response[i];
+  const strut_contact_compliance *r = &l->response[i];
   double fx = tangential * c->tangent[0] + normal * c->normal[0];
   double fy = tangential * c->tangent[1] + normal * c->normal[1];
   for (int32_t k = 0; k < r->count; k++) {
@@ -137,12 +137,12 @@ static bool factor(int32_t n, double *a) {
 }
 
 /* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
-static void factor_stuck(const strut_model *model, strut_located *l) {
+static void factor_stuck(const strut_model *model, strut_event_stepper *l) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   const double *t = c->tangent;
   for (int32_t j = 0; j < n; j++) {
-    const strut_response *r = &l->response[l->stuck[j]];
+    const strut_contact_compliance *r = &l->response[l->stuck[j]];
     for (int32_t k = 0; k < r->count; k++) {
       l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
       l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
@@ -156,21 +156,21 @@ static void factor_stuck(const strut_model *model, strut_located *l) {
   if (!factor(n, l->stuck_factor)) l->stuck_count = -n; /* singular: by sweeps */
 }
 
-static bool is_slider(const strut_located *l, const strut_contact_entry *e, int32_t i) {
+static bool is_slider(const strut_event_stepper *l, const strut_contact_entry *e, int32_t i) {
   if (e->dissipation > 0.0) return false;
   return l->mode[i] == STRUT_MODE_SLIP ||
          (l->mode[i] == STRUT_MODE_SLIDE && e->law != STRUT_FRICTION_SMOOTH);
 }
 
-static void list_sliders(const strut_model *model, strut_located *l) {
+static void list_sliders(const strut_model *model, strut_event_stepper *l) {
   l->plain = l->apart;
   for (int32_t k = 0; k < l->closed_count && l->plain; k++) {
     int32_t i = l->closed[k];
     const strut_contact_entry *e = &model->contacts.entry[i];
-    const strut_response *r = &l->response[i];
+    const strut_contact_compliance *r = &l->response[i];
     bool slips = l->mode[i] == STRUT_MODE_SLIP;
     l->plain = is_slider(l, e, i);
-    l->slider[k] = (strut_slider){.at = model->contacts.at[i],
+    l->slider[k] = (strut_sliding_contact){.at = model->contacts.at[i],
                                   .index = i,
                                   .nodes = r->count,
                                   .stiffness = e->stiffness,
@@ -184,7 +184,7 @@ static void list_sliders(const strut_model *model, strut_located *l) {
   }
 }
 
-void strut_located_relist(const strut_model *model, strut_located *l) {
+void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   l->closed_count = l->stuck_count = 0;
   l->apart = model->contacts.normal[0] == 0.0;
   for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
@@ -216,7 +216,7 @@ static void still(const strut_contact_table *c, int32_t i, double *a) {
 }
 
 /* One after the other until none needs more: for sets too large for a matrix. */
-static void hold_by_sweeps(const strut_model *model, const strut_located *l, double *a,
+static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *l, double *a,
                            strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = -l->stuck_count;
@@ -225,7 +225,7 @@ static void hold_by_sweeps(const strut_model *model, const strut_located *l, dou
     for (int32_t k = 0; k < n; k++) {
       int32_t i = l->stuck[k];
       double more = -along(c, i, a) / l->response[i].tangent;
-      strut_located_respond(model, l, i, 0.0, more, a);
+      strut_apply_contact_impulse(model, l, i, 0.0, more, a);
       end->touch[i].friction += more;
       changed = fmax(changed, fabs(more));
       largest = fmax(largest, fabs(end->touch[i].friction));
@@ -234,7 +234,7 @@ static void hold_by_sweeps(const strut_model *model, const strut_located *l, dou
   }
 }
 
-void strut_located_hold(const strut_model *model, strut_located *l, double *a,
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
                         strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
@@ -259,7 +259,7 @@ void strut_located_hold(const strut_model *model, strut_located *l, double *a,
   }
   for (int32_t k = 0; k < n; k++) {
     int32_t i = l->stuck[k];
-    strut_located_respond(model, l, i, 0.0, x[k], a);
+    strut_apply_contact_impulse(model, l, i, 0.0, x[k], a);
     end->touch[i].friction += x[k];
     still(c, i, a);
   }

@@ -8,7 +8,7 @@
 static const double TIE = 1e-12;
 
 STRUT_CLONES
-static void located_derive(const strut_model *model, strut_state *state, strut_located *l,
+static void located_derive(const strut_model *model, strut_state *state, strut_event_stepper *l,
                            double t) {
   strut_step_end *now = l->now;
   if (!l->fresh) {
@@ -23,14 +23,14 @@ static void located_derive(const strut_model *model, strut_state *state, strut_l
   l->fresh = true;
 }
 
-void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
+void strut_evaluate_acceleration(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           double t) {
   located_derive(model, state, l, t);
   strut_event_measure(model, state, l, l->now);
 }
 
 /* Sets the speed along the ground exactly. */
-static void snap(const strut_model *model, strut_located *l, int32_t i, double slip) {
+static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
   strut_touch place;
   located_place(c, i, l->now->q, l->now->v, &place);
@@ -44,7 +44,7 @@ static void snap(const strut_model *model, strut_located *l, int32_t i, double s
   v[1] += more * c->tangent[1];
 }
 
-static void cable_mode(strut_state *state, strut_located *l, int32_t k, bool pulls) {
+static void cable_mode(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
   int32_t j = l->cable[k];
   l->pulling[k] = pulls;
   l->fresh = false;
@@ -53,7 +53,7 @@ static void cable_mode(strut_state *state, strut_located *l, int32_t k, bool pul
 }
 
 /* Mode of a contact that touches, from its speeds. */
-static void close_contact(const strut_model *model, strut_located *l, int32_t i) {
+static void close_contact(const strut_model *model, strut_event_stepper *l, int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
   located_place(&model->contacts, i, l->now->q, l->now->v, &o);
@@ -75,7 +75,7 @@ static void close_contact(const strut_model *model, strut_located *l, int32_t i)
 }
 
 /* The stuck contact that is held by more than friction can give, or -1. */
-static int32_t overloaded(const strut_model *model, const strut_located *l) {
+static int32_t overloaded(const strut_model *model, const strut_event_stepper *l) {
   double worst = 1e-12;
   int32_t found = -1;
   for (int32_t k = 0; k < l->closed_count; k++) {
@@ -93,11 +93,11 @@ static int32_t overloaded(const strut_model *model, const strut_located *l) {
 }
 
 /* Derives, letting go of one overloaded stuck contact after the other. */
-static void derive_consistently(const strut_model *model, strut_state *state, strut_located *l,
+static void derive_consistently(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                 double t) {
   for (int32_t k = 0; k <= model->contacts.count; k++) {
-    strut_located_relist(model, l);
-    strut_located_derive(model, state, l, t);
+    strut_update_active_set(model, l);
+    strut_evaluate_acceleration(model, state, l, t);
     int32_t i = overloaded(model, l);
     if (i < 0) return;
     l->mode[i] = STRUT_MODE_SLIP;
@@ -106,7 +106,7 @@ static void derive_consistently(const strut_model *model, strut_state *state, st
 }
 
 /* Which cables pull, as positions, velocities and drives are. */
-static void start_cables(const strut_model *model, strut_state *state, strut_located *l, double t) {
+static void start_cables(const strut_model *model, strut_state *state, strut_event_stepper *l, double t) {
   bool changed = false;
   for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
   derive_consistently(model, state, l, t);
@@ -118,13 +118,13 @@ static void start_cables(const strut_model *model, strut_state *state, strut_loc
   if (changed) derive_consistently(model, state, l, t);
 }
 
-void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_located *l,
+void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t) {
   l->fresh = false;
   start_cables(model, state, l, t);
 }
 
-void strut_modes_start(const strut_model *model, strut_state *state, strut_located *l, double t) {
+void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l, double t) {
   l->fresh = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
@@ -139,34 +139,34 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_locat
  * At the edge of Karnopp's band, u = s delta: outside friction is -s mu N, inside it balances. The
  * node goes where the acceleration on that side leads; where both lead to the edge it creeps along.
  */
-static void decide_at_edge(const strut_model *model, strut_state *state, strut_located *l,
+static void decide_at_edge(const strut_model *model, strut_state *state, strut_event_stepper *l,
                            int32_t i, bool from_inside, double t) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   double s = l->side[i];
   snap(model, l, i, s * e->stick_velocity);
   l->mode[i] = STRUT_MODE_SLIP;
-  strut_located_relist(model, l);
-  strut_located_derive(model, state, l, t);
+  strut_update_active_set(model, l);
+  strut_evaluate_acceleration(model, state, l, t);
   const strut_touch *o = &l->now->touch[i];
   double outside = s * o->slip_rate;
   double most = e->mu_static * o->normal;
   bool pushed = fabs(o->applied) >= most;
   l->mode[i] = pushed && e->mu_static != e->mu_kinetic ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
-  strut_located_relist(model, l);
-  strut_located_derive(model, state, l, t);
+  strut_update_active_set(model, l);
+  strut_evaluate_acceleration(model, state, l, t);
   double inside = s * l->now->touch[i].slip_rate;
   if (inside < 0.0 && (outside < 0.0 || !from_inside)) return;
   l->side[i] = (int8_t)s;
   l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
 }
 
-static void begin_refinement(const strut_located *l, int32_t i, double t, double *until) {
+static void begin_refinement(const strut_event_stepper *l, int32_t i, double t, double *until) {
   double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
   *until = fmax(*until, t + time);
 }
 
-void strut_event_apply(const strut_model *model, strut_state *state, strut_located *l,
+void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        strut_event event, double t) {
   int32_t i = event.index;
   switch (event.kind) {
@@ -177,7 +177,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
     case STRUT_EVENT_OPEN:
       l->mode[i] = STRUT_MODE_OPEN;
       break;
-    case STRUT_EVENT_SLOW:
+    case STRUT_EVENT_SLIP_ENDS:
       if (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP) {
         decide_at_edge(model, state, l, i, false, t);
       } else {
@@ -185,11 +185,11 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
         l->mode[i] = STRUT_MODE_STICK;
       }
       break;
-    case STRUT_EVENT_LEAVE:
+    case STRUT_EVENT_LEAVES_STICK_BAND:
       l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
       decide_at_edge(model, state, l, i, true, t);
       break;
-    case STRUT_EVENT_RELEASE:
+    case STRUT_EVENT_STICK_BREAKS:
       l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
       l->mode[i] = STRUT_MODE_SLIP;
       break;
@@ -227,7 +227,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_locat
   derive_consistently(model, state, l, t);
 }
 
-bool strut_modes_after_step(const strut_model *model, strut_located *l) {
+bool strut_modes_after_step(const strut_model *model, strut_event_stepper *l) {
   bool changed = false;
   for (int32_t k = 0; k < l->closed_count && !l->stepper->exact; k++) {
     int32_t i = l->closed[k];
@@ -235,6 +235,6 @@ bool strut_modes_after_step(const strut_model *model, strut_located *l) {
     l->mode[i] = STRUT_MODE_OPEN;
     changed = true;
   }
-  if (changed) strut_located_relist(model, l);
+  if (changed) strut_update_active_set(model, l);
   return changed;
 }

@@ -3,7 +3,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/events/event_kernel.h"
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                        double h, bool ledger) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     strut_lanes v = strut_lanes_load(l->now->v + i) + h * strut_lanes_load_pairs(l->now->a + i);
@@ -16,7 +16,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void euler_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+static void euler_events_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -24,10 +24,10 @@ static void euler_events_trial(const strut_model *model, strut_state *state, str
     take(model, state, l, t, h, false);
 }
 
-static const strut_stepper stepper = {.trial = euler_events_trial};
+static const strut_step_formula stepper = {.trial = euler_events_trial};
 
 static void *create(const strut_model *model, strut_state *state) {
-  strut_located *l = strut_located_create(model, state, &stepper);
+  strut_event_stepper *l = strut_event_stepper_create(model, state, &stepper);
   if (l && !(model->scene->experiment.refine > 0.0)) l->refine = 1.0;
   return l;
 }
@@ -40,6 +40,6 @@ const strut_integrator strut_integrator_euler_events = {
     .region = STRUT_REGION_EULER,
     .events = true,
     .create = create,
-    .restart = strut_located_restart,
-    .advance = strut_located_advance,
+    .restart = strut_event_stepper_restart,
+    .advance = strut_event_stepper_advance,
 };

@@ -66,7 +66,7 @@ STRUT_INLINE void located_place(const strut_contact_table *c, int32_t i, const d
 }
 
 /* Adds the forces of the closed contacts to `force` and notes them. */
-STRUT_INLINE void located_ground(const strut_model *model, const strut_located *l,
+STRUT_INLINE void located_ground(const strut_model *model, const strut_event_stepper *l,
                                  const double *restrict q, const double *restrict v,
                                  double *restrict force, bool damped, strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
@@ -85,7 +85,7 @@ STRUT_INLINE void located_ground(const strut_model *model, const strut_located *
 }
 
 /* Rates of speed of the closed contacts from the acceleration. */
-STRUT_INLINE void located_rates(const strut_model *model, const strut_located *l,
+STRUT_INLINE void located_rates(const strut_model *model, const strut_event_stepper *l,
                                 const double *restrict a, strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
@@ -98,7 +98,7 @@ STRUT_INLINE void located_rates(const strut_model *model, const strut_located *l
 
 /* The ground's powers, from forces and speeds noted in `touch`; the others are in state->power. */
 STRUT_INLINE void located_powers(const strut_model *model, strut_state *state,
-                                 const strut_located *l, const strut_touch *restrict touch) {
+                                 const strut_event_stepper *l, const strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
     const strut_touch *o = &touch[l->closed[k]];
@@ -108,7 +108,7 @@ STRUT_INLINE void located_powers(const strut_model *model, strut_state *state,
     state->power[STRUT_POWER_CONTACT] += damped;
     state->power[STRUT_POWER_FRICTION] += rubbed;
     state->power[STRUT_POWER_BELT] += belt;
-    state->power[STRUT_POWER_MOVED] += fabs(damped) + fabs(rubbed) + fabs(belt);
+    state->power[STRUT_POWER_EXCHANGED] += fabs(damped) + fabs(rubbed) + fabs(belt);
   }
 }
 
@@ -122,18 +122,18 @@ STRUT_INLINE void located_keep(const strut_model *model, const strut_state *stat
 }
 
 /* From the forces of the structure in state->force to the acceleration. */
-STRUT_INLINE void located_close(const strut_model *model, strut_state *state, strut_located *l,
+STRUT_INLINE void located_close(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict a, strut_step_end *end, bool ledger) {
   if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
   mass_kernel(model, state->force, a, state->scratch);
-  if (l->stuck_count) strut_located_hold(model, l, a, end);
+  if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
   if (ledger && l->closed_count) located_powers(model, state, l, end->touch);
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
 STRUT_INLINE void located_acceleration(const strut_model *model, strut_state *state,
-                                       strut_located *l, double t, const double *restrict q,
+                                       strut_event_stepper *l, double t, const double *restrict q,
                                        const double *restrict v, double *restrict a,
                                        strut_step_end *end, bool ledger) {
   forces_of_structure(model, state, t, q, v, ledger);
@@ -147,7 +147,7 @@ static const double TIED = 1e-8;
  * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
  * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
  */
-STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_located *l) {
+STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     const strut_contact_entry *e = &model->contacts.entry[i];
@@ -161,7 +161,7 @@ STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_loca
 }
 
 /* The same at the end of a step, with all that belongs to that end. */
-STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, strut_located *l,
+STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                  double t, strut_step_end *end, bool ledger) {
   forces_of_structure(model, state, t, end->q, end->v, ledger);
   located_keep(model, state, end, ledger);
@@ -193,22 +193,22 @@ STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e
                                       uint8_t mode, double s) {
   switch (mode) {
     case STRUT_MODE_SLIP:
-      return s * o->slip < located_edge(e) ? STRUT_EVENT_SLOW : STRUT_EVENT_NONE;
+      return s * o->slip < located_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
       /* also where the gap is open by then: what holds a node lets go before that */
-      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_RELEASE : STRUT_EVENT_NONE;
+      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_STICK_BREAKS : STRUT_EVENT_NONE;
     case STRUT_MODE_CREEP:
       if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
       return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
-      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVE;
+      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       if (e->mu_static == e->mu_kinetic) return STRUT_EVENT_NONE;
       return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
     case STRUT_MODE_YIELD:
-      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVE;
+      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       return located_yield_room(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
     default:
       return STRUT_EVENT_NONE;
@@ -216,7 +216,7 @@ STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e
 }
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
-STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, strut_located *l,
+STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                  bool ledger) {
   strut_step_end *now = l->next, *next = l->now;
   double *restrict q = now->q, *restrict v = now->v;
@@ -246,7 +246,7 @@ STRUT_INLINE double located_moment(double t, double dt) {
 }
 
 /* Size of the next step within what is left to the grid point. */
-STRUT_INLINE double located_step_size(const strut_state *state, const strut_located *l, double dt) {
+STRUT_INLINE double located_step_size(const strut_state *state, const strut_event_stepper *l, double dt) {
   double rest = dt - l->done, h = rest;
   if (l->stepper->adaptive) {
     h = l->h > 0.0 ? l->h : dt * 1e-3;
@@ -262,12 +262,12 @@ STRUT_INLINE double located_step_size(const strut_state *state, const strut_loca
 }
 
 /* The time at which a step from t is evaluated; see located_moment. */
-STRUT_INLINE double located_time(const strut_located *l, double t, double dt) {
+STRUT_INLINE double located_time(const strut_event_stepper *l, double t, double dt) {
   return l->next_break < HUGE_VAL ? t - located_moment(t, dt) : t;
 }
 
 /* After a step of `gone`: on to the next grid point when this one is reached. */
-STRUT_INLINE void located_go_on(strut_state *state, strut_located *l, double gone, double dt) {
+STRUT_INLINE void located_go_on(strut_state *state, strut_event_stepper *l, double gone, double dt) {
   double rest = dt - l->done;
   l->done = gone == rest ? dt : l->done + gone;
   if (dt - l->done > 1e-12 * dt) return;

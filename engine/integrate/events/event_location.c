@@ -16,12 +16,12 @@ static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
  * by which it came in, where the step begins. Steppers that are not exact take each end's own: a band
  * narrower than a step they pass in a step of its own, which smooths their period map.
  */
-static double way_out(const strut_located *l, const strut_touch *o, int32_t i) {
+static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_t i) {
   double slip = l->stepper->exact ? l->next->touch[i].slip : o->slip;
   return slip < 0.0 ? -1.0 : 1.0;
 }
 
-double strut_event_value(const strut_model *model, const strut_located *l,
+double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   if (kind == STRUT_EVENT_CABLE) {
     if (l->pulling[i]) return end->tension[i];
@@ -38,11 +38,11 @@ double strut_event_value(const strut_model *model, const strut_located *l,
       return gap_of(&model->contacts, i, end->q);
     case STRUT_EVENT_OPEN:
       return -gap_of(&model->contacts, i, end->q);
-    case STRUT_EVENT_SLOW:
+    case STRUT_EVENT_SLIP_ENDS:
       return s * o->slip - located_edge(e);
-    case STRUT_EVENT_LEAVE:
+    case STRUT_EVENT_LEAVES_STICK_BAND:
       return located_edge(e) - way_out(l, o, i) * o->slip;
-    case STRUT_EVENT_RELEASE:
+    case STRUT_EVENT_STICK_BREAKS:
       return e->mu_static * o->normal - fabs(o->friction);
     case STRUT_EVENT_CREEP_OUT:
       return s * o->friction + e->mu_kinetic * o->normal;
@@ -61,7 +61,7 @@ double strut_event_value(const strut_model *model, const strut_located *l,
   }
 }
 
-bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
+bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end, strut_event_kind kind,
                       int32_t i, double *rate) {
   if (kind == STRUT_EVENT_CABLE) return false;
   const strut_touch *o = &end->touch[i];
@@ -69,10 +69,10 @@ bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_e
     case STRUT_EVENT_OPEN:
       *rate = -o->into;
       return true;
-    case STRUT_EVENT_SLOW:
+    case STRUT_EVENT_SLIP_ENDS:
       *rate = l->side[i] * o->slip_rate;
       return true;
-    case STRUT_EVENT_LEAVE:
+    case STRUT_EVENT_LEAVES_STICK_BAND:
       *rate = -way_out(l, o, i) * o->slip_rate;
       return true;
     case STRUT_EVENT_DAMPER:
@@ -105,22 +105,22 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
  * has its edge, but for rounding, where the step begins; so has one at whose edge the forces balance: it
  * is left when they cease to, not before.
  */
-static double room_to_leave(const strut_model *model, const strut_located *l, int32_t i,
+static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
                             double room) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   if (!l->stepper->exact && e->mu_static == e->mu_kinetic) return room;
   double faint = 1e-9 * located_edge(e), rate = 0.0;
   double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
-  strut_event_rate(l, l->now, STRUT_EVENT_LEAVE, i, &rate);
+  strut_event_rate(l, l->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
   return room < faint && rate > -balanced ? faint : room;
 }
 
 /* Where between now and next the event's value passes 0. */
-static double fraction_of(const strut_model *model, const strut_located *l, strut_event_kind kind,
+static double fraction_of(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
                           int32_t i, double h) {
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
-  if (kind == STRUT_EVENT_LEAVE) g0 = room_to_leave(model, l, i, g0);
+  if (kind == STRUT_EVENT_LEAVES_STICK_BAND) g0 = room_to_leave(model, l, i, g0);
   if (!(g0 > 0.0)) return 0.0;
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
@@ -135,7 +135,7 @@ static double fraction_of(const strut_model *model, const strut_located *l, stru
   return g0 / (g0 - g1);
 }
 
-static void keep_first(const strut_model *model, const strut_located *l, strut_event_kind kind,
+static void keep_first(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
                        int32_t i, double h, strut_event *first) {
   double fraction = fraction_of(model, l, kind, i, h);
   if (first->kind && fraction >= first->fraction) return;
@@ -144,7 +144,7 @@ static void keep_first(const strut_model *model, const strut_located *l, strut_e
 
 /* Tensions, not clamped, and stretches of the cables at an end; the rest lengths are its own. */
 static void measure_cables(const strut_model *model, const strut_state *state,
-                           const strut_located *l, const strut_step_end *end) {
+                           const strut_event_stepper *l, const strut_step_end *end) {
   const strut_member_table *t = &model->members;
   for (int32_t k = 0; k < l->cable_count; k++) {
     int32_t j = l->cable[k];
@@ -159,14 +159,14 @@ static void measure_cables(const strut_model *model, const strut_state *state,
   }
 }
 
-void strut_event_measure(const strut_model *model, const strut_state *state, const strut_located *l,
+void strut_event_measure(const strut_model *model, const strut_state *state, const strut_event_stepper *l,
                          const strut_step_end *end) {
   if (l->cable_count) measure_cables(model, state, l, end);
 }
 
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
    opened may stand below 0 by rounding, on its way up. */
-static bool closes(const strut_contact_table *c, int32_t i, const strut_located *l) {
+static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
   strut_touch to;
   if (gap_of(c, i, l->now->q) > 0.0) return true;
   located_place(c, i, l->next->q, l->next->v, &to);
@@ -174,7 +174,7 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_located 
 }
 
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
-                              const strut_located *l, double h) {
+                              const strut_event_stepper *l, double h) {
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   int32_t k = 0;
@@ -211,7 +211,7 @@ static double parabola_root(double gap, double speed, double bend) {
 }
 
 /* Where within the step contact i passes the ground, by the parabola that positions follow. */
-static double crossing(const strut_model *model, const strut_state *state, const strut_located *l,
+static double crossing(const strut_model *model, const strut_state *state, const strut_event_stepper *l,
                        int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
   const double *v = state->v + c->at[i], *a = l->now->a + c->at[i], *n = c->normal;
@@ -221,7 +221,7 @@ static double crossing(const strut_model *model, const strut_state *state, const
 }
 
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
-                                const strut_located *l, double h) {
+                                const strut_event_stepper *l, double h) {
   const strut_contact_table *c = &model->contacts;
   const double *q = l->next->q;
   bool level = c->normal[0] == 0.0;

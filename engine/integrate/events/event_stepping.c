@@ -27,7 +27,7 @@ static bool make_end(const strut_model *model, strut_arena *arena, strut_step_en
          end->stretch && end->stretch_rate;
 }
 
-static bool make_arrays(const strut_model *model, strut_state *state, strut_located *l) {
+static bool make_arrays(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   strut_arena *arena = &state->arena;
   size_t contacts = (size_t)model->contacts.count, length = (size_t)model->length;
   l->mode = strut_arena_allocate(arena, contacts, 1);
@@ -49,7 +49,7 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_loca
   return ready;
 }
 
-static bool list_cables(const strut_model *model, strut_state *state, strut_located *l) {
+static bool list_cables(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   const strut_member_table *t = &model->members;
   if (!(model->plan & STRUT_TERM_SLACK)) return true;
   size_t count = (size_t)t->count;
@@ -69,9 +69,9 @@ static bool make_held(const strut_model *model, strut_state *state) {
   return normal && friction;
 }
 
-void *strut_located_create(const strut_model *model, strut_state *state,
-                           const strut_stepper *stepper) {
-  strut_located *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
+void *strut_event_stepper_create(const strut_model *model, strut_state *state,
+                           const strut_step_formula *stepper) {
+  strut_event_stepper *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
   if (!l) return NULL;
   l->stepper = stepper;
   l->now = &l->end[0], l->next = &l->end[1];
@@ -80,13 +80,13 @@ void *strut_located_create(const strut_model *model, strut_state *state,
   if (!make_end(model, &state->arena, l->now, true) ||
       !make_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
       !list_cables(model, state, l) || !make_held(model, state) ||
-      strut_located_prepare(model, state, l))
+      strut_event_stepper_prepare(model, state, l))
     return NULL;
   return l;
 }
 
 /* Contact forces as they are now, for recording and measuring. */
-static void show_contacts(const strut_model *model, strut_state *state, const strut_located *l) {
+static void show_contacts(const strut_model *model, strut_state *state, const strut_event_stepper *l) {
   double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     bool open = l->mode[i] == STRUT_MODE_OPEN;
@@ -95,9 +95,9 @@ static void show_contacts(const strut_model *model, strut_state *state, const st
   }
 }
 
-void strut_located_restart(const strut_model *model, strut_state *state, void *workspace,
+void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
                            double dt) {
-  strut_located *l = workspace;
+  strut_event_stepper *l = workspace;
   double t = (double)state->step * dt;
   memcpy(l->next->q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
   memcpy(l->next->v, state->v, (size_t)model->length * sizeof(double));
@@ -119,16 +119,16 @@ void strut_located_restart(const strut_model *model, strut_state *state, void *w
  * Where a drive or load jumps the right-hand side does: modes and accelerations are made anew. What
  * the jump of a rest length does to the elastic energy is work of the drive.
  */
-static void pass_break(const strut_model *model, strut_state *state, strut_located *l, double dt) {
+static void pass_break(const strut_model *model, strut_state *state, strut_event_stepper *l, double dt) {
   double t = (double)state->step * dt + l->done;
   if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
   double moment = located_moment(t, dt), before = 0.0;
-  if (state->ledger) before = strut_energy_stored(model, state, t - moment).elastic;
+  if (state->ledger) before = strut_energy_evaluate(model, state, t - moment).elastic;
   l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (state->ledger) {
-    double gained = strut_energy_stored(model, state, t + moment).elastic - before;
+    double gained = strut_energy_evaluate(model, state, t + moment).elastic - before;
     state->work[STRUT_POWER_DRIVE] += gained;
-    state->work[STRUT_POWER_MOVED] += fabs(gained);
+    state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
   }
   strut_modes_after_jump(model, state, l, t + moment);
 }
@@ -166,7 +166,7 @@ static const double BALANCED = 1e-5;
 /* Forces still balance at the edge of the band, where speeds are held apart from it by TIED: there is no root
    here, though the value does not change. */
 static bool tied_at_edge(const strut_model *model, const strut_event *event, double value) {
-  return event->kind == STRUT_EVENT_LEAVE &&
+  return event->kind == STRUT_EVENT_LEAVES_STICK_BAND &&
          value > 0.5 * TIED * located_edge(&model->contacts.entry[event->index]);
 }
 
@@ -174,7 +174,7 @@ static bool tied_at_edge(const strut_model *model, const strut_event *event, dou
  * Takes the step again up to the event. Returns the length taken; l->next is its end. Exact steppers
  * go on until the root is known to 1e-13 of the step, or to rounding.
  */
-static double retake(const strut_model *model, strut_state *state, strut_located *l, double t,
+static double retake(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                      double h, strut_event *event) {
   double before = strut_event_value(model, l, l->now, event->kind, event->index);
   double after = strut_event_value(model, l, l->next, event->kind, event->index);
@@ -208,14 +208,14 @@ static double retake(const strut_model *model, strut_state *state, strut_located
 }
 
 /* New step after an error of l->error in a method of fifth order. */
-static void control(strut_located *l, double h, bool whole) {
+static void control(strut_event_stepper *l, double h, bool whole) {
   double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
   factor = factor < 0.2 ? 0.2 : factor > 5.0 ? 5.0 : factor;
   if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
 }
 
 /* The trial over h, and what happens in it. False: the error is too large; l->h says what to try. */
-static bool try_step(const strut_model *model, strut_state *state, strut_located *l, double t,
+static bool try_step(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                      double h, double dt) {
   if (!l->tried) l->stepper->trial(model, state, l, t, h);
   l->tried = false;
@@ -223,12 +223,12 @@ static bool try_step(const strut_model *model, strut_state *state, strut_located
   double error = l->error;
   control(l, h, h < l->h);
   if (error <= 1.0) return true;
-  if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_TROUBLE_STEP;
+  if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_FAILURE_STEP;
   return false;
 }
 
 /* One trial over at most h; handles rejection and events. Returns the time gone, 0 if none. */
-static double step(const strut_model *model, strut_state *state, strut_located *l, double t,
+static double step(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                    double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
   bool force = l->at_once >= MOST_AT_ONCE || l->switches >= MOST_SWITCHES;
@@ -264,7 +264,7 @@ static double step(const strut_model *model, strut_state *state, strut_located *
   } else if (force) {
     strut_modes_start(model, state, l, t + h);
   } else if (strut_modes_after_step(model, l)) {
-    strut_located_derive(model, state, l, t + h);
+    strut_evaluate_acceleration(model, state, l, t + h);
   }
   return h;
 }
@@ -273,7 +273,7 @@ static double step(const strut_model *model, strut_state *state, strut_located *
  * Error control may take long within one step of the grid: when interrupted, or out of work allowed, it
  * goes back to the start of it. The last two stages hold that.
  */
-static bool given_up(const strut_model *model, strut_state *state, strut_located *l) {
+static bool given_up(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   double **kept = l->stage + l->stepper->stages - 2;
   bool spent = state->most_evaluations > 0 && state->evaluations > state->most_evaluations;
   bool wanted = spent || (state->interrupt && *state->interrupt);
@@ -287,25 +287,25 @@ static bool given_up(const strut_model *model, strut_state *state, strut_located
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, l->work, sizeof l->work);
   }
-  if (wanted) state->trouble = spent ? STRUT_TROUBLE_WORK : STRUT_TROUBLE_INTERRUPT;
+  if (wanted) state->trouble = spent ? STRUT_FAILURE_WORK : STRUT_FAILURE_INTERRUPT;
   return wanted;
 }
 
-void strut_located_step(const strut_model *model, strut_state *state, void *workspace, double dt) {
-  strut_located *l = workspace;
+void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace, double dt) {
+  strut_event_stepper *l = workspace;
   double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
   located_go_on(state, l, step(model, state, l, located_time(l, t, dt), h, dt), dt);
   if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
 }
 
-void strut_located_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
+void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                            int64_t count) {
-  strut_located *l = workspace;
-  if (!l->started) strut_located_restart(model, state, workspace, dt);
+  strut_event_stepper *l = workspace;
+  if (!l->started) strut_event_stepper_restart(model, state, workspace, dt);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (l->stepper->quiet && l->at_once == 0) l->stepper->quiet(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
-    strut_located_step(model, state, l, dt);
+    strut_event_stepper_step(model, state, l, dt);
   }
   show_contacts(model, state, l);
 }

@@ -29,12 +29,12 @@ typedef enum strut_contact_mode {
 
 /** Acceleration of nodes under a unit force on one contact's node: a column of M^-1, cut where it
     is below 1e-18 of its largest entry. */
-typedef struct strut_response {
+typedef struct strut_contact_compliance {
   int32_t count;
   const uint32_t *at;    /* (count) 2 * node */
   const double *xy;      /* (count, 2) x per unit force in x, y per unit in y [1/kg] */
   double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg] */
-} strut_response;
+} strut_contact_compliance;
 
 /** A contact at one end of a step. */
 typedef struct strut_touch {
@@ -56,7 +56,7 @@ typedef struct strut_step_end {
 
 /** A closed contact that slips or has no friction, alone on its body, on level ground: all that a
     step asks of it in one place. */
-typedef struct strut_slider {
+typedef struct strut_sliding_contact {
   uint32_t at;
   int32_t index, nodes;        /* contact; nodes that answer to it */
   double stiffness, damping;   /* [N/m], [N s/m] */
@@ -64,31 +64,31 @@ typedef struct strut_slider {
   double side, edge;           /* slips while side * u >= edge [m/s] */
   const uint32_t *place;       /* (nodes) */
   const double *xy;            /* (nodes, 2) */
-} strut_slider;
+} strut_sliding_contact;
 
-typedef struct strut_located strut_located;
+typedef struct strut_event_stepper strut_event_stepper;
 
 /** What a method adds: how one step goes while nothing happens. */
-typedef struct strut_stepper {
+typedef struct strut_step_formula {
   /** From l->now at time t over h to l->next, with the works of it in l->gained. */
-  void (*trial)(const strut_model *model, strut_state *state, strut_located *l, double t, double h);
+  void (*trial)(const strut_model *model, strut_state *state, strut_event_stepper *l, double t, double h);
   int stages;   /* (length) arrays it needs in l->stage */
   bool exact;   /* iterate roots to rounding, and locate kinks as well as jumps */
   /** Fills l->next->q and what trial needs beside it, where positions are known before forces are:
       q + h v + h^2/2 a at any fraction of a step. trial expects it done. NULL: they are not. */
-  void (*predict)(const strut_model *model, strut_located *l, double h);
+  void (*predict)(const strut_model *model, strut_event_stepper *l, double h);
   /* l->error is the local error over what is allowed; l->h is the step to try; the last two stages
      are not trial's: they hold the state at the begin of the grid step */
   bool adaptive;
   /** Takes steps up to grid point `end` while nothing happens, with the bits that trial gives; stops
       before the step in which something does, with l->tried if it has tried that one. May be NULL. */
-  void (*quiet)(const strut_model *model, strut_state *state, strut_located *l, double dt,
+  void (*quiet)(const strut_model *model, strut_state *state, strut_event_stepper *l, double dt,
                 int64_t end);
-} strut_stepper;
+} strut_step_formula;
 
 /** Workspace of a method with events; in the state's arena. */
-struct strut_located {
-  const strut_stepper *stepper;
+struct strut_event_stepper {
+  const strut_step_formula *stepper;
   strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
   double **stage;           /* (stepper->stages) arrays (length) */
   double gained[STRUT_POWER_ROOM];
@@ -100,11 +100,11 @@ struct strut_located {
   double *outward;          /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
   int32_t *body;            /* (contacts) equal where a force on one accelerates the other */
   bool *body_seen;          /* (contacts) scratch */
-  strut_slider *slider;     /* (closed_count), where `plain` */
+  strut_sliding_contact *slider;     /* (closed_count), where `plain` */
   bool plain;               /* apart, and all closed contacts are sliders */
   bool apart;               /* level ground, and no two closed contacts are of one body */
   double *damped;           /* (contacts) damper force while it is being solved for [N] */
-  strut_response *response; /* (contacts) */
+  strut_contact_compliance *response; /* (contacts) */
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
   double *stuck_factor;     /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
   double *stuck_work;       /* (stuck_room) */
@@ -129,31 +129,31 @@ struct strut_located {
 };
 
 /** Workspace for a method with `stepper`; NULL: out of memory. */
-void *strut_located_create(const strut_model *model, strut_state *state,
-                           const strut_stepper *stepper);
+void *strut_event_stepper_create(const strut_model *model, strut_state *state,
+                           const strut_step_formula *stepper);
 /** Makes the modes anew from q and v. */
-void strut_located_restart(const strut_model *model, strut_state *state, void *workspace,
+void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
                            double dt);
 /** One step within the grid's, and what happens in it. */
-void strut_located_step(const strut_model *model, strut_state *state, void *workspace, double dt);
+void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace, double dt);
 /** `count` steps of dt. */
-void strut_located_advance(const strut_model *model, strut_state *state, void *workspace,
+void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                            double dt, int64_t count);
 
 /* ---- parts of it, in located_*.c ---- */
 
 /** Responses, settling times, refinement. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_located_prepare(const strut_model *model, strut_state *state, strut_located *l);
+strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state, strut_event_stepper *l);
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
-void strut_located_relist(const strut_model *model, strut_located *l);
+void strut_update_active_set(const strut_model *model, strut_event_stepper *l);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
-void strut_located_hold(const strut_model *model, strut_located *l, double *a,
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
                         strut_step_end *end);
 /** a += response of contact i to the force (normal, tangential) on its node. */
-void strut_located_respond(const strut_model *model, const strut_located *l, int32_t i,
+void strut_apply_contact_impulse(const strut_model *model, const strut_event_stepper *l, int32_t i,
                            double normal, double tangential, double *a);
 /** Acceleration, contact forces and powers of l->now at time t, in the present modes. */
-void strut_located_derive(const strut_model *model, strut_state *state, strut_located *l,
+void strut_evaluate_acceleration(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           double t);
 
 /** Something that ends a mode. */
@@ -161,9 +161,9 @@ typedef enum strut_event_kind {
   STRUT_EVENT_NONE,
   STRUT_EVENT_TOUCH,    /* an open contact closes */
   STRUT_EVENT_OPEN,     /* a closed one opens */
-  STRUT_EVENT_SLOW,     /* slip ends: u reaches 0, or the band */
-  STRUT_EVENT_LEAVE,    /* |u| reaches the edge of the band from inside */
-  STRUT_EVENT_RELEASE,  /* a stuck node's multiplier leaves mu_0 N */
+  STRUT_EVENT_SLIP_ENDS,     /* slip ends: u reaches 0, or the band */
+  STRUT_EVENT_LEAVES_STICK_BAND,    /* |u| reaches the edge of the band from inside */
+  STRUT_EVENT_STICK_BREAKS,  /* a stuck node's multiplier leaves mu_0 N */
   STRUT_EVENT_CREEP_OUT,/* creep's multiplier reaches mu N: slip */
   STRUT_EVENT_CREEP_IN, /* it reaches the band's force: band */
   STRUT_EVENT_PUSH,     /* |F_res| passes mu_0 N inside the band, either way */
@@ -180,28 +180,28 @@ typedef struct strut_event {
 
 /** The earliest event between now and next, h apart; kind NONE if every mode holds. */
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
-                              const strut_located *l, double h);
+                              const strut_event_stepper *l, double h);
 /** The value that event ends at 0, at an end; positive while the mode holds. */
-double strut_event_value(const strut_model *model, const strut_located *l,
+double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);
 /** Cables' tensions and stretches at an end that has just been evaluated. */
 void strut_event_measure(const strut_model *model, const strut_state *state,
-                         const strut_located *l, const strut_step_end *end);
+                         const strut_event_stepper *l, const strut_step_end *end);
 /** Time derivative of that value where it is known; false where a secant must do. */
-bool strut_event_rate(const strut_located *l, const strut_step_end *end, strut_event_kind kind,
+bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end, strut_event_kind kind,
                       int32_t index, double *rate);
 /** Before a step of a stepper that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
-                                const strut_located *l, double h);
+                                const strut_event_stepper *l, double h);
 /** Changes the mode at l->now, time t, and leaves it fresh. */
-void strut_event_apply(const strut_model *model, strut_state *state, strut_located *l,
+void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        strut_event event, double t);
 /** Modes from q and v alone. */
-void strut_modes_start(const strut_model *model, strut_state *state, strut_located *l, double t);
+void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l, double t);
 /** After a drive has jumped: cables anew; contacts keep their modes, since nothing has moved. */
-void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_located *l,
+void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t);
 /** After a step, what need not be located: opening. True if something changed. */
-bool strut_modes_after_step(const strut_model *model, strut_located *l);
+bool strut_modes_after_step(const strut_model *model, strut_event_stepper *l);
 
 #endif

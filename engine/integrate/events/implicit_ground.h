@@ -23,7 +23,7 @@ STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring,
 }
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */
-STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_located *l, int32_t i,
+STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *l, int32_t i,
                                 double h, const double *a1) {
   uint32_t at = c->at[i];
   const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
@@ -32,7 +32,7 @@ STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_locate
 }
 
 /* The damper of contact i among others of its body; returns the change of its force. */
-STRUT_INLINE double solve_damper(const strut_model *model, strut_located *l, int32_t i, double h,
+STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *l, int32_t i, double h,
                                  const double *a1, const strut_touch *o) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   double half = 0.5 * h * l->response[i].normal, now = l->damped[i];
@@ -41,14 +41,14 @@ STRUT_INLINE double solve_damper(const strut_model *model, strut_located *l, int
   return l->damped[i] - now;
 }
 
-STRUT_INLINE void solve_dampers(const strut_model *model, strut_located *l, double h, double *a1,
+STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l, double h, double *a1,
                                 strut_touch *restrict touch) {
   for (int sweep = 0; sweep < 40; sweep++) {
     double changed = 0.0, largest = 0.0;
     for (int32_t k = 0; k < l->closed_count; k++) {
       int32_t i = l->closed[k];
       double more = solve_damper(model, l, i, h, a1, &touch[i]);
-      if (more != 0.0) strut_located_respond(model, l, i, more, 0.0, a1);
+      if (more != 0.0) strut_apply_contact_impulse(model, l, i, more, 0.0, a1);
       if (fabs(more) > changed) changed = fabs(more);
       if (fabs(touch[i].normal) > largest) largest = fabs(touch[i].normal);
     }
@@ -57,7 +57,7 @@ STRUT_INLINE void solve_dampers(const strut_model *model, strut_located *l, doub
 }
 
 /* Friction again with the whole normal force, then what holds stuck nodes. */
-STRUT_INLINE void solve_friction(const strut_model *model, strut_located *l, double *a1,
+STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *l, double *a1,
                                  strut_touch *restrict touch) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
@@ -67,14 +67,14 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_located *l, dou
                                        o->slip, o->applied);
     bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
-    strut_located_respond(model, l, i, 0.0, friction - o->friction, a1);
+    strut_apply_contact_impulse(model, l, i, 0.0, friction - o->friction, a1);
     o->friction = friction;
   }
-  if (l->stuck_count) strut_located_hold(model, l, a1, l->next);
+  if (l->stuck_count) strut_solve_stick_constraints(model, l, a1, l->next);
 }
 
 /* Coupled contacts: their dampers, then friction with the whole normal force; `a1`: in and out. */
-STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_located *l, double h,
+STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event_stepper *l, double h,
                                            double *restrict a1, strut_touch *restrict touch) {
   for (int32_t k = 0; k < l->closed_count; k++) l->damped[l->closed[k]] = 0.0;
   for (int pass = 0; pass < l->passes; pass++) {
@@ -85,7 +85,7 @@ STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_locat
 
 /* Gaps, speeds and their rates at the end of the step; with the ledger the ground's powers. */
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
-                                         strut_located *l, bool ledger) {
+                                         strut_event_stepper *l, bool ledger) {
   for (int32_t k = 0; k < l->closed_count; k++)
     located_place(&model->contacts, l->closed[k], l->next->q, l->next->v,
                   &l->next->touch[l->closed[k]]);
@@ -94,7 +94,7 @@ STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */
-STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e, const strut_response *r,
+STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e, const strut_contact_compliance *r,
                                         const strut_touch *before, strut_touch *o, uint8_t mode,
                                         int8_t side, double h, double x, double y) {
   double spring = -e->stiffness * o->gap, half = 0.5 * h * r->normal;
@@ -110,7 +110,7 @@ STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e, const stru
  * Level ground, and contacts that do not answer to each other: one pass. force, a: of the structure
  * alone; v: predicted velocity, which only the smooth law of friction asks.
  */
-STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_located *l, double h,
+STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_event_stepper *l, double h,
                                         const double *restrict v, const double *restrict force,
                                         double *restrict a) {
   const strut_contact_table *c = &model->contacts;
@@ -121,7 +121,7 @@ STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_lo
     int32_t i = l->closed[k];
     uint32_t at = c->at[i];
     uint8_t mode = l->mode[i];
-    const strut_response *r = &l->response[i];
+    const strut_contact_compliance *r = &l->response[i];
     strut_touch *o = &touch[i];
     o->gap = q[at + 1] - c->height;
     o->slip = v[at] - c->belt_speed;
@@ -138,13 +138,13 @@ STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_lo
 }
 
 /* The same where all of them slip, or have no friction. */
-STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_located *l, double h,
+STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_event_stepper *l, double h,
                                          double *restrict a) {
   const strut_touch *restrict before = l->now->touch;
   const double *restrict q = l->next->q, height = model->contacts.height;
   strut_touch *restrict touch = l->next->touch;
-  const strut_slider *s = l->slider;
-  for (const strut_slider *end = s + l->closed_count; s < end; s++) {
+  const strut_sliding_contact *s = l->slider;
+  for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++) {
     const strut_touch *b = &before[s->index];
     strut_touch *o = &touch[s->index];
     double gap = q[s->at + 1] - height, spring = -s->stiffness * gap, half = 0.5 * h * s->answer;
@@ -164,7 +164,7 @@ STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_l
 
 /* As implicit_ground_finish, on level ground. */
 STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *state,
-                                        const strut_located *l, bool ledger) {
+                                        const strut_event_stepper *l, bool ledger) {
   const strut_contact_table *c = &model->contacts;
   const double *restrict v = l->next->v, *restrict a = l->next->a;
   double contact = 0.0, friction = 0.0, belt = 0.0, moved = 0.0;

@@ -29,11 +29,11 @@ STRUT_INLINE void combine(int32_t n, double h, const double *restrict z, const d
   }
 }
 
-STRUT_INLINE void gain(const strut_state *state, strut_located *l, double weight) {
+STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double weight) {
   for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->power[p];
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                        double h, bool ledger) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
   double **w = l->stage;
@@ -52,7 +52,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void rk4_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+static void rk4_events_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
                              double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -60,10 +60,10 @@ static void rk4_events_trial(const strut_model *model, strut_state *state, strut
     take(model, state, l, t, h, false);
 }
 
-static const strut_stepper stepper = {.trial = rk4_events_trial, .stages = STAGES, .exact = true};
+static const strut_step_formula stepper = {.trial = rk4_events_trial, .stages = STAGES, .exact = true};
 
 static void *create(const strut_model *model, strut_state *state) {
-  strut_located *l = strut_located_create(model, state, &stepper);
+  strut_event_stepper *l = strut_event_stepper_create(model, state, &stepper);
   if (l && !(model->scene->experiment.refine > 0.0)) l->refine = 1.0;
   return l;
 }
@@ -76,6 +76,6 @@ const strut_integrator strut_integrator_rk4_events = {
     .region = STRUT_REGION_RK4,
     .events = true,
     .create = create,
-    .restart = strut_located_restart,
-    .advance = strut_located_advance,
+    .restart = strut_event_stepper_restart,
+    .advance = strut_event_stepper_advance,
 };

@@ -8,7 +8,7 @@
 
 enum { PREDICTED, STAGES };
 
-static void predict(const strut_model *model, strut_located *l, double h) {
+static void predict(const strut_model *model, strut_event_stepper *l, double h) {
   const double *restrict q = l->now->q, *restrict v = l->now->v, *restrict a = l->now->a;
   double *restrict next = l->next->q, *restrict speed = l->stage[PREDICTED], half = 0.5 * h;
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
@@ -26,7 +26,7 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
                                                                   strut_lanes_load_pairs(a1 + i)));
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_located *l, double t,
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                        double h, bool ledger) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
@@ -59,7 +59,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_locat
 }
 
 STRUT_CLONES
-static void verlet_events_trial(const strut_model *model, strut_state *state, strut_located *l,
+static void verlet_events_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                 double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
@@ -68,7 +68,7 @@ static void verlet_events_trial(const strut_model *model, strut_state *state, st
 }
 
 /* Does a contact open or close within the step that has been predicted? */
-STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_located *l,
+STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_stepper *l,
                           const double *restrict q) {
   const uint32_t *restrict at = c->at;
   const double *restrict outward = l->outward;
@@ -90,10 +90,10 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_located *l,
 
 /* Does what l->next says contradict a mode? */
 STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
-                              const strut_located *l, double h) {
+                              const strut_event_stepper *l, double h) {
   if (l->plain) {
-    const strut_slider *s = l->slider;
-    for (const strut_slider *end = s + l->closed_count; s < end; s++)
+    const strut_sliding_contact *s = l->slider;
+    for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++)
       if (s->side * l->next->touch[s->index].slip < s->edge) return true;
   }
   for (int32_t k = 0; k < l->closed_count && !l->plain; k++) {
@@ -105,7 +105,7 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
   return l->cable_count && strut_event_first(model, state, l, h).kind;
 }
 
-STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut_located *l,
+STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut_event_stepper *l,
                              double dt, int64_t end, bool ledger) {
   while (state->step < end) {
     double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
@@ -122,7 +122,7 @@ STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut
 }
 
 STRUT_CLONES
-static void verlet_events_quiet(const strut_model *model, strut_state *state, strut_located *l,
+static void verlet_events_quiet(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                 double dt, int64_t end) {
   if (state->ledger)
     go_quietly(model, state, l, dt, end, true);
@@ -130,13 +130,13 @@ static void verlet_events_quiet(const strut_model *model, strut_state *state, st
     go_quietly(model, state, l, dt, end, false);
 }
 
-static const strut_stepper stepper = {.trial = verlet_events_trial,
+static const strut_step_formula stepper = {.trial = verlet_events_trial,
                                       .stages = STAGES,
                                       .predict = predict,
                                       .quiet = verlet_events_quiet};
 
 static void *create(const strut_model *model, strut_state *state) {
-  return strut_located_create(model, state, &stepper);
+  return strut_event_stepper_create(model, state, &stepper);
 }
 
 const strut_integrator strut_integrator_verlet_events = {
@@ -150,6 +150,6 @@ const strut_integrator strut_integrator_verlet_events = {
     .implicit_damper = true,
     .events = true,
     .create = create,
-    .restart = strut_located_restart,
-    .advance = strut_located_advance,
+    .restart = strut_event_stepper_restart,
+    .advance = strut_event_stepper_advance,
 };

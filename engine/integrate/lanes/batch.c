@@ -131,9 +131,9 @@ void strut_batch_count(const strut_batch *b, int32_t lane, strut_state *state) {
   state->evaluations += (state->step - before) * b->method->evaluations;
 }
 
-void strut_batch_look(const strut_batch *b, int32_t lane, strut_state *state) {
+void strut_batch_sample(const strut_batch *b, int32_t lane, strut_state *state) {
   if (b->events) {
-    strut_batch_events_look(b, lane);
+    strut_batch_events_sample(b, lane);
     return;
   }
   int32_t width = b->tables.width, length = 2 * b->tables.first->node_count;
@@ -151,7 +151,7 @@ void strut_batch_get(strut_batch *b, int32_t lane, strut_state *state) {
   }
   const strut_lane_tables *t = &b->tables;
   int32_t width = t->width;
-  strut_batch_look(b, lane, state);
+  strut_batch_sample(b, lane, state);
   for (int32_t i = 0; i < 2 * t->first->node_count; i++)
     state->force[i] = t->force[i * width + lane];
   state->drive_time = b->driven ? b->step[lane] * b->dt[lane] : (double)NAN;

@@ -46,7 +46,7 @@ STRUT_API void strut_batch_get(strut_batch *batch, int32_t lane, strut_state *st
 /** Only the step's number and the count of evaluations. */
 STRUT_API void strut_batch_count(const strut_batch *batch, int32_t lane, strut_state *state);
 /** These and positions and velocities. */
-STRUT_API void strut_batch_look(const strut_batch *batch, int32_t lane, strut_state *state);
+STRUT_API void strut_batch_sample(const strut_batch *batch, int32_t lane, strut_state *state);
 /**
  * Advances the lanes until one of them has taken the steps that are left to it, left[lane] > 0; none
  * takes more. Allocates nothing. At least one lane must be filled.
@@ -65,10 +65,10 @@ typedef struct strut_batch_end {
 typedef struct strut_batch_events {
   strut_batch_end end[2], *now, *next;
   double *predicted;                     /* (length, width) velocities */
-  double *outward;                       /* (contacts, width) as strut_located has them */
+  double *outward;                       /* (contacts, width) as strut_event_stepper has them */
   double *time, *h, *crossed, *accepted; /* (width) [s], [s]; the last two 0 or 1 */
   strut_state *state[STRUT_MOST_LANES];  /* of filled lanes, with its workspace */
-  struct strut_located *located[STRUT_MOST_LANES];
+  struct strut_event_stepper *located[STRUT_MOST_LANES];
   bool joined[STRUT_MOST_LANES]; /* in step with others; else its state says where it is */
   bool jumped[STRUT_MOST_LANES]; /* something happens in the step that is due */
   /* from now over h to next, without the ground; velocities; works of accepted steps */
@@ -107,7 +107,7 @@ extern const strut_batch_kernels strut_batch_verlet_2, strut_batch_verlet_4, str
 bool strut_batch_events_create(strut_batch *batch);
 void strut_batch_events_put(strut_batch *batch, int32_t lane, strut_state *state, void *workspace);
 void strut_batch_events_get(strut_batch *batch, int32_t lane);
-void strut_batch_events_look(const strut_batch *batch, int32_t lane);
+void strut_batch_events_sample(const strut_batch *batch, int32_t lane);
 void strut_batch_events_advance(strut_batch *batch, const int64_t *left);
 
 #endif

@@ -48,13 +48,13 @@ bool strut_batch_events_create(strut_batch *b) {
 }
 
 /* Can the lane go in step with others as its modes are now? */
-static bool can_join(const strut_located *l) {
+static bool can_join(const strut_event_stepper *l) {
   return l->at_once == 0 && !(l->next_break < HUGE_VAL) && (!l->closed_count || l->apart);
 }
 
 static void join(strut_batch *b, int32_t lane) {
   strut_batch_events *e = b->events;
-  const strut_located *l = e->located[lane];
+  const strut_event_stepper *l = e->located[lane];
   const strut_step_end *now = l->now;
   int32_t width = b->tables.width, rows = 2 * b->tables.first->node_count;
   put_column(e->now->q, rows, width, lane, now->q);
@@ -94,10 +94,10 @@ void strut_batch_events_put(strut_batch *b, int32_t lane, strut_state *state, vo
   e->located[lane] = workspace;
   e->joined[lane] = e->jumped[lane] = false;
   if (!e->located[lane]->started)
-    strut_located_restart(b->tables.model[lane], state, workspace, b->dt[lane]);
+    strut_event_stepper_restart(b->tables.model[lane], state, workspace, b->dt[lane]);
 }
 
-void strut_batch_events_look(const strut_batch *b, int32_t lane) {
+void strut_batch_events_sample(const strut_batch *b, int32_t lane) {
   const strut_batch_events *e = b->events;
   int32_t width = b->tables.width, rows = 2 * b->tables.first->node_count;
   if (!e->joined[lane]) return;
@@ -108,7 +108,7 @@ void strut_batch_events_look(const strut_batch *b, int32_t lane) {
 void strut_batch_events_get(strut_batch *b, int32_t lane) {
   strut_batch_events *e = b->events;
   if (e->joined[lane]) fetch(b, lane);
-  strut_located_advance(b->tables.model[lane], e->state[lane], e->located[lane], b->dt[lane], 0);
+  strut_event_stepper_advance(b->tables.model[lane], e->state[lane], e->located[lane], b->dt[lane], 0);
 }
 
 /* ---- the ground of one lane; see implicit_ground.h ---- */
@@ -116,7 +116,7 @@ void strut_batch_events_get(strut_batch *b, int32_t lane) {
 /* A lane's columns at the end of the step that is being tried. */
 typedef struct column {
   const strut_model *model;
-  strut_located *l;
+  strut_event_stepper *l;
   double h;
   size_t width;
   const double *q, *predicted, *force, *v;
@@ -148,9 +148,9 @@ static void answer(const column *c, int32_t nodes, const uint32_t *place, const 
 }
 
 static void slide(const column *c) {
-  const strut_located *l = c->l;
+  const strut_event_stepper *l = c->l;
   const double h = c->h, height = c->model->contacts.height;
-  for (const strut_slider *s = l->slider, *end = s + l->closed_count; s < end; s++) {
+  for (const strut_sliding_contact *s = l->slider, *end = s + l->closed_count; s < end; s++) {
     const strut_touch *b = &l->now->touch[s->index];
     strut_touch *o = &l->next->touch[s->index];
     size_t up = (s->at + 1) * c->width;
@@ -167,12 +167,12 @@ static void slide(const column *c) {
 
 static void touch(const column *c) {
   const strut_contact_table *t = &c->model->contacts;
-  const strut_located *l = c->l;
+  const strut_event_stepper *l = c->l;
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     uint8_t mode = l->mode[i];
     size_t x = t->at[i] * c->width, y = x + c->width;
-    const strut_response *r = &l->response[i];
+    const strut_contact_compliance *r = &l->response[i];
     strut_touch *o = &l->next->touch[i];
     o->gap = c->q[y] - t->height;
     o->slip = c->predicted[x] - t->belt_speed;
@@ -205,14 +205,14 @@ static void leave_ground(const column *c, bool ledger) {
   c->power[STRUT_POWER_BELT * c->width] += belt;
   c->power[STRUT_POWER_CONTACT * c->width] += contact;
   c->power[STRUT_POWER_FRICTION * c->width] += friction;
-  c->power[STRUT_POWER_MOVED * c->width] += moved;
+  c->power[STRUT_POWER_EXCHANGED * c->width] += moved;
 }
 
 /* Does the end of the step contradict a mode? */
 static bool contradicts(const column *c) {
-  const strut_located *l = c->l;
+  const strut_event_stepper *l = c->l;
   if (l->plain) {
-    for (const strut_slider *s = l->slider, *end = s + l->closed_count; s < end; s++)
+    for (const strut_sliding_contact *s = l->slider, *end = s + l->closed_count; s < end; s++)
       if (s->side * l->next->touch[s->index].slip < s->edge) return true;
     return false;
   }
@@ -239,7 +239,7 @@ static void add_works(const strut_batch *b, int32_t lane) {
 
 /* The step has been taken, as located_accept has it. */
 static void accept(const strut_batch *b, int32_t lane) {
-  strut_located *l = b->events->located[lane];
+  strut_event_stepper *l = b->events->located[lane];
   strut_state *state = b->events->state[lane];
   strut_touch *touches = l->now->touch;
   l->now->touch = l->next->touch;
@@ -290,16 +290,16 @@ static void step_alone(strut_batch *b, int32_t lane, int64_t end) {
   strut_batch_events *e = b->events;
   const strut_model *model = b->tables.model[lane];
   strut_state *state = e->state[lane];
-  strut_located *l = e->located[lane];
+  strut_event_stepper *l = e->located[lane];
   while (e->jumped[lane] && state->step < end) {
-    strut_located_step(model, state, l, b->dt[lane]);
+    strut_event_stepper_step(model, state, l, b->dt[lane]);
     e->jumped[lane] = l->at_once > 0;
   }
   if (state->step == end) return;
   if (can_join(l))
     join(b, lane);
   else
-    strut_located_advance(model, state, l, b->dt[lane], 1);
+    strut_event_stepper_advance(model, state, l, b->dt[lane], 1);
 }
 
 void strut_batch_events_advance(strut_batch *b, const int64_t *left) {

@@ -6,10 +6,10 @@
 
 #include "engine/forces/rigid.h"
 
-bool strut_tangent_space_create(const strut_model *model, const strut_tangent *tangent, int most,
-                                strut_arena *arena, strut_tangent_space *space) {
+bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
+                                strut_arena *arena, strut_krylov_basis *space) {
   size_t n = (size_t)tangent->n, m = (size_t)most;
-  *space = (strut_tangent_space){.model = model, .tangent = tangent, .most = most};
+  *space = (strut_krylov_basis){.model = model, .tangent = tangent, .most = most};
   space->vector = strut_arena_allocate(arena, m * n, sizeof(double));
   space->stiffness = strut_arena_allocate(arena, m * m, sizeof(double));
   space->damping = strut_arena_allocate(arena, m * m, sizeof(double));
@@ -33,7 +33,7 @@ static void hold_rigid(const strut_model *model, strut_rigid *rigid, double *acc
     memset(acceleration, 0, (size_t)model->length * sizeof *acceleration);
 }
 
-void strut_tangent_divide(strut_tangent_space *space, double *x) {
+void strut_apply_inverse_mass(strut_krylov_basis *space, double *x) {
   const strut_model *model = space->model;
   const strut_tangent *tangent = space->tangent;
   size_t both = (size_t)model->length;
@@ -45,7 +45,7 @@ void strut_tangent_divide(strut_tangent_space *space, double *x) {
   for (int32_t i = 0; i < tangent->n; i++) x[i] = acceleration[tangent->coordinate[i]];
 }
 
-void strut_tangent_mass(strut_tangent_space *space, const double *x, double *y) {
+void strut_tangent_mass(strut_krylov_basis *space, const double *x, double *y) {
   const strut_model *model = space->model;
   const strut_tangent *tangent = space->tangent;
   size_t both = (size_t)model->length;
@@ -61,7 +61,7 @@ void strut_tangent_mass(strut_tangent_space *space, const double *x, double *y) 
   for (int32_t i = 0; i < tangent->n; i++) y[i] = full[tangent->coordinate[i]];
 }
 
-void strut_tangent_apply(strut_tangent_space *space, double a, double b, const double *x,
+void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *x,
                          double *y) {
   int32_t n = space->tangent->n;
   double *other = space->node;
@@ -83,7 +83,7 @@ static double dot(const double *x, const double *y, int32_t n) {
 }
 
 /* Scales x to size 1 in the mass; its size before, 0 where it has none. `image` is then M x. */
-static double normalise(strut_tangent_space *space, double *x) {
+static double normalise(strut_krylov_basis *space, double *x) {
   int32_t n = space->tangent->n;
   double largest = largest_of(x, n);
   if (!(largest > 0.0 && largest < HUGE_VAL)) return 0.0;
@@ -96,7 +96,7 @@ static double normalise(strut_tangent_space *space, double *x) {
 }
 
 /* Rows and columns of the last vector in the projected matrices. */
-static void project_last(strut_tangent_space *space) {
+static void project_last(strut_krylov_basis *space) {
   int32_t n = space->tangent->n;
   int last = space->count - 1;
   const double *x = space->vector + (size_t)last * (size_t)n;
@@ -110,7 +110,7 @@ static void project_last(strut_tangent_space *space) {
   }
 }
 
-bool strut_tangent_space_add(strut_tangent_space *space, double *x) {
+bool strut_krylov_basis_add(strut_krylov_basis *space, double *x) {
   int32_t n = space->tangent->n;
   if (space->count >= space->most || !(normalise(space, x) > 0.0)) return false;
   for (int pass = 0; pass < 3; pass++) {
@@ -129,7 +129,7 @@ bool strut_tangent_space_add(strut_tangent_space *space, double *x) {
   return true;
 }
 
-void strut_tangent_space_combine(const strut_tangent_space *space, const double *c, double *x) {
+void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *x) {
   int32_t n = space->tangent->n;
   memset(x, 0, (size_t)n * sizeof *x);
   for (int j = 0; j < space->count; j++) {
@@ -176,7 +176,7 @@ static void rotate(double *small, int most, const double *c, int rows, int colum
   }
 }
 
-void strut_tangent_space_shrink(strut_tangent_space *space, double *c, int rows, double *work) {
+void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, double *work) {
   size_t n = (size_t)space->tangent->n;
   int columns = space->count, kept = orthonormal_rows(c, rows, columns);
   rotate(space->stiffness, space->most, c, kept, columns, work);

@@ -11,7 +11,7 @@
 enum { MOST_STEPS = 80, KEPT = 3 };
 
 typedef struct lanczos {
-  strut_tangent_space *space;
+  strut_krylov_basis *space;
   double a, b;                                /* the matrix is a K + b D */
   double *v, *u, *before, *r;                 /* v, u = M v, the u before, residual; (n) */
   double *kept;                               /* (KEPT, n) */
@@ -65,7 +65,7 @@ static double next_vector(lanczos *l) {
   int32_t n = l->space->tangent->n;
   double square = 0.0;
   memcpy(l->v, l->r, (size_t)n * sizeof *l->v);
-  strut_tangent_divide(l->space, l->v);
+  strut_apply_inverse_mass(l->space, l->v);
   for (int32_t i = 0; i < n; i++) square += l->r[i] * l->v[i];
   if (!(square > 0)) return 0.0;
   double size = sqrt(square), *swap = l->before;
@@ -151,7 +151,7 @@ static void gather(lanczos *l) {
   }
 }
 
-bool strut_tangent_explore(strut_tangent_space *space, double a, double b) {
+bool strut_lanczos_limits(strut_krylov_basis *space, double a, double b) {
   strut_arena arena = {0};
   lanczos *l = strut_arena_allocate(&arena, 1, sizeof *l);
   if (l) *l = (lanczos){.space = space, .a = a, .b = b};
@@ -160,7 +160,7 @@ bool strut_tangent_explore(strut_tangent_space *space, double a, double b) {
     good = mix(l);
     if (good) gather(l);
     for (int k = 0; good && k < l->wanted; k++)
-      strut_tangent_space_add(space, l->kept + (size_t)k * (size_t)space->tangent->n);
+      strut_krylov_basis_add(space, l->kept + (size_t)k * (size_t)space->tangent->n);
   }
   strut_arena_free(&arena);
   return good;

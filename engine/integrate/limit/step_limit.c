@@ -25,7 +25,7 @@ static const double MARGIN = 0.998, SETTLED = 2e-4;
 typedef struct search {
   const strut_tangent *tangent;
   strut_arena *arena;
-  strut_tangent_space space;
+  strut_krylov_basis space;
   strut_tangent_limits found;
   bool damped, rk4, settled;
   double *x, *y, *other, *mix, *work; /* (n) twice and (n), coefficients */
@@ -42,7 +42,7 @@ static bool begin(search *s, const strut_model *model, int most) {
   s->mix = strut_arena_allocate(s->arena, 2 * STRUT_MOST_BINDING * m, sizeof(double));
   s->work = strut_arena_allocate(s->arena, m, sizeof(double));
   return s->x && s->y && s->other && s->mix && s->work &&
-         strut_tangent_space_create(model, s->tangent, most, s->arena, &s->space) &&
+         strut_krylov_basis_create(model, s->tangent, most, s->arena, &s->space) &&
          strut_tangent_limits_create(most, s->arena, &s->found);
 }
 
@@ -52,9 +52,9 @@ static bool take_all(search *s) {
     memset(s->x, 0, (size_t)s->tangent->n * sizeof *s->x);
     s->x[i] = 1.0;
     if (s->tangent->rigid) { /* a push on the coordinate moves it as the bars allow */
-      strut_tangent_divide(&s->space, s->x);
+      strut_apply_inverse_mass(&s->space, s->x);
     }
-    strut_tangent_space_add(&s->space, s->x);
+    strut_krylov_basis_add(&s->space, s->x);
   }
   return strut_tangent_limits_find(&s->space, s->damped, s->rk4, &s->found);
 }
@@ -68,23 +68,23 @@ static void residual(search *s, double a, double re, double im, const double *x,
     strut_tangent_apply(&s->space, 0.0, -im, y, image);
     for (int32_t i = 0; i < s->tangent->n; i++) to[i] += image[i];
   }
-  strut_tangent_divide(&s->space, to);
+  strut_apply_inverse_mass(&s->space, to);
 }
 
 /* Adds what binding motion i leaves. */
-static void grow(search *s, const strut_binding *b) {
-  strut_tangent_space_combine(&s->space, b->x, s->x);
+static void grow(search *s, const strut_critical_mode *b) {
+  strut_krylov_basis_combine(&s->space, b->x, s->x);
   if (!b->rk4 || !b->complex_pair) {
     double a = b->rk4 ? 1.0 : b->a, c = b->rk4 ? b->re : b->b;
     residual(s, a, c, 0.0, s->x, NULL, s->other);
-    strut_tangent_space_add(&s->space, s->other);
+    strut_krylov_basis_add(&s->space, s->other);
     return;
   }
-  strut_tangent_space_combine(&s->space, b->y, s->y);
+  strut_krylov_basis_combine(&s->space, b->y, s->y);
   residual(s, 1.0, b->re, b->im, s->x, s->y, s->other);
-  strut_tangent_space_add(&s->space, s->other);
+  strut_krylov_basis_add(&s->space, s->other);
   residual(s, 1.0, b->re, -b->im, s->y, s->x, s->other);
-  strut_tangent_space_add(&s->space, s->other);
+  strut_krylov_basis_add(&s->space, s->other);
 }
 
 /* Keeps the binding motions only. */
@@ -92,11 +92,11 @@ static void shrink(search *s) {
   size_t columns = (size_t)s->space.count;
   int rows = 0;
   for (int i = 0; i < s->found.count; i++) {
-    const strut_binding *b = &s->found.binding[i];
+    const strut_critical_mode *b = &s->found.binding[i];
     memcpy(s->mix + (size_t)rows++ * columns, b->x, columns * sizeof(double));
     if (b->complex_pair) memcpy(s->mix + (size_t)rows++ * columns, b->y, columns * sizeof(double));
   }
-  strut_tangent_space_shrink(&s->space, s->mix, rows, s->work);
+  strut_krylov_basis_shrink(&s->space, s->mix, rows, s->work);
 }
 
 static bool find(search *s) {
@@ -115,11 +115,11 @@ static double fallen(const strut_tangent_limits *found, const double *before) {
 }
 
 static bool look_around(search *s) {
-  if (!strut_tangent_explore(&s->space, 1.0, 0.0)) return false;
+  if (!strut_lanczos_limits(&s->space, 1.0, 0.0)) return false;
   if (!s->damped) return find(s);
-  if (!strut_tangent_explore(&s->space, 0.0, 1.0) || !find(s)) return false;
+  if (!strut_lanczos_limits(&s->space, 0.0, 1.0) || !find(s)) return false;
   double h = s->found.of[STRUT_REGION_VERLET];
-  return !(h < HUGE_VAL) || (strut_tangent_explore(&s->space, 0.25 * h * h, h) && find(s));
+  return !(h < HUGE_VAL) || (strut_lanczos_limits(&s->space, 0.25 * h * h, h) && find(s));
 }
 
 static bool improve(search *s) {
@@ -206,7 +206,7 @@ static bool ground_damps(const strut_model *model) {
   return damped;
 }
 
-strut_status strut_step_limit_told(const strut_model *model, const strut_integrator *method,
+strut_status strut_step_limit_with_bound(const strut_model *model, const strut_integrator *method,
                                    double *limit, bool *bound, strut_error *error) {
   strut_arena arena = {0};
   strut_step_limit found;
@@ -220,13 +220,13 @@ strut_status strut_step_limit_told(const strut_model *model, const strut_integra
   *limit = found.of[method->region];
   *bound = found.bound;
   strut_arena_free(&arena);
-  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
+  return status ? strut_memory_fail_model(model->scene, error) : STRUT_OK;
 }
 
-strut_status strut_step_limit_for(const strut_model *model, const strut_integrator *method,
+strut_status strut_step_limit_for_method(const strut_model *model, const strut_integrator *method,
                                   double *limit, strut_error *error) {
   bool bound;
-  return strut_step_limit_told(model, method, limit, &bound, error);
+  return strut_step_limit_with_bound(model, method, limit, &bound, error);
 }
 
 strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
@@ -243,7 +243,7 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
     limit->of_implicit[region] = implicit.of[region];
   limit->bound = limit->bound || implicit.bound;
   strut_arena_free(&arena);
-  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
+  return status ? strut_memory_fail_model(model->scene, error) : STRUT_OK;
 }
 
 /* Takes bytes, a whole number of words, into both hashes. */
@@ -291,7 +291,7 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   digest(key, ground, sizeof ground);
 }
 
-strut_status strut_step_limit_recall(const strut_model *model, const strut_integrator *method,
+strut_status strut_step_limit_cached(const strut_model *model, const strut_integrator *method,
                                      strut_step_limits *kept, double *limit, strut_error *error) {
   uint64_t key[2];
   digest_model(model, key);
@@ -302,7 +302,7 @@ strut_status strut_step_limit_recall(const strut_model *model, const strut_integ
       *limit = kept->limit[i];
       return STRUT_OK;
     }
-  strut_status status = strut_step_limit_for(model, method, limit, error);
+  strut_status status = strut_step_limit_for_method(model, method, limit, error);
   if (status) return status;
   int64_t at = kept->count++ % STRUT_LIMITS_KEPT;
   kept->key[at][0] = key[0], kept->key[at][1] = key[1];
@@ -310,16 +310,16 @@ strut_status strut_step_limit_recall(const strut_model *model, const strut_integ
   return STRUT_OK;
 }
 
-strut_status strut_step_limit_at(const strut_model *model, const double *q, const double *rest,
+strut_status strut_step_limit_at_shape(const strut_model *model, const double *q, const double *rest,
                                  strut_closed closed, strut_step_limit *limit, strut_error *error) {
   strut_arena arena = {0};
   strut_status status = limits(model, q, rest, closed, true, &arena, limit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = limit->of[region];
   strut_arena_free(&arena);
-  return status ? strut_room_fail(model->scene, error) : STRUT_OK;
+  return status ? strut_memory_fail_model(model->scene, error) : STRUT_OK;
 }
 
-double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method) {
+double strut_step_limit_of_method(const strut_step_limit *limit, const strut_integrator *method) {
   return method->implicit_damper ? limit->of_implicit[method->region] : limit->of[method->region];
 }

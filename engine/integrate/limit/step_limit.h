@@ -28,17 +28,17 @@ STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut
                                                  strut_error *error);
 
 /** The same at positions q and rest lengths `rest`, with those contacts; of_implicit is as `of`. */
-STRUT_API strut_status strut_step_limit_at(const strut_model *model, const double *q,
+STRUT_API strut_status strut_step_limit_at_shape(const strut_model *model, const double *q,
                                            const double *rest, strut_closed closed,
                                            strut_step_limit *limit, strut_error *error);
 
 /** The largest stable step of one method alone [s], for less work than all of them are. */
-STRUT_API strut_status strut_step_limit_for(const strut_model *model,
+STRUT_API strut_status strut_step_limit_for_method(const strut_model *model,
                                             const strut_integrator *method, double *limit,
                                             strut_error *error);
 
 /** The same; *bound: it is a bound. */
-STRUT_API strut_status strut_step_limit_told(const strut_model *model,
+STRUT_API strut_status strut_step_limit_with_bound(const strut_model *model,
                                              const strut_integrator *method, double *limit,
                                              bool *bound, strut_error *error);
 
@@ -51,16 +51,16 @@ typedef struct strut_step_limits {
 } strut_step_limits;
 
 /**
- * strut_step_limit_for, or what it said of the same members, masses, supports, springs and dampers of
+ * strut_step_limit_for_method, or what it said of the same members, masses, supports, springs and dampers of
  * contacts, start and kind of method: told by two independent hashes of all these numbers.
  */
-STRUT_API strut_status strut_step_limit_recall(const strut_model *model,
+STRUT_API strut_status strut_step_limit_cached(const strut_model *model,
                                                const strut_integrator *method,
                                                strut_step_limits *kept, double *limit,
                                                strut_error *error);
 
 /** The largest stable step of a method [s]. */
-STRUT_API double strut_step_limit_of(const strut_step_limit *limit, const strut_integrator *method);
+STRUT_API double strut_step_limit_of_method(const strut_step_limit *limit, const strut_integrator *method);
 
 enum { STRUT_EXACT_LIMIT = 60 };
 

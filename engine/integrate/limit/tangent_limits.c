@@ -44,7 +44,7 @@ static void symmetric_free(symmetric *s) {
  * Fills in a K + b D, times a power of two that makes the largest entry about 1. Returns by which
  * power they are too small then; INT_MAX where some entry is no finite number: GSL would not end.
  */
-static int fill(symmetric *s, const strut_tangent_space *space, double a, double b) {
+static int fill(symmetric *s, const strut_krylov_basis *space, double a, double b) {
   size_t m = s->m, row = (size_t)space->most;
   double most = 0.0, poison = 0.0;
   int power = 0;
@@ -62,7 +62,7 @@ static int fill(symmetric *s, const strut_tangent_space *space, double a, double
 }
 
 /* The largest eigenvalue of a K + b D with its vector; infinite where the matrix is. */
-static double largest(symmetric *s, const strut_tangent_space *space, double a, double b,
+static double largest(symmetric *s, const strut_krylov_basis *space, double a, double b,
                       double *x) {
   size_t m = s->m, top = 0;
   for (size_t i = 0; i < m; i++) x[i] = i == 0;
@@ -85,7 +85,7 @@ static double quotient(const double *small, size_t row, const double *x, size_t 
  * The step at which c h D + h^2/4 K first has the eigenvalue 1, from above: each motion's quotients
  * give a step at which it has it itself.
  */
-static double flip(symmetric *s, const strut_tangent_space *space, double c, double h, double *x) {
+static double flip(symmetric *s, const strut_krylov_basis *space, double c, double h, double *x) {
   size_t row = (size_t)space->most;
   for (int i = 0; i < 50 && h < HUGE_VAL; i++) {
     if (!(largest(s, space, 0.25 * h * h, c * h, x) > 0.0)) break;
@@ -99,16 +99,16 @@ static double flip(symmetric *s, const strut_tangent_space *space, double c, dou
   return h;
 }
 
-static strut_binding *another(strut_tangent_limits *limits) {
-  strut_binding *one = &limits->binding[limits->count++];
+static strut_critical_mode *another(strut_tangent_limits *limits) {
+  strut_critical_mode *one = &limits->binding[limits->count++];
   one->rk4 = one->complex_pair = false;
   return one;
 }
 
 /* Frequency, Verlet and Euler; the most negative real part there can be is returned. */
-static double find_symmetric(symmetric *s, const strut_tangent_space *space, bool damped,
+static double find_symmetric(symmetric *s, const strut_krylov_basis *space, bool damped,
                              strut_tangent_limits *limits) {
-  strut_binding *one = another(limits);
+  strut_critical_mode *one = another(limits);
   double square = largest(s, space, 1.0, 0.0, one->x), rate = 0.0;
   one->a = 1.0, one->b = 0.0;
   limits->largest_frequency = sqrt(fmax(0.0, square));
@@ -131,16 +131,16 @@ static double find_symmetric(symmetric *s, const strut_tangent_space *space, boo
 
 /* Keeps the eigenvalue among those that bind most, the most binding first. */
 static void insert(size_t which, double limit, size_t *index, double *limits, int *count) {
-  int at = *count < STRUT_BINDING_PAIRS ? (*count)++ : STRUT_BINDING_PAIRS;
+  int at = *count < STRUT_CRITICAL_MODE_PAIRS ? (*count)++ : STRUT_CRITICAL_MODE_PAIRS;
   for (; at > 0 && limits[at - 1] > limit; at--)
-    if (at < STRUT_BINDING_PAIRS) index[at] = index[at - 1], limits[at] = limits[at - 1];
-  if (at < STRUT_BINDING_PAIRS) index[at] = which, limits[at] = limit;
+    if (at < STRUT_CRITICAL_MODE_PAIRS) index[at] = index[at - 1], limits[at] = limits[at - 1];
+  if (at < STRUT_CRITICAL_MODE_PAIRS) index[at] = which, limits[at] = limit;
 }
 
 static void take_pairs(const gsl_vector_complex *values, const gsl_matrix_complex *vectors,
                        double omega, strut_tangent_limits *limits) {
-  size_t m = values->size / 2, index[STRUT_BINDING_PAIRS];
-  double step[STRUT_BINDING_PAIRS];
+  size_t m = values->size / 2, index[STRUT_CRITICAL_MODE_PAIRS];
+  double step[STRUT_CRITICAL_MODE_PAIRS];
   int count = 0;
   for (size_t i = 0; i < 2 * m; i++) {
     gsl_complex z = gsl_vector_complex_get(values, i);
@@ -149,7 +149,7 @@ static void take_pairs(const gsl_vector_complex *values, const gsl_matrix_comple
   }
   limits->of[STRUT_REGION_RK4] = count > 0 ? step[0] : HUGE_VAL;
   for (int k = 0; k < count; k++) {
-    strut_binding *one = another(limits);
+    strut_critical_mode *one = another(limits);
     gsl_complex z = gsl_vector_complex_get(values, index[k]);
     one->rk4 = true, one->complex_pair = GSL_IMAG(z) != 0.0;
     one->re = omega * GSL_REAL(z), one->im = omega * GSL_IMAG(z);
@@ -168,7 +168,7 @@ static bool is_finite(const gsl_matrix *matrix) {
 }
 
 /* All eigenvalues of [0 w; -K/w, -D] / w: scaled so that its two halves are of one size. */
-static bool find_rk4(const strut_tangent_space *space, double omega, strut_tangent_limits *limits) {
+static bool find_rk4(const strut_krylov_basis *space, double omega, strut_tangent_limits *limits) {
   size_t m = (size_t)space->count, row = (size_t)space->most;
   gsl_matrix *system = gsl_matrix_calloc(2 * m, 2 * m);
   gsl_vector_complex *values = gsl_vector_complex_alloc(2 * m);
@@ -191,7 +191,7 @@ static bool find_rk4(const strut_tangent_space *space, double omega, strut_tange
   return room;
 }
 
-bool strut_tangent_limits_find(const strut_tangent_space *space, bool damped, bool rk4,
+bool strut_tangent_limits_find(const strut_krylov_basis *space, bool damped, bool rk4,
                                strut_tangent_limits *limits) {
   symmetric s;
   limits->count = 0;

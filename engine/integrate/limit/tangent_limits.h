@@ -14,29 +14,29 @@
 #include "engine/integrate/limit/stability.h"
 #include "engine/integrate/limit/krylov_basis.h"
 
-enum { STRUT_BINDING_PAIRS = 4, STRUT_MOST_BINDING = 4 + 2 * STRUT_BINDING_PAIRS };
+enum { STRUT_CRITICAL_MODE_PAIRS = 4, STRUT_MOST_BINDING = 4 + 2 * STRUT_CRITICAL_MODE_PAIRS };
 
 /** One motion: coefficients of its real and imaginary parts, and for whom it matters. */
-typedef struct strut_binding {
+typedef struct strut_critical_mode {
   double a, b;   /* its residual is a K x + b D x; complex: K x + (re + i im) D x */
   double re, im; /* eigenvalue, where it is RK4's */
   bool complex_pair, rk4;
   double *x, *y; /* (most) real and imaginary part */
-} strut_binding;
+} strut_critical_mode;
 
 typedef struct strut_tangent_limits {
   double largest_frequency; /* [rad/s] */
   double of[STRUT_REGIONS]; /* [s] */
   bool solved;              /* RK4's from eigenvalues; else by a bound */
   int count;                /* of binding motions */
-  strut_binding binding[STRUT_MOST_BINDING];
+  strut_critical_mode binding[STRUT_MOST_BINDING];
   double *room; /* their coefficients */
 } strut_tangent_limits;
 
 /** In the arena, for spaces of `most` vectors. False: out of memory. */
 bool strut_tangent_limits_create(int most, strut_arena *arena, strut_tangent_limits *limits);
 /** Of the space as it is; `damped`: D is not zero; rk4: look for RK4's. False: out of memory. */
-bool strut_tangent_limits_find(const strut_tangent_space *space, bool damped, bool rk4,
+bool strut_tangent_limits_find(const strut_krylov_basis *space, bool damped, bool rk4,
                                strut_tangent_limits *limits);
 
 #endif

@@ -120,7 +120,7 @@ static void draw_markers(const plotter *p, size_t i) {
 
 static void draw_series(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
-  strut_pen pen = strut_look_pen(look_of(p->curves, i));
+  strut_pen pen = strut_series_pen(look_of(p->curves, i));
   double(*points)[2] = p->points[i];
   for (size_t start = 0; start < p->counts[i] && !s->no_line;) {
     size_t end = start;

@@ -8,7 +8,7 @@
 #include "engine/output/draw/curves.h"
 
 /** The pen of the i-th look: colour and dashes of its own. */
-strut_pen strut_look_pen(size_t look);
+strut_pen strut_series_pen(size_t look);
 /** Its marker at x, y. */
 void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
 /** The fill of the i-th grey area. */

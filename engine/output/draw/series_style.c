@@ -7,7 +7,7 @@
 
 static const double TEXT = 7.5, SAMPLE = 20, GAP = 4, ROW_GAP = 1.5, PADDING = 3;
 
-strut_pen strut_look_pen(size_t look) {
+strut_pen strut_series_pen(size_t look) {
   static const double dashes[][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
                                      {3, 1.5}, {8, 2}, {2, 3}};
   strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
@@ -97,7 +97,7 @@ static void lay_out(strut_canvas *canvas, const strut_legend_entry *entries, siz
         strut_draw_box(canvas, (strut_box){left, middle - 0.35 * line, SAMPLE, 0.7 * line},
                        &e->fill, &(strut_pen){.colour = strut_grey(0.4), .width = 0.4});
       if (e->line)
-        strut_draw_segment(canvas, left, middle, left + SAMPLE, middle, strut_look_pen(e->look));
+        strut_draw_segment(canvas, left, middle, left + SAMPLE, middle, strut_series_pen(e->look));
       if (e->marker) strut_draw_marker(canvas, e->look, left + 0.5 * SAMPLE, middle, 2);
       strut_draw_text(canvas, left + SAMPLE + GAP, middle, e->label, font);
     }

@@ -21,9 +21,9 @@ typedef struct diagram {
   size_t label_count;
 } diagram;
 
-static bool diverged(const strut_bargain *b) { return !isfinite(b->error); }
+static bool diverged(const strut_saving *b) { return !isfinite(b->error); }
 
-void strut_pareto_front(const strut_bargain *b, size_t count, bool *front) {
+void strut_pareto_front(const strut_saving *b, size_t count, bool *front) {
   for (size_t i = 0; i < count; i++) {
     front[i] = !diverged(&b[i]) && b[i].cost > 0;
     for (size_t k = 0; k < count && front[i]; k++) {
@@ -40,7 +40,7 @@ static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_a
   cost->logarithmic = error->logarithmic = true;
   cost->low = cost->high = error->low = error->high = (double)NAN;
   for (size_t i = 0; i < w->count; i++) {
-    const strut_bargain *b = &w->bargains[i];
+    const strut_saving *b = &w->bargains[i];
     strut_axis_include(cost, b->cost);
     strut_axis_include(error, b->error);
     strut_axis_include(error, b->low);
@@ -50,7 +50,7 @@ static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_a
   strut_axis_settle(error, 0.08);
 }
 
-static void place(const diagram *d, const strut_bargain *b, double at[2]) {
+static void place(const diagram *d, const strut_saving *b, double at[2]) {
   double error = diverged(b) || !(b->error > 0) ? d->axes.y.high : b->error;
   strut_axes_point(&d->axes, b->cost, error, at);
   if (diverged(b)) { /* each group on a line of its own, so that none hides another */
@@ -65,7 +65,7 @@ static void draw_lines(const diagram *d) {
   for (size_t g = 0; g < w->group_count; g++) {
     double before[2];
     bool started = false;
-    strut_pen pen = strut_look_pen(g);
+    strut_pen pen = strut_series_pen(g);
     for (size_t i = 0; i < w->count; i++) {
       double at[2];
       if (w->bargains[i].group != (int)g || diverged(&w->bargains[i])) continue;
@@ -139,7 +139,7 @@ static void draw_label(diagram *d, const double at[2], const char *label) {
 /* The cheapest first. */
 static void draw_labels(diagram *d) {
   for (size_t k = 0; k < d->wanted->count && d->order[k] < d->wanted->count; k++) {
-    const strut_bargain *b = &d->wanted->bargains[d->order[k]];
+    const strut_saving *b = &d->wanted->bargains[d->order[k]];
     double at[2];
     if (!b->label) continue;
     place(d, b, at);
@@ -150,7 +150,7 @@ static void draw_labels(diagram *d) {
 static void draw_points(const diagram *d) {
   const strut_work_precision *w = d->wanted;
   for (size_t i = 0; i < w->count; i++) {
-    const strut_bargain *b = &w->bargains[i];
+    const strut_saving *b = &w->bargains[i];
     double at[2], low[2], high[2];
     if (!(b->cost > 0)) continue;
     place(d, b, at);

@@ -7,24 +7,24 @@
 
 #include "engine/output/draw/axes.h"
 
-typedef struct strut_bargain {
+typedef struct strut_saving {
   int group;         /* index into groups: one method, joined by a line in the order given */
   const char *label; /* such as the step, beside a point of the front; NULL: none */
   double cost;       /* > 0 */
   double error;      /* > 0; not finite: diverged, drawn at the upper edge */
   double low, high;  /* range of the error over several cases; NAN: none */
-} strut_bargain;
+} strut_saving;
 
 typedef struct strut_work_precision {
   const char *title;
   strut_axis cost, error; /* logarithmic whatever they say */
   size_t group_count, count;
   const char *const *groups;      /* (group_count) */
-  const strut_bargain *bargains;  /* (count) */
+  const strut_saving *bargains;  /* (count) */
 } strut_work_precision;
 
 /** Which bargains no other beats in both: (count) flags. Diverged ones never are. */
-STRUT_API void strut_pareto_front(const strut_bargain *bargains, size_t count, bool *front);
+STRUT_API void strut_pareto_front(const strut_saving *bargains, size_t count, bool *front);
 /** Draws it in a box. STRUT_NO_MEMORY when there is none. */
 STRUT_API strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
                                                  const strut_work_precision *diagram);

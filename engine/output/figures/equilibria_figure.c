@@ -67,7 +67,7 @@ static bool choose(plan *p) {
   for (size_t i = 0; i < count; i++) {
     const strut_equilibrium *e = &p->all->list[i];
     if (!is_stable(e)) continue;
-    if (e->fate == STRUT_FATE_STANDS || e->fate == STRUT_FATE_FLOPPY) {
+    if (e->fate == STRUT_OUTCOME_STANDS || e->fate == STRUT_OUTCOME_FLOPPY) {
       p->standing[p->standing_count++] = i;
     } else {
       p->aside[p->aside_count++] = i;

@@ -74,7 +74,7 @@ static bool is_seen(const strut_window *window, const double (*way)[2], size_t c
   return false;
 }
 
-void strut_run_draw_way(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                         const double (*way)[2], size_t count, double width) {
   double before[2], at[2];
   if (!is_seen(window, way, count)) return;

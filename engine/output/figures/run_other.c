@@ -30,7 +30,7 @@ void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
   }
 }
 
-bool strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
+bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
                               const strut_window *window, const double (*way)[2], size_t count) {
   double(*points)[2] = strut_arena_allocate(&other->arena, count, sizeof *points);
   for (size_t i = 0; points && i < count; i++) strut_window_point(window, way[i], points[i]);
@@ -38,7 +38,7 @@ bool strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
   return points != NULL;
 }
 
-void strut_run_tell_other(const strut_run_scene *run, char *text, size_t size) {
+void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size) {
   size_t used = strlen(text);
   if (run->figure->other)
     snprintf(text + used, size - used, ", black dashes: %s",

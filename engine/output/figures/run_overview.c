@@ -111,7 +111,7 @@ static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box
   for (size_t i = 0; i < nodes && nodes <= MOST_WAYS; i++) {
     for (size_t f = first; f < run->frames; f++)
       for (size_t d = 0; d < 2; d++) way[f - first][d] = strut_run_positions(run, f)[2 * i + d];
-    strut_run_draw_way(run, canvas, &window, (const double(*)[2])way, run->frames - first, 0.9);
+    strut_run_draw_path(run, canvas, &window, (const double(*)[2])way, run->frames - first, 0.9);
   }
   strut_run_draw_reactions(run, canvas, &window, last);
   strut_run_draw_names(run, canvas, &window, q);

@@ -69,7 +69,7 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
 void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
                               const strut_window *window, size_t frame);
 /** A way through (count) positions [m] inside the window's box. */
-void strut_run_draw_way(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                         const double (*way)[2], size_t count, double width);
 /**
  * The figure's other motion as one being drawn, in an arena of its own, to be freed; false where there
@@ -80,10 +80,10 @@ bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
 void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
                           const strut_window *window, size_t frame);
 /** Its way through (count) positions [m], dashed; false: memory is out. */
-bool strut_run_draw_other_way(strut_run_scene *other, strut_canvas *canvas,
+bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
                               const strut_window *window, const double (*way)[2], size_t count);
 /** Appends ", black dashes: NAME" to a text where there is another motion. */
-void strut_run_tell_other(const strut_run_scene *run, char *text, size_t size);
+void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size);
 /** Names of the nodes of a shape, off all that was drawn since the last names. */
 void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                           const double *q);

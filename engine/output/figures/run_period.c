@@ -103,7 +103,7 @@ static bool draw_other(const strut_run_scene *run, strut_canvas *canvas, const w
   bool fine = find_ways(&other, &o);
   if (fine) add_other(w, &o, run->motion->node_count);
   for (size_t i = 0; i < run->motion->node_count && fine; i++)
-    fine = strut_run_draw_other_way(&other, canvas, window,
+    fine = strut_run_draw_other_path(&other, canvas, window,
                                     (const double(*)[2])(o.way + i * o.count), o.count);
   strut_arena_free(&other.arena);
   return fine;
@@ -166,7 +166,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   double end = page - STRUT_RUN_EDGE - foot_height(run);
   if (!find_ways(run, &w)) return STRUT_NO_MEMORY;
   describe(run, &w, text, sizeof text);
-  strut_run_tell_other(run, text, sizeof text);
+  strut_run_describe_other(run, text, sizeof text);
   strut_run_draw_title(run, canvas, text, run->figure->width >= WIDE);
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width,
                    end - STRUT_RUN_EDGE - STRUT_RUN_TITLE};
@@ -176,7 +176,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   strut_draw_ground(canvas, &window, run->model);
   strut_draw_structure(canvas, &window, run->model, w.shape, &pale);
   for (size_t i = 0; i < run->motion->node_count; i++)
-    strut_run_draw_way(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
+    strut_run_draw_path(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
                        1.5);
   if (!draw_other(run, canvas, &w, &window)) return STRUT_NO_MEMORY;
   strut_run_draw_names(run, canvas, &window, w.shape);

@@ -235,7 +235,7 @@ strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
            g.count == 1 ? "" : "s",
            marked ? "; dashed: where " : g.common[0] ? "" : "; each in the middle",
            marked ? strut_run_measured_name(run) : "", marked ? " was at first" : "");
-  strut_run_tell_other(run, what, sizeof what);
+  strut_run_describe_other(run, what, sizeof what);
   strut_run_draw_title(run, canvas, what, false);
   run->arrow = ARROW;
   for (size_t i = 0; i < g.count; i++) strut_run_expect_frame(run, frame_of(run, i, g.count));

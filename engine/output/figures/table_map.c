@@ -200,10 +200,10 @@ strut_status strut_table_map(const char *path, const strut_table_map_figure *fig
 }
 
 typedef struct trader {
-  const strut_table_bargains_figure *figure;
+  const strut_table_savings_figure *figure;
   const strut_table *table;
   strut_table_groups methods;
-  strut_bargain *bargains;
+  strut_saving *bargains;
   size_t count;
 } trader;
 
@@ -223,14 +223,14 @@ static strut_status draw_bargains(void *context, strut_canvas *canvas, strut_box
 }
 
 static void find_bargains(trader *t) {
-  const strut_table_bargains_figure *f = t->figure;
+  const strut_table_savings_figure *f = t->figure;
   const strut_table_column *columns = t->table->columns;
   for (size_t i = 0; i < t->table->row_count; i++) {
     int group = 0;
     if (!(columns[f->x].value[i] > 0)) continue;
     for (size_t g = 0; g < t->methods.count; g++)
       if (strut_table_belongs(t->table, f->by, t->methods.name[g], i)) group = (int)g;
-    t->bargains[t->count++] = (strut_bargain){
+    t->bargains[t->count++] = (strut_saving){
         .group = group,
         .label = f->label == STRUT_NO_COLUMN ? NULL : columns[f->label].text[i],
         .cost = columns[f->x].value[i],
@@ -240,7 +240,7 @@ static void find_bargains(trader *t) {
   }
 }
 
-strut_status strut_table_bargains(const char *path, const strut_table_bargains_figure *figure,
+strut_status strut_table_savings(const char *path, const strut_table_savings_figure *figure,
                                   const strut_table *table, strut_error *error) {
   trader t = {.figure = figure, .table = table};
   strut_arena arena = {0};

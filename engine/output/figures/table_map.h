@@ -24,15 +24,15 @@ STRUT_API strut_status strut_table_map(const char *path, const strut_table_map_f
                                        const strut_table *table, strut_error *error);
 
 /** x is the cost, y the error (a cell without a finite number: diverged). */
-typedef struct strut_table_bargains_figure {
+typedef struct strut_table_savings_figure {
   const char *title;
   double width;
   int x, y, by, label; /* by: the method; label: what stands beside points of the front */
-} strut_table_bargains_figure;
+} strut_table_savings_figure;
 
 /** Draws a work-precision diagram. */
-STRUT_API strut_status strut_table_bargains(const char *path,
-                                            const strut_table_bargains_figure *figure,
+STRUT_API strut_status strut_table_savings(const char *path,
+                                            const strut_table_savings_figure *figure,
                                             const strut_table *table, strut_error *error);
 
 #endif

@@ -20,7 +20,7 @@ typedef struct making {
   size_t shown; /* frames of the motion that show something */
   strut_film_made *made;
   strut_camera camera;
-  strut_scenery scenery;
+  strut_view_frame scenery;
   strut_moment moment;
   strut_arena arena;
 } making;
@@ -96,13 +96,13 @@ static double largest(const double *values, size_t count) {
 }
 
 static void prepare(making *m) {
-  strut_scenery *s = &m->scenery;
+  strut_view_frame *s = &m->scenery;
   const strut_trajectory *motion = m->motion;
   const double *time = motion->time;
   size_t members = motion->member_count, last = m->shown - 1;
-  *s = (strut_scenery){.model = m->model, .camera = &m->camera, .shown = m->made->shown};
-  strut_scenery_fit(s, (strut_box){0, 0, PAGE_WIDTH, PAGE_WIDTH * HEIGHT / WIDTH});
-  strut_scenery_speed(s, m->film->speed);
+  *s = (strut_view_frame){.model = m->model, .camera = &m->camera, .shown = m->made->shown};
+  strut_view_frame_fit(s, (strut_box){0, 0, PAGE_WIDTH, PAGE_WIDTH * HEIGHT / WIDTH});
+  strut_view_frame_speed(s, m->film->speed);
   if (m->moment.force) s->most_force = largest(motion->force, members * m->shown);
   s->most_contact = largest(motion->contact, 2 * motion->contact_count * m->shown);
   s->start_time = time[0];
@@ -129,7 +129,7 @@ static strut_status draw_frames(making *m, strut_canvas *canvas, strut_encoder *
     if (film->interrupt && *film->interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted: there is no film");
     strut_moment_at(&m->moment, m->motion, m->shown, time_of(m, i));
-    strut_scenery_draw(&m->scenery, canvas, i, &m->moment);
+    strut_view_frame_draw(&m->scenery, canvas, i, &m->moment);
     const unsigned char *pixels = strut_canvas_pixels(canvas, &stride);
     if (!pixels) return no_memory(error);
     status = strut_encoder_frame(encoder, pixels, m->made->width, m->made->height, stride, error);

@@ -22,7 +22,7 @@ static double round_step(double length) {
 }
 
 /* What must be seen around the camera's middle, as bounds; a ground nearby is in it. */
-static strut_bounds around(const strut_scenery *s) {
+static strut_bounds around(const strut_view_frame *s) {
   const strut_camera *camera = s->camera;
   const strut_ground *ground = &s->model->scene->ground;
   double least = fmax(camera->half[0], camera->half[1]) < LEAST * s->model->size
@@ -42,14 +42,14 @@ static strut_bounds around(const strut_scenery *s) {
   return bounds;
 }
 
-void strut_scenery_fit(strut_scenery *s, strut_box page) {
+void strut_view_frame_fit(strut_view_frame *s, strut_box page) {
   strut_bounds bounds = around(s);
   strut_box box = {page.x, page.y + ABOVE, page.width, page.height - ABOVE - BELOW};
   s->window = strut_window_fit(box, bounds, s->model->contacts.count > 0 ? AROUND : CLOSE);
   s->step = round_step(BETWEEN / s->window.scale);
 }
 
-void strut_scenery_speed(strut_scenery *s, double speed) {
+void strut_view_frame_speed(strut_view_frame *s, double speed) {
   double whole = speed < 1 ? 1 / speed : speed;
   bool round_number = fabs(whole - round(whole)) < 1e-9 * whole;
   if (speed == 1) {
@@ -62,7 +62,7 @@ void strut_scenery_speed(strut_scenery *s, double speed) {
 }
 
 /* The window of picture i. */
-static strut_window look(const strut_scenery *s, size_t i) {
+static strut_window look(const strut_view_frame *s, size_t i) {
   strut_window window = s->window;
   window.left += s->camera->middle[i][0];
   window.top += s->camera->middle[i][1];
@@ -70,7 +70,7 @@ static strut_window look(const strut_scenery *s, size_t i) {
 }
 
 /* Marks along the ground, numbered with their distance; those of a belt move with it. */
-static void draw_marks(const strut_scenery *s, strut_canvas *canvas, const strut_window *window,
+static void draw_marks(const strut_view_frame *s, strut_canvas *canvas, const strut_window *window,
                        double time) {
   const strut_ground *ground = &s->model->scene->ground;
   double tangent[2] = {cos(ground->slope), sin(ground->slope)}, factor;
@@ -103,7 +103,7 @@ static void draw_marks(const strut_scenery *s, strut_canvas *canvas, const strut
 }
 
 /* Where there is no ground to pass by, faint lines do. */
-static void draw_lattice(const strut_scenery *s, strut_canvas *canvas,
+static void draw_lattice(const strut_view_frame *s, strut_canvas *canvas,
                          const strut_window *window) {
   const strut_pen pen = {.colour = strut_grey(0.9), .width = 0.6, .butt = true};
   strut_box box = window->box;
@@ -125,7 +125,7 @@ static void draw_lattice(const strut_scenery *s, strut_canvas *canvas,
 }
 
 /* The time, always with as many digits and in the same unit. */
-static void time_text(const strut_scenery *s, double time, char text[TEXT]) {
+static void time_text(const strut_view_frame *s, double time, char text[TEXT]) {
   double factor;
   const char *prefix = strut_prefix(fmax(fabs(s->end_time), fabs(s->start_time)), "s", &factor);
   double digits = s->shown > 0 ? ceil(-log10(s->shown / factor) - 1e-6) : 0;
@@ -141,7 +141,7 @@ static void title_text(const char *name, char text[2 * TEXT]) {
   snprintf(text, 2 * TEXT, "%.*s%s", (int)length, name, name[length] ? "\xe2\x80\xa6" : "");
 }
 
-static void draw_words(const strut_scenery *s, strut_canvas *canvas, const strut_moment *moment) {
+static void draw_words(const strut_view_frame *s, strut_canvas *canvas, const strut_moment *moment) {
   strut_box page = strut_canvas_box(canvas);
   const strut_colour grey = strut_grey(0.35);
   char text[2 * TEXT];
@@ -165,7 +165,7 @@ static void draw_words(const strut_scenery *s, strut_canvas *canvas, const strut
   strut_draw_text(canvas, EDGE, page.height - 23, text, (strut_font){.size = 9, .colour = grey});
 }
 
-static void draw_scale(const strut_scenery *s, strut_canvas *canvas) {
+static void draw_scale(const strut_view_frame *s, strut_canvas *canvas) {
   strut_box page = strut_canvas_box(canvas);
   const strut_colour_scale scale = {
       .name = "force", .unit = "N", .low = -s->most_force, .high = s->most_force};
@@ -174,14 +174,14 @@ static void draw_scale(const strut_scenery *s, strut_canvas *canvas) {
 }
 
 /* How far the film is, along the lower edge. */
-static void draw_progress(const strut_scenery *s, strut_canvas *canvas, size_t i) {
+static void draw_progress(const strut_view_frame *s, strut_canvas *canvas, size_t i) {
   strut_box page = strut_canvas_box(canvas);
   double part = s->camera->count > 1 ? (double)i / (double)(s->camera->count - 1) : 1;
   const strut_fill fill = {.colour = strut_grey(0.75)};
   strut_draw_box(canvas, (strut_box){0, page.height - 2.5, page.width * part, 2.5}, &fill, NULL);
 }
 
-void strut_scenery_draw(const strut_scenery *s, strut_canvas *canvas, size_t i,
+void strut_view_frame_draw(const strut_view_frame *s, strut_canvas *canvas, size_t i,
                         const strut_moment *moment) {
   strut_window window = look(s, i);
   strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};

@@ -9,7 +9,7 @@
 #include "engine/output/film/moment.h"
 
 /** What the pictures of a film share. */
-typedef struct strut_scenery {
+typedef struct strut_view_frame {
   const strut_model *model;
   const strut_camera *camera;
   strut_window window;   /* its scale; it moves with the camera */
@@ -21,14 +21,14 @@ typedef struct strut_scenery {
   double shown;          /* time between two pictures [s] */
   bool travels;          /* nothing holds it in x: how far it went is told */
   char speed[48];        /* "1/10 of true speed" */
-} strut_scenery;
+} strut_view_frame;
 
 /** Chooses scale and marks for a page; the fields from most_force on stay as they are. */
-void strut_scenery_fit(strut_scenery *scenery, strut_box page);
+void strut_view_frame_fit(strut_view_frame *scenery, strut_box page);
 /** "true speed", "1/10 of true speed", "4 times true speed". In the C locale. */
-void strut_scenery_speed(strut_scenery *scenery, double speed);
+void strut_view_frame_speed(strut_view_frame *scenery, double speed);
 /** Draws picture `i` of the film on a page. In the C locale. */
-void strut_scenery_draw(const strut_scenery *scenery, strut_canvas *canvas, size_t i,
+void strut_view_frame_draw(const strut_view_frame *scenery, strut_canvas *canvas, size_t i,
                         const strut_moment *moment);
 
 #endif

@@ -8,7 +8,7 @@
 
 struct cJSON;
 
-const char *strut_fate_name(strut_fate fate) {
+const char *strut_outcome_name(strut_outcome fate) {
   static const char *const names[] = {"stands", "tips", "below ground", "unstable", "floppy",
                                       "no rest"};
   return names[fate];
@@ -93,7 +93,7 @@ static void add_equilibrium(strut_json *json, struct cJSON *to, const strut_equi
   strut_json_number(json, to, "energy", e->energy);
   strut_json_number(json, to, "potential", p->potential);
   add_supports(json, to, scene, e);
-  strut_json_text(json, to, "fate", strut_fate_name(e->fate));
+  strut_json_text(json, to, "fate", strut_outcome_name(e->fate));
   strut_json_text(json, to, "verdict", e->verdict);
   strut_json_text(json, to, "tips_over",
                   e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL);

@@ -13,6 +13,6 @@ STRUT_API char *strut_equilibria_table(const strut_equilibria *equilibria,
                                        const strut_model *model);
 
 /** "stands", "tips", "below ground", "unstable", "floppy", "no rest". */
-STRUT_API const char *strut_fate_name(strut_fate fate);
+STRUT_API const char *strut_outcome_name(strut_outcome fate);
 
 #endif

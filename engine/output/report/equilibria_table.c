@@ -41,7 +41,7 @@ static void add_list(strut_buffer *table, const strut_equilibria *all, const str
                    "label", "energy", "lowest", "found", "what becomes of it");
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
-    if (e->fate == STRUT_FATE_UNSTABLE) {
+    if (e->fate == STRUT_OUTCOME_UNSTABLE) {
       unstable++;
     } else if (shown < MOST_ROWS) {
       add_row(table, scene, e);
@@ -108,7 +108,7 @@ static void add_shapes(strut_buffer *table, const strut_equilibria *all, const s
   for (int named = 1; named >= 0; named--)
     for (size_t i = 0; i < all->count && shown < MOST_SHAPES; i++) {
       const strut_equilibrium *e = &all->list[i];
-      if (e->fate != STRUT_FATE_STANDS || is_named(e) != named) continue;
+      if (e->fate != STRUT_OUTCOME_STANDS || is_named(e) != named) continue;
       add_shape(table, scene, e);
       shown++;
     }

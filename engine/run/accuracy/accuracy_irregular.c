@@ -11,15 +11,15 @@ static const double HALF_PERIODS = 68.0;
 /* Two velocities that agree to this part of what is wanted. */
 static const double AGREE = 0.4;
 
-static strut_experiment with_half_the_step(const strut_way *w) {
+static strut_experiment with_half_the_step(const strut_orbit_solve *w) {
   strut_experiment half = w->a->cheap;
   half.step *= 0.5;
   return half;
 }
 
 /* The run `last` is the answer; `error` is what it may be off by [m/s]. */
-static void answer(strut_way *w, strut_way_end end, double error) {
-  strut_way_take_end(w);
+static void answer(strut_orbit_solve *w, strut_orbit_solve_end end, double error) {
+  strut_orbit_solve_keep_end(w);
   w->orbit.velocity = w->last.velocity;
   w->error = error;
   w->found = end;
@@ -29,22 +29,22 @@ static void answer(strut_way *w, strut_way_end end, double error) {
  * The mean over a run's window scatters more than that over all of its periods: by as much as there
  * are fewer of them.
  */
-static double scatter(const strut_way *w, double interval, double periods) {
+static double scatter(const strut_orbit_solve *w, double interval, double periods) {
   const strut_experiment *e = &w->a->scene->experiment;
   if (e->steady.wanted || !(e->measure_last < periods)) return interval;
   return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
 }
 
 /* The cheap method by more periods; what came out is added to way->run. */
-static strut_status go_on(strut_way *w, double periods) {
+static strut_status go_on(strut_orbit_solve *w, double periods) {
   strut_summary more = {0};
-  strut_status status = strut_way_run(w, w->a->cheap, w->a->wanted, 5, periods, true, &more);
-  if (!status) strut_way_add(&w->run, &more);
+  strut_status status = strut_orbit_solve_run(w, w->a->cheap, w->a->wanted, 5, periods, true, &more);
+  if (!status) strut_summary_append(&w->run, &more);
   strut_summary_free(&more);
   return status;
 }
 
-strut_status strut_way_irregular(strut_way *w, bool *periodic) {
+strut_status strut_orbit_solve_irregular(strut_orbit_solve *w, bool *periodic) {
   strut_accuracy *a = w->a;
   strut_summary half = {0};
   strut_status status = STRUT_OK;
@@ -53,9 +53,9 @@ strut_status strut_way_irregular(strut_way *w, bool *periodic) {
   if (!status && w->run.steady.kind == STRUT_MOTION_TRANSIENT) status = go_on(w, MORE_PERIODS);
   *periodic = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC;
   if (status || w->run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
-  status = strut_way_run(w, with_half_the_step(w), a->wanted, 5, HALF_PERIODS, true, &half);
+  status = strut_orbit_solve_run(w, with_half_the_step(w), a->wanted, 5, HALF_PERIODS, true, &half);
   if (!status) {
-    strut_way_add(&w->last, &half);
+    strut_summary_append(&w->last, &half);
     double apart = fabs(w->last.velocity - w->run.velocity);
     if (w->last.steady.kind == STRUT_MOTION_TRANSIENT)
       w->last.steady.kind = STRUT_MOTION_IRREGULAR; /* too short a run to see that itself */
@@ -65,38 +65,38 @@ strut_status strut_way_irregular(strut_way *w, bool *periodic) {
   return status;
 }
 
-bool strut_way_is_stuck(const strut_way *w) {
+bool strut_orbit_solve_is_stuck(const strut_orbit_solve *w) {
   const strut_contact_table *c = &w->cheap.model->contacts;
   double band = 0.0;
   for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].stick_velocity);
   return w->cheap.applied > 0 && w->cheap.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
 }
 
-strut_status strut_way_stuck(strut_way *w) {
+strut_status strut_orbit_solve_stuck(strut_orbit_solve *w) {
   strut_accuracy *a = w->a;
   strut_summary half = {0};
   w->found = STRUT_WAY_NONE;
-  strut_status status = strut_way_run(w, with_half_the_step(w), fmin(0.001, 0.2 * a->wanted), 4,
+  strut_status status = strut_orbit_solve_run(w, with_half_the_step(w), fmin(0.001, 0.2 * a->wanted), 4,
                                       fmax(20.0, strut_accuracy_periods(a)), false, &half);
   if (status) {
     strut_summary_free(&half);
     return status;
   }
   bool periodic = half.steady.kind == STRUT_MOTION_PERIODIC;
-  strut_way_add(&w->last, &half);
+  strut_summary_append(&w->last, &half);
   double apart = fabs(w->last.velocity - w->run.velocity);
-  if (periodic && apart <= AGREE * a->wanted * strut_way_size(a, w->last.velocity))
+  if (periodic && apart <= AGREE * a->wanted * strut_accuracy_scale(a, w->last.velocity))
     answer(w, STRUT_WAY_STUCK, apart + w->last.steady.interval);
   return STRUT_OK;
 }
 
-strut_status strut_way_disputed(strut_way *w) {
+strut_status strut_orbit_solve_disputed(strut_orbit_solve *w) {
   strut_summary half = {0};
   double accurate = w->last.velocity;
   strut_status status =
-      strut_way_run(w, with_half_the_step(w), w->a->wanted, 5, HALF_PERIODS, true, &half);
+      strut_orbit_solve_run(w, with_half_the_step(w), w->a->wanted, 5, HALF_PERIODS, true, &half);
   if (!status) {
-    strut_way_add(&w->last, &half);
+    strut_summary_append(&w->last, &half);
     double apart = fabs(accurate - w->run.velocity);
     answer(w, STRUT_WAY_DISPUTED, apart + fabs(w->last.velocity - w->run.velocity));
   }

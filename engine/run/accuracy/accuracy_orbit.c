@@ -31,7 +31,7 @@ static const double MEAN = 20.0;
    to have the last word. */
 static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
 
-static strut_status allocate(strut_way *w, const strut_model *model) {
+static strut_status allocate(strut_orbit_solve *w, const strut_model *model) {
   size_t length = (size_t)model->length;
   w->end.q = strut_arena_allocate(&w->arena, length, sizeof(double));
   w->end.v = strut_arena_allocate(&w->arena, length, sizeof(double));
@@ -46,7 +46,7 @@ static strut_status allocate(strut_way *w, const strut_model *model) {
  * another way each period, which may keep it from repeating itself very closely: then less must do.
  * *steady is false where even that is not reached.
  */
-static strut_status run_cheap(strut_way *w, bool *steady) {
+static strut_status run_cheap(strut_orbit_solve *w, bool *steady) {
   strut_accuracy *a = w->a;
   strut_model *model = NULL;
   double periods = strut_accuracy_periods(a), first = fmin(FIRST, periods);
@@ -57,12 +57,12 @@ static strut_status run_cheap(strut_way *w, bool *steady) {
   strut_model_free(model);
   if (status) return status;
   strut_accuracy_begin_phase(a, "waiting for steady motion");
-  status = strut_way_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
+  status = strut_orbit_solve_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
   if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow && periods > first) {
     strut_summary more = {0};
     status =
-        strut_way_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true, &more);
-    if (!status) strut_way_add(&w->run, &more);
+        strut_orbit_solve_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true, &more);
+    if (!status) strut_summary_append(&w->run, &more);
     strut_summary_free(&more);
   }
   *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
@@ -71,16 +71,16 @@ static strut_status run_cheap(strut_way *w, bool *steady) {
 }
 
 /* The end of the run so far as fixed point of the cheap map. */
-static void take_end(strut_way *w) {
-  strut_way_take_end(w);
+static void take_end(strut_orbit_solve *w) {
+  strut_orbit_solve_keep_end(w);
   memcpy(w->base, w->orbit.y, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
   w->travel = w->run.velocity * w->cheap.period * w->cheap.repeats;
 }
 
-static strut_status make_maps(strut_way *w, int32_t repeats) {
+static strut_status make_maps(strut_orbit_solve *w, int32_t repeats) {
   strut_accuracy *a = w->a;
   a->spent += w->cheap.evaluations + w->fine.evaluations;
-  strut_way_count(w);
+  strut_orbit_solve_count(w);
   w->counted = 0;
   strut_period_map_free(&w->cheap);
   strut_period_map_free(&w->fine);
@@ -103,13 +103,13 @@ static strut_status make_maps(strut_way *w, int32_t repeats) {
  * Corrects until the next correction is expected to be small enough: each defect should be much
  * smaller than the one before, and the velocity follows it in proportion.
  */
-static strut_status correct(strut_way *w, double enough, int least) {
+static strut_status correct(strut_orbit_solve *w, double enough, int least) {
   double defect = HUGE_VAL;
   w->error = HUGE_VAL;
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
     strut_status status = strut_orbit_correct(&w->cheap, &w->fine, w->base, w->travel,
                                               0.1 * enough * w->cheap.period, &w->orbit);
-    status = strut_way_judge(w, status);
+    status = strut_orbit_solve_map_status(w, status);
     if (status) return status;
     if (!w->orbit.converged || w->orbit.defect > 0.7 * defect) return STRUT_OK;
     /* the first correction is taken to be right to a half, later ones by what they achieved */
@@ -123,12 +123,12 @@ static strut_status correct(strut_way *w, double enough, int least) {
 }
 
 /* The motion on the orbit, by the accurate method: for what is recorded and told of contacts. */
-static strut_status run_orbit(strut_way *w, strut_summary *summary) {
+static strut_status run_orbit(strut_orbit_solve *w, strut_summary *summary) {
   strut_accuracy *a = w->a;
   strut_experiment e = w->accurate;
   double last = e.output_last;
   e.measure_last = 0.0;
-  strut_way_put_orbit(w);
+  strut_orbit_solve_start_later_runs(w);
   e.steady.wanted = false;
   bool ran_on = w->found > STRUT_WAY_CORRECTED && w->last.steady.repeats > 0;
   e.periods = ran_on ? w->last.steady.repeats : w->cheap.repeats;
@@ -142,13 +142,13 @@ static strut_status run_orbit(strut_way *w, strut_summary *summary) {
 }
 
 /* What this way has cost goes to the account of the next one. */
-static void give_up(strut_way *w, strut_summary *orbit) {
+static void give_up(strut_orbit_solve *w, strut_summary *orbit) {
   w->a->spent += w->run.force_evaluations + w->cheap.evaluations + w->fine.evaluations +
                  w->last.force_evaluations + orbit->force_evaluations;
   strut_summary_free(orbit);
 }
 
-static void release(strut_way *w) {
+static void release(strut_orbit_solve *w) {
   strut_period_map_free(&w->cheap);
   strut_period_map_free(&w->fine);
   strut_summary_free(&w->run);
@@ -160,39 +160,39 @@ static void release(strut_way *w) {
  * From nearly steady to the fixed point of the cheap map: by extrapolation, or, where that fails, by
  * running on. *steady is false where there is none.
  */
-static strut_status settle_cheap(strut_way *w, bool *steady) {
+static strut_status settle_cheap(strut_orbit_solve *w, bool *steady) {
   strut_accuracy *a = w->a;
   bool found = false;
-  double enough = 0.1 * a->wanted * strut_way_size(a, w->run.velocity) * w->cheap.period;
+  double enough = 0.1 * a->wanted * strut_accuracy_scale(a, w->run.velocity) * w->cheap.period;
   strut_status status =
       strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel, &found);
-  status = strut_way_judge(w, status);
+  status = strut_orbit_solve_map_status(w, status);
   if (status) return status;
   *steady = true;
   if (!found) {
     strut_summary more = {0};
-    status = strut_way_run(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, CHANCE, true, &more);
+    status = strut_orbit_solve_run(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, CHANCE, true, &more);
     *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC &&
               more.steady.repeats == w->cheap.repeats;
-    if (!status) strut_way_add(&w->run, &more);
+    if (!status) strut_summary_append(&w->run, &more);
     strut_summary_free(&more);
     take_end(w);
   }
   w->run.velocity = w->travel / (w->cheap.period * w->cheap.repeats);
   memcpy(w->orbit.y, w->base, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
-  w->settled = (strut_way_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
+  w->settled = (strut_orbit_solve_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
   return status;
 }
 
 /* The cheap method's orbit corrected, or what else has the answer near it. */
-static strut_status finish(strut_way *w) {
+static strut_status finish(strut_orbit_solve *w) {
   strut_accuracy *a = w->a;
-  double size = strut_way_size(a, w->run.velocity), all = fmax(20.0, strut_accuracy_periods(a));
+  double size = strut_accuracy_scale(a, w->run.velocity), all = fmax(20.0, strut_accuracy_periods(a));
   strut_status status = STRUT_OK;
   w->error = HUGE_VAL;
-  if (strut_way_is_stuck(w)) {
-    status = strut_way_stuck(w);
-    return status || w->found ? status : strut_way_accurate(w, false, all);
+  if (strut_orbit_solve_is_stuck(w)) {
+    status = strut_orbit_solve_stuck(w);
+    return status || w->found ? status : strut_orbit_solve_accurate(w, false, all);
   }
   strut_accuracy_begin_phase(a, "correcting the orbit");
   bool last_word = a->wanted < FINE; /* the accurate method goes on itself: come near enough */
@@ -202,25 +202,25 @@ static strut_status finish(strut_way *w) {
   double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
   if (a->wanted >= COARSE && moved <= 0.8 * a->wanted * size)
     w->found = STRUT_WAY_CHEAP;
-  else if (!last_word && strut_way_part(w) <= 0.8)
+  else if (!last_word && strut_orbit_solve_tolerance_share(w) <= 0.8)
     w->found = STRUT_WAY_CORRECTED;
   if (w->found) return STRUT_OK;
-  status = strut_way_accurate(w, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
+  status = strut_orbit_solve_accurate(w, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
   if (status) return status;
-  if (!w->found) return strut_way_disputed(w);
-  return strut_way_check(w);
+  if (!w->found) return strut_orbit_solve_disputed(w);
+  return strut_orbit_solve_check(w);
 }
 
 /*
  * The motion may be irregular; or it becomes periodic after all. Else the accurate method is left to
  * go on.
  */
-static strut_status find_without_orbit(strut_way *w) {
+static strut_status find_without_orbit(strut_orbit_solve *w) {
   bool periodic = false;
-  strut_status status = strut_way_irregular(w, &periodic);
+  strut_status status = strut_orbit_solve_irregular(w, &periodic);
   if (status || w->found) return status;
   if (!periodic || !strut_accuracy_orbit_answers(w->a, &w->run.steady))
-    return strut_way_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
+    return strut_orbit_solve_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
   status = make_maps(w, w->run.steady.repeats);
   return status ? status : finish(w);
 }
@@ -229,13 +229,13 @@ static strut_status find_without_orbit(strut_way *w) {
  * Where the cheap method nearly repeats itself, but not quite, the accurate one may: its steps meet no
  * grid.
  */
-static strut_status find_without_cheap(strut_way *w) {
-  strut_status status = strut_way_accurate(w, true, CHANCE);
+static strut_status find_without_cheap(strut_orbit_solve *w) {
+  strut_status status = strut_orbit_solve_accurate(w, true, CHANCE);
   return status || w->found ? status : find_without_orbit(w);
 }
 
 /* The orbit, as accurately as is wanted. */
-static strut_status find_orbit(strut_way *w, bool steady) {
+static strut_status find_orbit(strut_orbit_solve *w, bool steady) {
   strut_status status = make_maps(w, steady ? w->run.steady.repeats : 1);
   w->error = HUGE_VAL;
   if (status) return status;
@@ -244,7 +244,7 @@ static strut_status find_orbit(strut_way *w, bool steady) {
   if (status) return status;
   if (!steady && w->cheap.repeats > 1) {
     status = make_maps(w, 1);
-    w->settled = (strut_way_cost){0};
+    w->settled = (strut_orbit_solve_cost){0};
   }
   if (status) return status;
   return steady ? finish(w) : find_without_cheap(w);
@@ -254,7 +254,7 @@ static strut_status find_orbit(strut_way *w, bool steady) {
  * Does the run that the way ended with speak for the scene's window? It has to have become steady before
  * that begins, counted from the scene's start.
  */
-static bool answers(const strut_way *w) {
+static bool answers(const strut_orbit_solve *w) {
   const strut_accuracy *a = w->a;
   strut_steady_summary steady = w->last.steady;
   if (a->scene->experiment.steady.wanted) return true;
@@ -269,7 +269,7 @@ static bool answers(const strut_way *w) {
  * them, more slowly than the watch for steady motion sees. Where the whole run costs the cheap method not
  * much more than what has been done, it is made, and must be as fast in its window as on the orbit.
  */
-static strut_status check_window(strut_way *w) {
+static strut_status check_window(strut_orbit_solve *w) {
   strut_accuracy *a = w->a;
   bool of_orbit = w->found >= STRUT_WAY_CHEAP && w->found <= STRUT_WAY_STUCK;
   double periods = a->scene->experiment.periods, before = (double)w->run.steady.periods;
@@ -288,14 +288,14 @@ static strut_status check_window(strut_way *w) {
   strut_status status = strut_accuracy_run(a, &whole, &options, &run);
   a->spent += run.force_evaluations;
   double away = fabs(run.velocity - w->run.velocity);
-  if (!status && !(away <= 0.3 * a->wanted * strut_way_size(a, run.velocity)))
+  if (!status && !(away <= 0.3 * a->wanted * strut_accuracy_scale(a, run.velocity)))
     w->found = STRUT_WAY_NONE;
   strut_summary_free(&run);
   return status;
 }
 
 /* The motion on the orbit found, which should go as fast as that was found to. */
-static strut_status confirm(strut_way *w, strut_summary *orbit) {
+static strut_status confirm(strut_orbit_solve *w, strut_summary *orbit) {
   strut_accuracy *a = w->a;
   if (w->found > STRUT_WAY_CORRECTED && !answers(w)) w->found = STRUT_WAY_NONE;
   strut_status status = check_window(w);
@@ -303,19 +303,19 @@ static strut_status confirm(strut_way *w, strut_summary *orbit) {
   status = run_orbit(w, orbit);
   double away = fabs(orbit->velocity - w->orbit.velocity);
   if (status || w->found > STRUT_WAY_CORRECTED ||
-      away <= 0.6 * a->wanted * strut_way_size(a, w->run.velocity))
+      away <= 0.6 * a->wanted * strut_accuracy_scale(a, w->run.velocity))
     return status;
   w->found = STRUT_WAY_NONE;
   a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
   strut_summary_free(orbit);
   *orbit = (strut_summary){0};
-  status = strut_way_accurate(w, true, a->wanted < FINE ? LONG_TRIAL : TRIAL);
-  if (!status && !w->found) status = strut_way_disputed(w);
+  status = strut_orbit_solve_accurate(w, true, a->wanted < FINE ? LONG_TRIAL : TRIAL);
+  if (!status && !w->found) status = strut_orbit_solve_disputed(w);
   return status ? status : run_orbit(w, orbit);
 }
 
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
-  strut_way w = {.a = a};
+  strut_orbit_solve w = {.a = a};
   *done = false;
   bool steady_wanted = a->scene->experiment.steady.wanted;
   if (strut_accuracy_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
@@ -332,7 +332,7 @@ strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   if (ran && !status) status = confirm(&w, &orbit);
   *done = !status && w.found;
   if (*done)
-    strut_way_tell(&w, &orbit);
+    strut_orbit_solve_report(&w, &orbit);
   else
     give_up(&w, &orbit);
   a->cheap = given;

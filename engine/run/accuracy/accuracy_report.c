@@ -5,7 +5,7 @@
 
 #include "engine/run/accuracy/orbit_solve.h"
 
-static void say_why(const strut_way *w, strut_accuracy_summary *told) {
+static void say_why(const strut_orbit_solve *w, strut_accuracy_summary *told) {
   double step = w->cheap.dt, tolerance = w->accurate.tolerance;
   double moved = fabs(w->orbit.velocity - w->run.velocity);
   size_t size = sizeof told->why;
@@ -49,8 +49,8 @@ static void say_why(const strut_way *w, strut_accuracy_summary *told) {
 }
 
 /* The error to expect [m/s]. */
-static double expect(const strut_way *w, const strut_summary *orbit) {
-  double size = strut_way_size(w->a, w->orbit.velocity);
+static double expect(const strut_orbit_solve *w, const strut_summary *orbit) {
+  double size = strut_accuracy_scale(w->a, w->orbit.velocity);
   double apart = fabs(orbit->velocity - w->orbit.velocity);
   double method = w->accurate.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 * size;
   if (w->found >= STRUT_WAY_IRREGULAR) return w->error;
@@ -59,8 +59,8 @@ static double expect(const strut_way *w, const strut_summary *orbit) {
 }
 
 /* Steps, forces and time of what the answer rests on. */
-static void add_costs(const strut_way *w, strut_summary *s) {
-  const strut_way_cost *settled = &w->settled;
+static void add_costs(const strut_orbit_solve *w, strut_summary *s) {
+  const strut_orbit_solve_cost *settled = &w->settled;
   int64_t later = w->cheap.applied - settled->applied, fine = w->fine.applied;
   s->steps = w->run.steps + settled->applied * w->cheap.steps;
   s->events = w->run.events + settled->events;
@@ -74,7 +74,7 @@ static void add_costs(const strut_way *w, strut_summary *s) {
   s->duration += (double)(later + fine) * w->cheap.period + w->last.duration;
 }
 
-void strut_way_tell(strut_way *w, const strut_summary *orbit) {
+void strut_orbit_solve_report(strut_orbit_solve *w, const strut_summary *orbit) {
   strut_accuracy *a = w->a;
   strut_summary *s = a->summary;
   bool cheap_does = w->found == STRUT_WAY_CHEAP;
@@ -98,7 +98,7 @@ void strut_way_tell(strut_way *w, const strut_summary *orbit) {
            adaptive ? "verlet-events+adaptive" : "verlet-events");
   s->accuracy = (strut_accuracy_summary){
       .wanted = a->wanted,
-      .expected = error / strut_way_size(a, s->velocity),
+      .expected = error / strut_accuracy_scale(a, s->velocity),
       .scale = a->scale,
       .check_evaluations = a->spent + orbit->force_evaluations + (cheap_does ? corrections : 0)};
   s->accuracy.kept = s->accuracy.expected <= a->wanted;

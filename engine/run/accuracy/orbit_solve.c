@@ -4,17 +4,17 @@
 #include <math.h>
 #include <string.h>
 
-double strut_way_size(const strut_accuracy *a, double velocity) {
+double strut_accuracy_scale(const strut_accuracy *a, double velocity) {
   return fmax(fabs(velocity), a->scale);
 }
 
-void strut_way_count(strut_way *w) {
+void strut_orbit_solve_count(strut_orbit_solve *w) {
   int64_t made = w->cheap.evaluations + w->fine.evaluations;
   w->a->used += made > w->counted ? made - w->counted : 0;
   w->counted = made;
 }
 
-void strut_way_add(strut_summary *whole, strut_summary *part) {
+void strut_summary_append(strut_summary *whole, strut_summary *part) {
   int64_t steps = whole->steps + part->steps, events = whole->events + part->events;
   int64_t evaluations = whole->force_evaluations + part->force_evaluations;
   int64_t periods = whole->steady.periods + part->steady.periods;
@@ -28,7 +28,7 @@ void strut_way_add(strut_summary *whole, strut_summary *part) {
   whole->steady.periods = periods;
 }
 
-strut_status strut_way_run(strut_way *w, strut_experiment e, double tolerance, int32_t successive,
+strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, double tolerance, int32_t successive,
                            double periods, bool from_end, strut_summary *summary) {
   strut_accuracy *a = w->a;
   strut_snapshot from = w->end;
@@ -48,7 +48,7 @@ strut_status strut_way_run(strut_way *w, strut_experiment e, double tolerance, i
   return strut_accuracy_run(a, &e, &options, summary);
 }
 
-void strut_way_take_end(strut_way *w) {
+void strut_orbit_solve_keep_end(strut_orbit_solve *w) {
   size_t length = (size_t)w->cheap.model->length;
   memcpy(w->orbit.y, w->end.q, length * sizeof(double));
   memcpy(w->orbit.y + length, w->end.v, length * sizeof(double));

@@ -11,10 +11,10 @@ static const double OPEN = 0.01, ROUNDING = 16.0 * DBL_EPSILON;
 
 static double change(double a, double b) { return fabs(a - b); }
 
-void strut_balance_fill(const strut_model *model, strut_state *state, const strut_stored *begin,
+void strut_balance_fill(const strut_model *model, strut_state *state, const strut_energies *begin,
                         double t, strut_energy *e) {
   const double *w = state->work;
-  strut_stored end = strut_energy_stored(model, state, t);
+  strut_energies end = strut_energy_evaluate(model, state, t);
   double loads = strut_energy_load_work(model, state);
   e->kinetic = end.kinetic, e->elastic = end.elastic, e->gravity = end.gravity;
   e->contact = end.contact;
@@ -30,19 +30,19 @@ void strut_balance_fill(const strut_model *model, strut_state *state, const stru
                 e->dissipated_friction;
   e->moved = change(end.kinetic, begin->kinetic) + change(end.elastic, begin->elastic) +
              change(end.gravity, begin->gravity) + change(end.contact, begin->contact) +
-             fabs(loads) + w[STRUT_POWER_MOVED];
+             fabs(loads) + w[STRUT_POWER_EXCHANGED];
 }
 
-void strut_balance_begin(const strut_state *state, const strut_stored *begin, double t,
-                         int evaluations, strut_balance_watch *watch) {
+void strut_balance_begin(const strut_state *state, const strut_energies *begin, double t,
+                         int evaluations, strut_balance_monitor *watch) {
   int64_t every = EVALUATIONS / evaluations;
   *watch =
-      (strut_balance_watch){.every = every > 0 ? every : 1, .swing = begin->kinetic, .time = t};
+      (strut_balance_monitor){.every = every > 0 ? every : 1, .swing = begin->kinetic, .time = t};
   watch->next = state->ledger ? state->step + watch->every : INT64_MAX;
 }
 
-void strut_balance_look(const strut_model *model, strut_state *state, const strut_stored *begin,
-                        double t, strut_balance_watch *watch, strut_energy *e) {
+void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
+                        double t, strut_balance_monitor *watch, strut_energy *e) {
   strut_balance_fill(model, state, begin, t, e);
   watch->swing = fmax(watch->swing, e->kinetic);
   e->moved = fmax(e->moved, watch->swing); /* what swings may end as it began */

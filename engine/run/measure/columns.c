@@ -136,7 +136,7 @@ static double of_ledger(const strut_columns *c, const strut_state *state, strut_
     default:
       break;
   }
-  const strut_stored *s = &c->stored;
+  const strut_energies *s = &c->stored;
   *size = fabs(s->kinetic) + fabs(s->elastic) + fabs(s->gravity) + fabs(s->contact);
   return s->kinetic + s->elastic + s->gravity + s->contact;
 }
@@ -203,7 +203,7 @@ static void prepare(strut_columns *c, strut_state *state) {
     strut_forces_observe(c->model, state, t);
   else
     strut_drive_apply(c->model, state, t);
-  if (c->energies) c->stored = strut_energy_stored(c->model, state, t);
+  if (c->energies) c->stored = strut_energy_evaluate(c->model, state, t);
   for (int32_t i = 0; c->speeds && i < c->model->node_count; i++)
     c->fastest = fmax(c->fastest, hypot(state->v[2 * i], state->v[2 * i + 1]));
 }

@@ -24,7 +24,7 @@ typedef struct strut_columns {
   bool forces;          /* some column needs the forces at the state */
   bool energies;        /* or the stored energies */
   bool speeds;          /* some column is a velocity, whose rounding is that of the nodes' speeds */
-  strut_stored stored;  /* [J]; with `energies` */
+  strut_energies stored;  /* [J]; with `energies` */
 } strut_columns;
 
 /** Room for `most` columns in the arena. False: out of memory. */

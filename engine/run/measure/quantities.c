@@ -131,7 +131,7 @@ bool strut_quantities_need_ledger(const strut_scene *scene) {
 }
 
 static double value_of(const strut_quantities *q, const meter *m) {
-  return strut_program_evaluate(m->definition, m->index, q->columns.value, q->stack);
+  return strut_quantity_program_evaluate(m->definition, m->index, q->columns.value, q->stack);
 }
 
 static stretch begin_stretch(double time, double value, double origin) {
@@ -308,7 +308,7 @@ static void fill(strut_quantities *q, meter *m, strut_measured *to) {
   bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
   double per = take == STRUT_TAKE_RATE ? q->time - q->begin : 1.0;
-  strut_magnitude made = strut_program_magnitude(m->definition, m->index, q->sizes, q->size_stack);
+  strut_magnitude made = strut_quantity_program_magnitude(m->definition, m->index, q->sizes, q->size_stack);
   double size = fmax(made.size, m->largest);
   if (!isfinite(m->result)) return;
   to->value = m->result;

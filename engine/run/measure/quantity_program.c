@@ -65,7 +65,7 @@ static int operands(strut_operation operation) {
   return counts[operation];
 }
 
-double strut_program_evaluate(const strut_quantity_definition *d, const size_t *index,
+double strut_quantity_program_evaluate(const strut_quantity_definition *d, const size_t *index,
                               const double *value, double *stack) {
   size_t top = 0;
   for (size_t i = 0; i < d->length; i++) {
@@ -134,7 +134,7 @@ static strut_magnitude combine(strut_operation operation, strut_magnitude a, str
                            carried(operation, a.size, b.size, a.noise, b.noise)};
 }
 
-strut_magnitude strut_program_magnitude(const strut_quantity_definition *d, const size_t *index,
+strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *d, const size_t *index,
                                         const strut_magnitude *value, strut_magnitude *stack) {
   size_t top = 0;
   for (size_t i = 0; i < d->length; i++) {

@@ -13,8 +13,8 @@ enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
 static const double GROWTH = 1.0, GROWTH_RK4 = 4.0, HOPELESS = 16.0;
 
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
-static void apply_members(const strut_model *model, const strut_state *state, strut_guard *g,
-                          const strut_guard_watch *w) {
+static void apply_members(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
+                          const strut_monitored_set *w) {
   const strut_member_table *t = &model->members;
   const double *q = state->q, *x = w->motion;
   double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
@@ -33,8 +33,8 @@ static void apply_members(const strut_model *model, const strut_state *state, st
   }
 }
 
-static void apply_contacts(const strut_model *model, const strut_state *state, strut_guard *g,
-                           const strut_guard_watch *w) {
+static void apply_contacts(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
+                           const strut_monitored_set *w) {
   const strut_contact_table *c = &model->contacts;
   double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
   for (int32_t i = 0; i < c->count; i++) {
@@ -48,7 +48,7 @@ static void apply_contacts(const strut_model *model, const strut_state *state, s
 }
 
 /* So that no motion is left out for ever. */
-static void stir(const strut_model *model, strut_guard *g, strut_guard_watch *w, double size) {
+static void stir(const strut_model *model, strut_step_limit_monitor *g, strut_monitored_set *w, double size) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
     g->noise = g->noise * 6364136223846793005u + 1442695040888963407u;
     if (!model->fixed[i]) w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
@@ -59,8 +59,8 @@ static void stir(const strut_model *model, strut_guard *g, strut_guard_watch *w,
  * One step of the power iteration: the motion's quotient, which lies below the eigenvalue. The motion
  * is the inverse mass times the last image, so that its size in the mass is known.
  */
-static void iterate(const strut_model *model, const strut_state *state, strut_guard *g,
-                    strut_guard_watch *w) {
+static void iterate(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
+                    strut_monitored_set *w) {
   int32_t n = 2 * model->node_count;
   double product = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
   memset(g->image, 0, (size_t)model->length * sizeof *g->image);
@@ -89,21 +89,21 @@ static void iterate(const strut_model *model, const strut_state *state, strut_gu
  * A shape's own limit; none where memory is out. Where only a bound of it is to be had, and the
  * motions watched are those of this shape, no less than they say: a bound alone is no reason to stop.
  */
-static double limit_at(const strut_model *model, const strut_guard *g, const double *q,
+static double limit_at(const strut_model *model, const strut_step_limit_monitor *g, const double *q,
                        const double *rest, bool watched) {
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
-  if (strut_step_limit_at(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
+  if (strut_step_limit_at_shape(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
   double bound = limit.of[g->method->region], seen = HUGE_VAL;
   if (!limit.bound || !watched) return bound;
   for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->watch[i].strength);
   return fmax(bound, seen);
 }
 
-static void compute(const strut_model *model, const strut_state *state, strut_guard *g) {
+static void compute(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g) {
   g->known_limit = limit_at(model, g, state->q, state->rest, true);
   for (int i = 0; i < g->count; i++) {
-    strut_guard_watch *w = &g->watch[i];
+    strut_monitored_set *w = &g->watch[i];
     w->known = w->strength;
     /* the limit goes down with 1/strength at most: so far it must rise to bring it to the step */
     w->alarm = fmax(1.0, w->strength * fmax(1.01, 0.99 * g->known_limit / g->step));
@@ -111,7 +111,7 @@ static void compute(const strut_model *model, const strut_state *state, strut_gu
 }
 
 /* The step is too large now, and has been for so many steps. */
-static void note_below(strut_guard *g, double time, int64_t steps) {
+static void note_below(strut_step_limit_monitor *g, double time, int64_t steps) {
   double limit = g->known_limit;
   double growth = g->method->region == STRUT_REGION_RK4 ? GROWTH_RK4 : GROWTH;
   if (!(g->lowest > 0.0)) g->first_time = time;
@@ -122,13 +122,13 @@ static void note_below(strut_guard *g, double time, int64_t steps) {
   g->hopeless = g->hopeless || g->grown > HOPELESS;
 }
 
-void strut_guard_look(const strut_model *model, const strut_state *state, strut_guard *g) {
+void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g) {
   int64_t steps = state->step - g->last;
   bool again = false;
   g->last = state->step;
   g->next = state->step + g->every;
   for (int i = 0; i < g->count; i++) {
-    strut_guard_watch *w = &g->watch[i];
+    strut_monitored_set *w = &g->watch[i];
     stir(model, g, w, 1e-6);
     for (int k = 0; k < LOOK; k++) iterate(model, state, g, w);
     again = again || w->strength >= w->alarm || (g->below && w->strength < 0.99 * w->known);
@@ -144,21 +144,21 @@ void strut_guard_look(const strut_model *model, const strut_state *state, strut_
     g->below = false;
 }
 
-double strut_guard_last_limit(const strut_model *model, const strut_guard *g) {
+double strut_step_limit_monitor_last_limit(const strut_model *model, const strut_step_limit_monitor *g) {
   return g->count > 0 ? limit_at(model, g, g->shape, g->rest, false) : HUGE_VAL;
 }
 
-void strut_guard_blame(const strut_model *model, const strut_state *state, strut_guard *g) {
+void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g) {
   if (g->count == 0) return;
-  double before = strut_guard_last_limit(model, g);
+  double before = strut_step_limit_monitor_last_limit(model, g);
   g->known_limit = fmin(before, limit_at(model, g, state->q, state->rest, false));
   if (g->known_limit < g->step) note_below(g, (double)g->last * g->step, 0);
 }
 
-bool strut_guard_create(const strut_model *model, strut_state *state,
-                        const strut_integrator *method, double step, strut_guard *guard) {
+bool strut_step_limit_monitor_create(const strut_model *model, strut_state *state,
+                        const strut_integrator *method, double step, strut_step_limit_monitor *guard) {
   bool rk4 = method->region == STRUT_REGION_RK4, euler = method->region == STRUT_REGION_EULER;
-  *guard = (strut_guard){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
+  *guard = (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
   if (method->region == STRUT_REGION_ALL || (model->plan & STRUT_TERM_RIGID)) return true;
   guard->known_limit = HUGE_VAL;
   guard->count = rk4 ? 2 : 1;
@@ -184,7 +184,7 @@ bool strut_guard_create(const strut_model *model, strut_state *state,
   return true;
 }
 
-strut_status strut_guard_fail(const strut_guard *g, const strut_state *state, double start_limit,
+strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *g, const strut_state *state, double start_limit,
                               strut_error *error) {
   const char *name = g->method->name;
   if (g->lowest > 0.0)

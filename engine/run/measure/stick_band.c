@@ -110,7 +110,7 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
   return band->a && band->scratch && band->watch && band->ties;
 }
 
-void strut_stick_band_look(const strut_model *model, const strut_state *state,
+void strut_stick_band_sample(const strut_model *model, const strut_state *state,
                            strut_stick_band *band) {
   const strut_contact_table *c = &model->contacts;
   if (!band->watch) return;
@@ -121,7 +121,7 @@ void strut_stick_band_look(const strut_model *model, const strut_state *state,
   if (ask) strut_mass_solve(model, state->force, band->a, band->scratch);
   for (int32_t i = 0; i < c->count; i++) {
     const double *q = state->q + c->at[i], *v = state->v + c->at[i], *a = band->a + c->at[i];
-    strut_band_watch *w = &band->watch[i];
+    strut_stick_band_monitor *w = &band->watch[i];
     if (!(q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1] < 0.0)) continue;
     double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
     if (!ask || fabs(slip) < c->entry[i].stick_velocity) continue;
@@ -134,7 +134,7 @@ double strut_stick_band_missed(const strut_model *model, const strut_stick_band 
                                int32_t contact) {
   const strut_contact_entry *e = &model->contacts.entry[contact];
   if (!band->watch || e->law != STRUT_FRICTION_KARNOPP) return 0.0;
-  const strut_band_watch *w = &band->watch[contact];
+  const strut_stick_band_monitor *w = &band->watch[contact];
   double needed = w->sliding >= LEAST ? w->change / w->sliding : 0.0;
   double least = e->mu_static > e->mu_kinetic ? SURE : ACCIDENT;
   return e->stick_velocity < least * needed ? needed : 0.0;

@@ -11,10 +11,10 @@
 #include "engine/integrate/integrator.h"
 
 /** What is known of one contact. */
-typedef struct strut_band_watch {
+typedef struct strut_stick_band_monitor {
   int32_t sliding; /* looks at which it touched and slid */
   double change;   /* |a| dt along the ground, summed over them [m/s] */
-} strut_band_watch;
+} strut_stick_band_monitor;
 
 /**
  * A member between two nodes that stick: in its band each creeps at a speed of its own, which strains
@@ -31,7 +31,7 @@ typedef struct strut_band_tie {
 typedef struct strut_stick_band {
   double step; /* [s] */
   int looks;
-  strut_band_watch *watch; /* (contacts); NULL: nothing to watch */
+  strut_stick_band_monitor *watch; /* (contacts); NULL: nothing to watch */
   double *a, *scratch;     /* (length) */
   strut_band_tie *ties;    /* (tie_count) */
   int32_t tie_count;
@@ -50,7 +50,7 @@ STRUT_API double strut_stick_band_needed(const strut_model *model, const strut_i
 bool strut_stick_band_create(const strut_model *model, strut_state *state,
                              const strut_integrator *method, double step, strut_stick_band *band);
 /** Between steps, now and then: reads slip, and from the last forces the acceleration. */
-void strut_stick_band_look(const strut_model *model, const strut_state *state,
+void strut_stick_band_sample(const strut_model *model, const strut_state *state,
                            strut_stick_band *band);
 /**
  * The mean |a| dt of a contact while it slid [m/s], where its band is so much narrower that this

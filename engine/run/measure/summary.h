@@ -85,11 +85,11 @@ typedef struct strut_accuracy_summary {
 } strut_accuracy_summary;
 
 /** The largest stable step of the shapes that a run went through, where it fell below the step. */
-typedef struct strut_limit_fell {
+typedef struct strut_step_limit_violation {
   double limit, time; /* the lowest [s], and when that was [s]; limit 0: it never was */
   double since;       /* when it first was [s] */
   int64_t steps;      /* taken below it, by looks every so many steps */
-} strut_limit_fell;
+} strut_step_limit_violation;
 
 /** What a user must know of a result beside its figures: once per cause. */
 typedef struct strut_warning {
@@ -123,7 +123,7 @@ typedef struct strut_summary {
   int64_t events;                   /* switches located in time; 0 with a method that locates none */
   char method[32];                  /* that ran */
   double step, step_limit; /* [s]; step_limit is INFINITY where nothing limits it */
-  strut_limit_fell limit_fell;
+  strut_step_limit_violation limit_fell;
   double wall_time;        /* seconds spent stepping; never written into a file */
   size_t node_count, contact_count;
   const char **node_names; /* (node_count) names owned by the scene */

@@ -36,7 +36,7 @@ static double last_change(const strut_scene *scene) {
 }
 
 /* Do all signals that go on for ever repeat themselves after n drive periods? */
-static bool drives_repeat(const strut_watch *w, int32_t n) {
+static bool drives_repeat(const strut_steady_detector *w, int32_t n) {
   const strut_scene *scene = w->model->scene;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
@@ -47,11 +47,11 @@ static bool drives_repeat(const strut_watch *w, int32_t n) {
   return true;
 }
 
-strut_status strut_watch_create(const strut_model *model, double period, double begin,
-                                strut_watch *w) {
+strut_status strut_steady_detector_create(const strut_model *model, double period, double begin,
+                                strut_steady_detector *w) {
   const strut_steady *wanted = &model->scene->experiment.steady;
   size_t both = 2 * (size_t)model->length;
-  *w = (strut_watch){
+  *w = (strut_steady_detector){
       .model = model,
       .period = period,
       .tolerance = wanted->tolerance,
@@ -71,18 +71,18 @@ strut_status strut_watch_create(const strut_model *model, double period, double 
   w->least_irregular = wanted->mean_tolerance > 0.0 ? LEAST_IRREGULAR / 2 : LEAST_IRREGULAR;
   w->result.kind = STRUT_MOTION_TRANSIENT;
   if (ready) return STRUT_OK;
-  strut_watch_free(w);
+  strut_steady_detector_free(w);
   return STRUT_NO_MEMORY;
 }
 
-static void take(const strut_state *state, const strut_watch *w, double *out) {
+static void take(const strut_state *state, const strut_steady_detector *w, double *out) {
   size_t length = (size_t)w->model->length;
   memcpy(out, state->q, length * sizeof *out);
   memcpy(out + length, state->v, length * sizeof *out);
 }
 
 /* Mean shift along the ground between two states; 0 where there is no such freedom. */
-static double travel(const strut_watch *w, const double *from, const double *to) {
+static double travel(const strut_steady_detector *w, const double *from, const double *to) {
   const double *t = w->model->contacts.tangent;
   double sum = 0.0;
   int32_t n = w->model->node_count;
@@ -92,7 +92,7 @@ static double travel(const strut_watch *w, const double *from, const double *to)
 }
 
 /* Largest difference of two shapes: positions over the size, velocities over size times 2 pi f. */
-static double distance(const strut_watch *w, const double *a, const double *b) {
+static double distance(const strut_steady_detector *w, const double *a, const double *b) {
   const double *t = w->model->contacts.tangent;
   double along = travel(w, a, b), shift[2] = {along * t[0], along * t[1]};
   double size = w->model->size, speed = size * TURN / w->period, most = 0.0;
@@ -104,7 +104,7 @@ static double distance(const strut_watch *w, const double *a, const double *b) {
   return most;
 }
 
-void strut_watch_middle(const strut_state *state, strut_watch *w) { take(state, w, w->middle); }
+void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *w) { take(state, w, w->middle); }
 
 /*
  * What is left of a decay: the sum of the geometric series that goes on from the latest change. It is
@@ -121,7 +121,7 @@ static double remaining(const double *residual, int64_t now, int32_t n, int32_t 
 }
 
 /* From b to a along coordinate i, without the travel `along`, in sizes and sizes times 2 pi f. */
-static double step_of(const strut_watch *w, const double *a, const double *b, double along,
+static double step_of(const strut_steady_detector *w, const double *a, const double *b, double along,
                       int32_t i, double *speed) {
   int32_t length = w->model->length;
   double shift = w->travels ? along * w->model->contacts.tangent[i % 2] : 0.0;
@@ -133,7 +133,7 @@ static double step_of(const strut_watch *w, const double *a, const double *b, do
  * How far the present state is from where its repetitions go, if each is the same combination of the
  * two before: so is a decay, and so is a slow beat, whose changes may fall for a while and come back.
  */
-static double way_to_go(const strut_watch *w, int64_t now, int32_t n) {
+static double way_to_go(const strut_steady_detector *w, int64_t now, int32_t n) {
   const double *at[4];
   double along[3], sum[2][3] = {{0.0}};
   int32_t coordinates = 2 * w->model->node_count;
@@ -164,7 +164,7 @@ static double way_to_go(const strut_watch *w, int64_t now, int32_t n) {
  * Does something small grow under the motion that looks steady, in one coordinate or more? Its changes
  * then are each time larger by the same factor; what merely varies keeps no factor.
  */
-static bool something_grows(const strut_watch *w, int64_t now, int32_t n) {
+static bool something_grows(const strut_steady_detector *w, int64_t now, int32_t n) {
   const double *at[GROWTH + 2];
   double along[GROWTH + 1];
   if (now < (GROWTH + 1) * n || (GROWTH + 1) * n >= STRUT_RING) return false;
@@ -183,13 +183,13 @@ static bool something_grows(const strut_watch *w, int64_t now, int32_t n) {
   return false;
 }
 
-static double mean_velocity(const strut_watch *w, int64_t now, int32_t periods) {
+static double mean_velocity(const strut_steady_detector *w, int64_t now, int32_t periods) {
   double dx = w->place[now % STRUT_RING] - w->place[(now - periods) % STRUT_RING];
   return dx / (periods * w->period);
 }
 
 /* Neighbouring periods still grow alike: a transient may look as if it came back after n of them. */
-static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
+static bool still_decays(const strut_steady_detector *w, int64_t now, int32_t n) {
   int32_t over = 2 * n > w->successive ? 2 * n : w->successive;
   if (now <= over + n) return true;
   double last = 0.0,
@@ -202,7 +202,7 @@ static bool still_decays(const strut_watch *w, int64_t now, int32_t n) {
 }
 
 /* Does the motion repeat itself every n periods? */
-static bool repeats_itself(strut_watch *w, int64_t now, int k) {
+static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
   int32_t n = repeats[k], over = w->successive;
   if (now < 2 * n + over || (double)now < w->not_before + n + over) return false;
   if (!drives_repeat(w, n)) return false;
@@ -237,7 +237,7 @@ static bool repeats_itself(strut_watch *w, int64_t now, int k) {
 }
 
 /* Of the whole run, in stretches of equal length that double when there is no more room. */
-static void mark(strut_watch *w, int64_t now, double x) {
+static void mark(strut_steady_detector *w, int64_t now, double x) {
   w->wander += now > 0 ? w->residual[0][now % STRUT_RING] : 0.0;
   if (now % w->stride != 0) return;
   if (w->marks == STRUT_MARKS) {
@@ -252,7 +252,7 @@ static void mark(strut_watch *w, int64_t now, double x) {
 }
 
 /* Mean velocity over the latest 8 batches of `each` stretches, and its interval by Student's t. */
-static double batch_mean(const strut_watch *w, int32_t each, double *interval, double *trend) {
+static double batch_mean(const strut_steady_detector *w, int32_t each, double *interval, double *trend) {
   double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
   double time = each * (double)w->stride * w->period;
   for (int i = 0; i < BATCHES; i++) {
@@ -274,7 +274,7 @@ static double batch_mean(const strut_watch *w, int32_t each, double *interval, d
  * Do periods differ from their neighbours as much in the latest 8 batches of `each` stretches as in the
  * 8 before: to a fiftieth, or as nearly as the batches' own scatter lets one say?
  */
-static bool wanders_evenly(const strut_watch *w, int32_t each) {
+static bool wanders_evenly(const strut_steady_detector *w, int32_t each) {
   double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
   for (int i = 0; i < 2 * BATCHES; i++) {
     int32_t to = w->marks - 1 - i * each;
@@ -292,7 +292,7 @@ static bool wanders_evenly(const strut_watch *w, int32_t each) {
  * A motion that never agreed, but whose mean is known: over the last half and the last quarter of
  * the run alike, without trend, while periods differ from their neighbours as much as before.
  */
-static void judge_irregular(strut_watch *w) {
+static void judge_irregular(strut_steady_detector *w) {
   int32_t stretches = w->marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
   int64_t seen = w->seen - 1;
   if (quarter < 1 || seen < w->least_irregular || (double)seen < 2.0 * w->not_before) return;
@@ -308,7 +308,7 @@ static void judge_irregular(strut_watch *w) {
   w->velocity = mean;
 }
 
-bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
+bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *w) {
   int64_t now = w->seen++;
   double *latest = w->state[now % STRUT_RING];
   take(state, w, latest);
@@ -328,7 +328,7 @@ bool strut_watch_period(const strut_state *state, double x, strut_watch *w) {
   return w->known;
 }
 
-void strut_watch_finish(strut_watch *w, strut_summary *summary) {
+void strut_steady_detector_finish(strut_steady_detector *w, strut_summary *summary) {
   if (!w->known) judge_irregular(w);
   summary->steady = w->result;
   if (!w->known) {
@@ -346,4 +346,4 @@ void strut_watch_finish(strut_watch *w, strut_summary *summary) {
   summary->velocity_spread = sqrt(square / (w->successive - 1));
 }
 
-void strut_watch_free(strut_watch *w) { strut_arena_free(&w->arena); }
+void strut_steady_detector_free(strut_steady_detector *w) { strut_arena_free(&w->arena); }

@@ -18,7 +18,7 @@
 
 enum { STRUT_RING = 32, STRUT_REPEATS = 6, STRUT_LONGEST_REPEAT = 8, STRUT_MARKS = 129 };
 
-typedef struct strut_watch {
+typedef struct strut_steady_detector {
   const strut_model *model;
   double period;            /* [s] */
   double tolerance, floor;  /* [1], [m/s] */
@@ -43,17 +43,17 @@ typedef struct strut_watch {
   double velocity, spread;  /* over the latest repetitions [m/s] */
   bool known;
   strut_arena arena;
-} strut_watch;
+} strut_steady_detector;
 
 /** For a run from `begin` [s] by periods of `period` [s]. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_watch_create(const strut_model *model, double period, double begin,
-                                strut_watch *watch);
+strut_status strut_steady_detector_create(const strut_model *model, double period, double begin,
+                                strut_steady_detector *watch);
 /** Within a period, once: how far the shape moves. */
-void strut_watch_middle(const strut_state *state, strut_watch *watch);
+void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *watch);
 /** At the end of a period, the start included. x: of the measured point. True once it is steady. */
-bool strut_watch_period(const strut_state *state, double x, strut_watch *watch);
+bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *watch);
 /** Velocity, spread and what was found; whether a motion that did not repeat itself is irregular. */
-void strut_watch_finish(strut_watch *watch, strut_summary *summary);
-void strut_watch_free(strut_watch *watch);
+void strut_steady_detector_finish(strut_steady_detector *watch, strut_summary *summary);
+void strut_steady_detector_free(strut_steady_detector *watch);
 
 #endif

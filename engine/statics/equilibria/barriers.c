@@ -5,20 +5,20 @@
 #include <string.h>
 
 /* The first that stands in each of the landscape's minima, or -1. */
-static void represent(const strut_hunt *h, int32_t *of_state) {
+static void represent(const strut_equilibrium_search *h, int32_t *of_state) {
   for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
   for (size_t i = 0; i < h->count; i++) {
-    const strut_find *f = &h->finds[i];
-    if (f->e.fate != STRUT_FATE_STANDS || f->state < 0) continue;
+    const strut_candidate_equilibrium *f = &h->finds[i];
+    if (f->e.fate != STRUT_OUTCOME_STANDS || f->state < 0) continue;
     if (of_state[f->state] < 0) of_state[f->state] = (int32_t)i;
   }
 }
 
-static bool is_named(const strut_hunt *h, int32_t find) {
+static bool is_named(const strut_equilibrium_search *h, int32_t find) {
   return find >= 0 && strncmp(h->finds[find].e.name, "unnamed-", 8) != 0;
 }
 
-static bool next_to_named(const strut_hunt *h, const int32_t *of_state, int32_t s) {
+static bool next_to_named(const strut_equilibrium_search *h, const int32_t *of_state, int32_t s) {
   for (int32_t t = 0; t < h->landscape.minima; t++) {
     if (t == s || !is_named(h, of_state[t])) continue;
     if (strut_landscape_direct(&h->landscape, t, s) >= 0) return true;
@@ -27,7 +27,7 @@ static bool next_to_named(const strut_hunt *h, const int32_t *of_state, int32_t 
 }
 
 /* States that enter the table, at most STRUT_MOST_BARRIERS_BETWEEN; their count. */
-static int choose(const strut_hunt *h, const int32_t *of_state, int32_t *chosen) {
+static int choose(const strut_equilibrium_search *h, const int32_t *of_state, int32_t *chosen) {
   int32_t minima = h->landscape.minima;
   bool names = false;
   int count = 0;
@@ -41,14 +41,14 @@ static int choose(const strut_hunt *h, const int32_t *of_state, int32_t *chosen)
   return count;
 }
 
-static int32_t find_saddle(const strut_hunt *h, int32_t saddle) {
+static int32_t find_saddle(const strut_equilibrium_search *h, int32_t saddle) {
   for (size_t i = 0; i < h->count; i++)
     if (!h->finds[i].e.supports && h->finds[i].number == saddle) return (int32_t)i;
   return -1;
 }
 
 /* The barrier from one of the landscape's minima to another; false: out of memory. */
-static bool fill(const strut_hunt *h, const int32_t *of_state, int32_t a, int32_t b, int32_t way,
+static bool fill(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a, int32_t b, int32_t way,
                  strut_barrier *barrier) {
   const strut_landscape *l = &h->landscape;
   const strut_critical_point *points = l->set.points;
@@ -67,7 +67,7 @@ static bool fill(const strut_hunt *h, const int32_t *of_state, int32_t a, int32_
   return true;
 }
 
-strut_status strut_barriers_find(strut_hunt *h) {
+strut_status strut_barriers_find(strut_equilibrium_search *h) {
   const strut_landscape *l = &h->landscape;
   int32_t chosen[STRUT_MOST_BARRIERS_BETWEEN];
   int32_t *of_state = strut_allocate((size_t)l->minima, sizeof *of_state);
@@ -78,7 +78,7 @@ strut_status strut_barriers_find(strut_hunt *h) {
   int count = good ? choose(h, of_state, chosen) : 0;
   for (int a = 0; a < count; a++)
     for (int b = 0; b < count && good; b++) {
-      int32_t way = a == b ? -1 : strut_landscape_way(l, chosen[a], chosen[b]);
+      int32_t way = a == b ? -1 : strut_landscape_path(l, chosen[a], chosen[b]);
       if (way < 0) continue;
       good = fill(h, of_state, chosen[a], chosen[b], way,
                   &h->out->barriers[h->out->barrier_count++]);

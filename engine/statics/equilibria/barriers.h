@@ -14,6 +14,6 @@ enum { STRUT_MOST_BARRIERS_BETWEEN = 12 };
  * Fills the hunt's barriers between every two equilibria that stand, of which configurations name
  * at least some: those named and those one pass away from them; without names the lowest.
  */
-strut_status strut_barriers_find(strut_hunt *hunt);
+strut_status strut_barriers_find(strut_equilibrium_search *hunt);
 
 #endif

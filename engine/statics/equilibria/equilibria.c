@@ -11,12 +11,12 @@
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
-static strut_status no_memory(strut_hunt *h) {
+static strut_status no_memory(strut_equilibrium_search *h) {
   return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
 }
 
 /* The largest doubt counts. */
-static void count_starts(strut_hunt *h, const strut_critical_set *set) {
+static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
   h->out->missed = fmax(h->out->missed, set->missed);
   h->out->missed_below = fmax(h->out->missed_below, set->missed_below);
@@ -26,7 +26,7 @@ static void count_starts(strut_hunt *h, const strut_critical_set *set) {
 }
 
 /* The level scene with all shapes laid on the set, its start too: `placed` shares the rest. */
-static double *place_shapes(const strut_hunt *h, const strut_node_set *set, strut_scene *placed,
+static double *place_shapes(const strut_equilibrium_search *h, const strut_node_set *set, strut_scene *placed,
                             size_t length, strut_arena *arena) {
   const strut_scene *flat = &h->flat.scene;
   size_t nodes = flat->node_count, shapes = flat->configuration_count;
@@ -49,22 +49,22 @@ static double *place_shapes(const strut_hunt *h, const strut_node_set *set, stru
   return shape;
 }
 
-static strut_status add_points(strut_hunt *h, const strut_critical_set *set,
+static strut_status add_points(strut_equilibrium_search *h, const strut_critical_set *set,
                                const strut_potential *potential, const uint8_t *held,
                                const strut_node_set *supports, int32_t group) {
   for (size_t i = 0; i < set->count; i++) {
-    int32_t at = strut_hunt_add(h);
+    int32_t at = strut_equilibrium_search_add(h);
     if (at < 0) return no_memory(h);
     h->finds[at].group = group;
     h->finds[at].number = (int32_t)i;
     strut_status status =
-        strut_hunt_fill(h, &h->finds[at], potential, held, supports, &set->points[i]);
+        strut_equilibrium_search_fill(h, &h->finds[at], potential, held, supports, &set->points[i]);
     if (status) return status;
   }
   return STRUT_OK;
 }
 
-static strut_status search_held(strut_hunt *h, const strut_potential *potential,
+static strut_status search_held(strut_equilibrium_search *h, const strut_potential *potential,
                                 const uint8_t *held, const double *shape,
                                 const strut_node_set *set, int32_t group, strut_arena *arena) {
   const strut_equilibria_options *o = h->options;
@@ -87,7 +87,7 @@ static strut_status search_held(strut_hunt *h, const strut_potential *potential,
 }
 
 /* All solutions of (12) on one set of supports. */
-static strut_status search_on(strut_hunt *h, int32_t group) {
+static strut_status search_on(strut_equilibrium_search *h, int32_t group) {
   const strut_node_set *set = &h->supports.sets[group];
   strut_arena scratch = {0};
   strut_scene placed;
@@ -113,7 +113,7 @@ static strut_status search_on(strut_hunt *h, int32_t group) {
   return status;
 }
 
-static strut_status search_all_sets(strut_hunt *h) {
+static strut_status search_all_sets(strut_equilibrium_search *h) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < h->supports.count && !status; i++) {
     const volatile sig_atomic_t *interrupt = h->options->interrupt;
@@ -125,33 +125,33 @@ static strut_status search_all_sets(strut_hunt *h) {
 }
 
 /* True where a support solution stands for that minimum of the real ground. */
-static bool stood_for(const strut_hunt *h, int32_t state) {
+static bool stood_for(const strut_equilibrium_search *h, int32_t state) {
   for (size_t i = 0; i < h->count; i++)
-    if (h->finds[i].e.supports && h->finds[i].e.fate == STRUT_FATE_STANDS &&
+    if (h->finds[i].e.supports && h->finds[i].e.fate == STRUT_OUTCOME_STANDS &&
         h->finds[i].state == state)
       return true;
   return false;
 }
 
 /* The real ground's own: stable ones that no supports stand for, and its saddles. */
-static strut_status add_ground(strut_hunt *h) {
+static strut_status add_ground(strut_equilibrium_search *h) {
   const strut_critical_set *set = &h->landscape.set;
   count_starts(h, set);
   for (size_t i = 0; i < set->count; i++) {
     if ((int32_t)i < h->landscape.minima && stood_for(h, (int32_t)i)) continue;
-    int32_t at = strut_hunt_add(h);
+    int32_t at = strut_equilibrium_search_add(h);
     if (at < 0) return no_memory(h);
-    strut_find *f = &h->finds[at];
+    strut_candidate_equilibrium *f = &h->finds[at];
     strut_equilibrium *e = &f->e;
     f->group = (int32_t)h->supports.count;
-    strut_status status = strut_hunt_fill(h, f, h->world, NULL, NULL, &set->points[i]);
+    strut_status status = strut_equilibrium_search_fill(h, f, h->world, NULL, NULL, &set->points[i]);
     if (status) return status;
     f->number = (int32_t)i;
     f->state = (int32_t)i < h->landscape.minima ? (int32_t)i : -1;
-    e->fate = e->point.label == STRUT_STABLE   ? STRUT_FATE_STANDS
-              : e->point.label == STRUT_FLOPPY ? STRUT_FATE_FLOPPY
-                                               : STRUT_FATE_UNSTABLE;
-    if (e->fate == STRUT_FATE_UNSTABLE) continue;
+    e->fate = e->point.label == STRUT_STABLE   ? STRUT_OUTCOME_STANDS
+              : e->point.label == STRUT_FLOPPY ? STRUT_OUTCOME_FLOPPY
+                                               : STRUT_OUTCOME_UNSTABLE;
+    if (e->fate == STRUT_OUTCOME_UNSTABLE) continue;
     e->rest = e->point.q;
     e->rest_energy = e->energy;
     e->rest_residual = e->point.residual;
@@ -161,8 +161,8 @@ static strut_status add_ground(strut_hunt *h) {
 
 /* Within a group those that stand first, then stable by energy, then saddles, then maxima. */
 static int before(const void *pa, const void *pb) {
-  const strut_find *a = pa, *b = pb;
-  int stands_a = a->e.fate == STRUT_FATE_STANDS, stands_b = b->e.fate == STRUT_FATE_STANDS;
+  const strut_candidate_equilibrium *a = pa, *b = pb;
+  int stands_a = a->e.fate == STRUT_OUTCOME_STANDS, stands_b = b->e.fate == STRUT_OUTCOME_STANDS;
   if (a->group != b->group) return a->group < b->group ? -1 : 1;
   if (stands_a != stands_b) return stands_b - stands_a;
   if (a->e.point.label != b->e.point.label) return (int)a->e.point.label - (int)b->e.point.label;
@@ -170,23 +170,23 @@ static int before(const void *pa, const void *pb) {
   return memcmp(&a->e.point.found, &b->e.point.found, sizeof a->e.point.found);
 }
 
-static void link_ends(strut_hunt *h) {
+static void link_ends(strut_equilibrium_search *h) {
   for (size_t i = 0; i < h->count; i++) {
     strut_equilibrium *e = &h->finds[i].e;
-    if (e->fate == STRUT_FATE_STANDS) e->ends_as = (int32_t)i;
-    for (size_t k = 0; k < h->count && e->fate == STRUT_FATE_TIPS && e->ends_as < 0; k++)
-      if (h->finds[k].e.fate == STRUT_FATE_STANDS && h->finds[k].state == h->finds[i].state &&
+    if (e->fate == STRUT_OUTCOME_STANDS) e->ends_as = (int32_t)i;
+    for (size_t k = 0; k < h->count && e->fate == STRUT_OUTCOME_TIPS && e->ends_as < 0; k++)
+      if (h->finds[k].e.fate == STRUT_OUTCOME_STANDS && h->finds[k].state == h->finds[i].state &&
           h->finds[i].state >= 0)
         e->ends_as = (int32_t)k;
   }
 }
 
 /* What stands for point `number` of a search, in the list: on the ground what stands there. */
-static int32_t find_number(const strut_hunt *h, int32_t group, int32_t number) {
+static int32_t find_number(const strut_equilibrium_search *h, int32_t group, int32_t number) {
   for (size_t i = 0; i < h->count && number >= 0; i++) {
-    const strut_find *f = &h->finds[i];
+    const strut_candidate_equilibrium *f = &h->finds[i];
     bool there = group == (int32_t)h->supports.count
-                     ? f->state == number && f->e.fate == STRUT_FATE_STANDS
+                     ? f->state == number && f->e.fate == STRUT_OUTCOME_STANDS
                      : false;
     if (there || (f->group == group && f->number == number)) return (int32_t)i;
   }
@@ -194,25 +194,25 @@ static int32_t find_number(const strut_hunt *h, int32_t group, int32_t number) {
 }
 
 /* Where saddles lead down to: from numbers in their search to places in the list. */
-static void link_saddles(strut_hunt *h) {
+static void link_saddles(strut_equilibrium_search *h) {
   for (size_t i = 0; i < h->count; i++) {
-    strut_find *f = &h->finds[i];
+    strut_candidate_equilibrium *f = &h->finds[i];
     bool leads = f->e.point.label == STRUT_SADDLE && f->e.point.negative == 1;
     for (int k = 0; k < 2; k++)
       f->e.point.down[k] = leads ? find_number(h, f->group, f->e.point.down[k]) : -1;
   }
 }
 
-static void turn_back(strut_hunt *h, strut_equilibrium *e) {
+static void turn_back(strut_equilibrium_search *h, strut_equilibrium *e) {
   size_t nodes = (size_t)h->model->node_count;
-  strut_flat_to_original(&h->flat, nodes, e->point.q);
-  strut_flat_to_original(&h->flat, nodes, e->point.softest);
-  strut_flat_to_original(&h->flat, nodes, e->reaction[0]);
-  if (e->rest && e->rest != e->point.q) strut_flat_to_original(&h->flat, nodes, e->rest);
+  strut_level_frame_to_original(&h->flat, nodes, e->point.q);
+  strut_level_frame_to_original(&h->flat, nodes, e->point.softest);
+  strut_level_frame_to_original(&h->flat, nodes, e->reaction[0]);
+  if (e->rest && e->rest != e->point.q) strut_level_frame_to_original(&h->flat, nodes, e->rest);
 }
 
 /* Sorts, names, links and words the finds, and hands them over. */
-static strut_status finish(strut_hunt *h) {
+static strut_status finish(strut_equilibrium_search *h) {
   strut_arena *arena = &h->out->arena;
   if (h->count) qsort(h->finds, h->count, sizeof *h->finds, before);
   strut_equilibrium **list = strut_arena_allocate(arena, h->count, sizeof *list);
@@ -222,7 +222,7 @@ static strut_status finish(strut_hunt *h) {
   if (strut_name_equilibria(h->model, h->count, list, arena)) return no_memory(h);
   link_ends(h);
   link_saddles(h);
-  strut_hunt_say(h, h->finds, h->count);
+  strut_report_candidates(h, h->finds, h->count);
   strut_status status = STRUT_OK;
   if (h->explored && !h->options->standing_only) status = strut_barriers_find(h);
   for (size_t i = 0; i < h->count; i++) {
@@ -234,7 +234,7 @@ static strut_status finish(strut_hunt *h) {
 }
 
 /* Nothing presses on the ground where no force acts across it and nothing is held there. */
-static bool is_pressed(const strut_hunt *h) {
+static bool is_pressed(const strut_equilibrium_search *h) {
   double scale = 1e-12 * h->world->force_scale, sum = 0.0;
   for (int32_t i = 0; i < h->model->node_count; i++) {
     if (h->model->fixed[2 * i + 1]) return true;
@@ -243,17 +243,17 @@ static bool is_pressed(const strut_hunt *h) {
   return fabs(sum) > scale;
 }
 
-static strut_status make_world(strut_hunt *h, bool ground) {
+static strut_status make_world(strut_equilibrium_search *h, bool ground) {
   strut_potential_free(h->world);
   h->world = NULL;
   h->on_ground = ground;
   return strut_potential_create(h->model, NULL, ground, &h->world, h->error);
 }
 
-static strut_status prepare(strut_hunt *h, const strut_model *original) {
+static strut_status prepare(strut_equilibrium_search *h, const strut_model *original) {
   const strut_equilibria_options *o = h->options;
   h->out->seed = o->seed ? *o->seed : original->scene->search.seed;
-  strut_status status = strut_flat_create(original->scene, &h->flat, h->error);
+  strut_status status = strut_level_frame_create(original->scene, &h->flat, h->error);
   if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
   if (!status) status = make_world(h, h->model && h->model->contacts.count > 0);
   if (!status && h->on_ground && !is_pressed(h)) status = make_world(h, false);
@@ -271,17 +271,17 @@ static strut_status prepare(strut_hunt *h, const strut_model *original) {
   return status;
 }
 
-static strut_status search(strut_hunt *h) {
+static strut_status search(strut_equilibrium_search *h) {
   if (h->world->n == 0) {
     strncpy(h->out->remark, "nothing can move: the scene holds every node",
             sizeof h->out->remark - 1);
     return STRUT_OK;
   }
-  h->unrest = strut_hunt_look_for_unrest(h);
-  if (h->unrest == STRUT_UNREST_FALLS) return STRUT_OK;
+  h->unrest = strut_equilibrium_search_instability(h);
+  if (h->unrest == STRUT_INSTABILITY_FALLS) return STRUT_OK;
   strut_status status = strut_relaxer_create(h->world, &h->relaxer, h->error);
   if (!status) status = search_all_sets(h);
-  if (!status) status = strut_hunt_follow(h);
+  if (!status) status = strut_equilibrium_search_follow(h);
   if (!status && h->explored) status = add_ground(h);
   return status;
 }
@@ -293,8 +293,8 @@ static int32_t find_nearest(const strut_model *model, const strut_equilibria *al
   int32_t nearest = -1;
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
-    bool unstable = !e->supports && e->fate == STRUT_FATE_UNSTABLE;
-    if (e->fate != STRUT_FATE_STANDS && !unstable) continue;
+    bool unstable = !e->supports && e->fate == STRUT_OUTCOME_UNSTABLE;
+    if (e->fate != STRUT_OUTCOME_STANDS && !unstable) continue;
     const double *shape = unstable ? e->point.q : e->rest;
     double away = strut_shape_distance(model, q, shape, false, NULL);
     if (away < least) least = away, nearest = (int32_t)i;
@@ -303,7 +303,7 @@ static int32_t find_nearest(const strut_model *model, const strut_equilibria *al
 }
 
 /* Where the run of the scene starts, if it settles: that, too, is one of the equilibria. */
-static strut_status settle_start(strut_hunt *h, const strut_model *model) {
+static strut_status settle_start(strut_equilibrium_search *h, const strut_model *model) {
   double *q, time;
   strut_error trouble = {0};
   h->out->start = -1;
@@ -324,7 +324,7 @@ strut_status strut_equilibria_find(const strut_model *model,
                                    const strut_equilibria_options *options,
                                    strut_equilibria *equilibria, strut_error *error) {
   memset(equilibria, 0, sizeof *equilibria);
-  strut_hunt h = {.options = options, .out = equilibria, .error = error};
+  strut_equilibrium_search h = {.options = options, .out = equilibria, .error = error};
   strut_status status = prepare(&h, model);
   if (!status) status = search(&h);
   if (!status) status = finish(&h);
@@ -333,7 +333,7 @@ strut_status strut_equilibria_find(const strut_model *model,
   strut_relaxer_free(h.relaxer);
   strut_potential_free(h.world);
   strut_model_free(h.model);
-  strut_flat_free(&h.flat);
+  strut_level_frame_free(&h.flat);
   return status;
 }
 

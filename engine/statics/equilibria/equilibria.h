@@ -11,14 +11,14 @@
 #include "engine/run/measure/summary.h"
 #include "engine/statics/search/critical.h"
 
-typedef enum strut_fate {
-  STRUT_FATE_STANDS,       /* rests on the contacts it was found with */
-  STRUT_FATE_TIPS,         /* comes to rest elsewhere */
-  STRUT_FATE_BELOW_GROUND, /* set aside: nodes lie under the ground */
-  STRUT_FATE_UNSTABLE,     /* a saddle or maximum: not followed */
-  STRUT_FATE_FLOPPY,
-  STRUT_FATE_NO_REST       /* did not come to rest: falls, slides */
-} strut_fate;
+typedef enum strut_outcome {
+  STRUT_OUTCOME_STANDS,       /* rests on the contacts it was found with */
+  STRUT_OUTCOME_TIPS,         /* comes to rest elsewhere */
+  STRUT_OUTCOME_BELOW_GROUND, /* set aside: nodes lie under the ground */
+  STRUT_OUTCOME_UNSTABLE,     /* a saddle or maximum: not followed */
+  STRUT_OUTCOME_FLOPPY,
+  STRUT_OUTCOME_NO_REST       /* did not come to rest: falls, slides */
+} strut_outcome;
 
 /** One equilibrium: on held contacts (supports not NULL), or as the scene itself stands. */
 typedef struct strut_equilibrium {
@@ -29,7 +29,7 @@ typedef struct strut_equilibrium {
   double (*reaction)[2];          /* (node_count) of supports, the scene's own too [N] */
   uint8_t *below;                 /* (node_count) 1 where under the ground */
   double *member_force;           /* (member_count) tension positive [N] */
-  strut_fate fate;
+  strut_outcome fate;
   int32_t tips_over;              /* node about which it turns, or -1 */
   int32_t ends_as;                /* the equilibrium it ends in, or -1; itself if it stands */
   double *rest;                   /* (length) where it comes to rest on the real ground, or NULL */

@@ -10,16 +10,16 @@
 /* Depth and pull below these are rounding: in model sizes, in weights. */
 static const double DEEP = 1e-9, PULL = 1e-9;
 
-int32_t strut_hunt_add(strut_hunt *h) {
+int32_t strut_equilibrium_search_add(strut_equilibrium_search *h) {
   if (h->count == h->room) {
     size_t room = h->room ? 2 * h->room : 32;
-    strut_find *finds = strut_arena_allocate(&h->out->arena, room, sizeof *finds);
+    strut_candidate_equilibrium *finds = strut_arena_allocate(&h->out->arena, room, sizeof *finds);
     if (!finds) return -1;
     if (h->count) memcpy(finds, h->finds, h->count * sizeof *finds);
     h->finds = finds;
     h->room = room;
   }
-  h->finds[h->count] = (strut_find){.state = -1};
+  h->finds[h->count] = (strut_candidate_equilibrium){.state = -1};
   h->finds[h->count].e.tips_over = h->finds[h->count].e.ends_as = -1;
   return (int32_t)h->count++;
 }
@@ -30,7 +30,7 @@ static double *copied(strut_arena *arena, const double *from, size_t count) {
   return copy;
 }
 
-static bool copy_point(strut_hunt *h, const strut_critical_point *from, strut_critical_point *to) {
+static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *from, strut_critical_point *to) {
   strut_arena *arena = &h->out->arena;
   size_t length = (size_t)h->model->length;
   *to = *from;
@@ -51,8 +51,8 @@ static void measure_members(const strut_model *model, const double *q, double *f
 }
 
 /* What holds the held coordinates: minus the net force there. */
-static bool measure_reactions(strut_hunt *h, const strut_potential *potential,
-                              const uint8_t *held, strut_find *f) {
+static bool measure_reactions(strut_equilibrium_search *h, const strut_potential *potential,
+                              const uint8_t *held, strut_candidate_equilibrium *f) {
   double *force = strut_allocate((size_t)h->model->length, sizeof *force);
   if (!force) return false;
   strut_potential_force(potential, f->e.point.q, force);
@@ -68,7 +68,7 @@ static bool measure_reactions(strut_hunt *h, const strut_potential *potential,
   return true;
 }
 
-static void find_nodes_below(const strut_hunt *h, const uint8_t *held, strut_equilibrium *e) {
+static void find_nodes_below(const strut_equilibrium_search *h, const uint8_t *held, strut_equilibrium *e) {
   const strut_contact_table *c = &h->model->contacts;
   for (int32_t i = 0; i < c->count && h->on_ground; i++) {
     uint32_t at = c->at[i];
@@ -77,7 +77,7 @@ static void find_nodes_below(const strut_hunt *h, const uint8_t *held, strut_equ
   }
 }
 
-strut_status strut_hunt_fill(strut_hunt *h, strut_find *find, const strut_potential *potential,
+strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h, strut_candidate_equilibrium *find, const strut_potential *potential,
                              const uint8_t *held, const strut_node_set *set,
                              const strut_critical_point *point) {
   strut_arena *arena = &h->out->arena;
@@ -96,7 +96,7 @@ strut_status strut_hunt_fill(strut_hunt *h, strut_find *find, const strut_potent
   e->energy = strut_potential_energy(potential, e->point.q);
   measure_members(h->model, e->point.q, e->member_force);
   find_nodes_below(h, held, e);
-  if (!set) return strut_hunt_contacts(h, e->point.q, e);
+  if (!set) return strut_equilibrium_search_contacts(h, e->point.q, e);
   e->contacts = set->node;
   e->contact_count = (int32_t)set->count;
   e->normal = strut_arena_allocate(arena, set->count, sizeof *e->normal);
@@ -105,7 +105,7 @@ strut_status strut_hunt_fill(strut_hunt *h, strut_find *find, const strut_potent
   return STRUT_OK;
 }
 
-strut_status strut_hunt_contacts(strut_hunt *h, const double *q, strut_equilibrium *e) {
+strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, const double *q, strut_equilibrium *e) {
   const strut_contact_table *c = &h->model->contacts;
   size_t most = h->on_ground ? (size_t)c->count : 0;
   e->contacts = strut_arena_allocate(&h->out->arena, most, sizeof *e->contacts);

@@ -9,21 +9,21 @@
 /* It still stands as it stood if no node has moved further, in model sizes. */
 static const double AS_IT_STOOD = 0.02;
 
-static bool is_followed(const strut_hunt *h, const strut_find *f) {
-  return f->e.supports && f->e.fate == STRUT_FATE_STANDS && h->unrest == STRUT_UNREST_NONE;
+static bool is_followed(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
+  return f->e.supports && f->e.fate == STRUT_OUTCOME_STANDS && h->unrest == STRUT_INSTABILITY_NONE;
 }
 
-static strut_fate first_judgement(const strut_hunt *h, const strut_find *f) {
+static strut_outcome first_judgement(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
   const strut_equilibrium *e = &f->e;
-  if (e->point.label == STRUT_FLOPPY) return STRUT_FATE_FLOPPY;
-  if (e->point.label != STRUT_STABLE) return STRUT_FATE_UNSTABLE;
+  if (e->point.label == STRUT_FLOPPY) return STRUT_OUTCOME_FLOPPY;
+  if (e->point.label != STRUT_STABLE) return STRUT_OUTCOME_UNSTABLE;
   for (int32_t i = 0; i < h->model->node_count; i++)
-    if (e->below[i]) return STRUT_FATE_BELOW_GROUND;
-  return h->unrest == STRUT_UNREST_NONE ? STRUT_FATE_STANDS : STRUT_FATE_NO_REST;
+    if (e->below[i]) return STRUT_OUTCOME_BELOW_GROUND;
+  return h->unrest == STRUT_INSTABILITY_NONE ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_NO_REST;
 }
 
 /* A saddle on supports that only push is one on the ground too, all but the ground's give. */
-static bool is_pass(const strut_hunt *h, const strut_find *f) {
+static bool is_pass(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
   bool under = false;
   for (int32_t i = 0; i < h->model->node_count; i++) under = under || f->e.below[i];
   return f->e.supports && f->e.point.negative == 1 && !f->pulls && !under;
@@ -33,7 +33,7 @@ static bool is_pass(const strut_hunt *h, const strut_find *f) {
  * The search on the real ground begins with what lies below each that may stand, and with the
  * saddles that supports have shown.
  */
-static strut_status explore(strut_hunt *h) {
+static strut_status explore(strut_equilibrium_search *h) {
   const strut_equilibria_options *o = h->options;
   size_t length = (size_t)h->model->length, extras = 0, hints = 0;
   strut_arena scratch = {0};
@@ -69,7 +69,7 @@ static strut_status explore(strut_hunt *h) {
   return status;
 }
 
-static bool stands_on(const strut_hunt *h, const strut_find *f, const double *rest) {
+static bool stands_on(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f, const double *rest) {
   const strut_node_set *set = f->e.supports;
   double moved = strut_shape_distance(h->model, f->e.point.q, rest, false, NULL);
   for (size_t i = 0; i < set->count; i++) {
@@ -82,7 +82,7 @@ static bool stands_on(const strut_hunt *h, const strut_find *f, const double *re
 }
 
 /* Of the supports the one that is pressed on most while another pulls: there it turns. */
-static int32_t turning_node(const strut_find *f) {
+static int32_t turning_node(const strut_candidate_equilibrium *f) {
   int32_t most = -1;
   for (size_t i = 0; i < f->e.supports->count && f->pulls; i++) {
     int32_t node = f->e.supports->node[i];
@@ -93,7 +93,7 @@ static int32_t turning_node(const strut_find *f) {
   return most;
 }
 
-static strut_status follow(strut_hunt *h, strut_find *f) {
+static strut_status follow(strut_equilibrium_search *h, strut_candidate_equilibrium *f) {
   strut_equilibrium *e = &f->e;
   size_t length = (size_t)h->model->length;
   strut_relaxed relaxed;
@@ -105,24 +105,24 @@ static strut_status follow(strut_hunt *h, strut_find *f) {
   if (status) return status;
   e->tips_over = turning_node(f);
   if (relaxed.end != STRUT_RELAXED_RESTS) {
-    e->fate = STRUT_FATE_NO_REST;
+    e->fate = STRUT_OUTCOME_NO_REST;
     return STRUT_OK;
   }
   e->rest = q;
   e->rest_energy = strut_potential_energy(h->world, q);
   e->rest_residual = relaxed.residual;
   f->state = strut_landscape_find(&h->landscape, q);
-  if ((status = strut_hunt_contacts(h, q, e))) return status;
-  e->fate = stands_on(h, f, q) ? STRUT_FATE_STANDS : STRUT_FATE_TIPS;
+  if ((status = strut_equilibrium_search_contacts(h, q, e))) return status;
+  e->fate = stands_on(h, f, q) ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_TIPS;
   return STRUT_OK;
 }
 
-strut_status strut_hunt_follow(strut_hunt *h) {
+strut_status strut_equilibrium_search_follow(strut_equilibrium_search *h) {
   bool any = false, lost = false;
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < h->count; i++)
     h->finds[i].e.fate = first_judgement(h, &h->finds[i]);
-  if (h->unrest != STRUT_UNREST_NONE) return STRUT_OK;
+  if (h->unrest != STRUT_INSTABILITY_NONE) return STRUT_OK;
   if ((status = explore(h))) return status;
   for (size_t i = 0; i < h->count && !status; i++) {
     if (!is_followed(h, &h->finds[i])) continue;

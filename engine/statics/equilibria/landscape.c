@@ -96,7 +96,7 @@ static bool connects(const strut_landscape *l, const strut_critical_point *pass)
          pass->down[1] < l->minima;
 }
 
-int32_t strut_landscape_way(const strut_landscape *l, int32_t a, int32_t b) {
+int32_t strut_landscape_path(const strut_landscape *l, int32_t a, int32_t b) {
   const strut_critical_set *set = &l->set;
   int32_t *parent = l->parent;
   for (int32_t i = 0; i < l->minima; i++) parent[i] = i;

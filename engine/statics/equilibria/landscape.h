@@ -33,7 +33,7 @@ double strut_landscape_pass(const void *landscape, const double *q);
  * The lowest way from minimum a to minimum b: the index of the highest saddle on it, -1 where the
  * known saddles do not connect them.
  */
-int32_t strut_landscape_way(const strut_landscape *landscape, int32_t a, int32_t b);
+int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_t b);
 
 /** The lowest saddle that leads from minimum a down to minimum b the other way, or -1. */
 int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);

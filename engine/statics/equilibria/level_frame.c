@@ -14,11 +14,11 @@ static void turn(double c, double s, size_t count, double *xy) {
   }
 }
 
-void strut_flat_to_original(const strut_flat *flat, size_t count, double *xy) {
+void strut_level_frame_to_original(const strut_level_frame *flat, size_t count, double *xy) {
   turn(flat->cosine, flat->sine, count, xy);
 }
 
-void strut_flat_from_original(const strut_flat *flat, size_t count, double *xy) {
+void strut_level_frame_from_original(const strut_level_frame *flat, size_t count, double *xy) {
   turn(flat->cosine, -flat->sine, count, xy);
 }
 
@@ -36,7 +36,7 @@ static void *copied(strut_arena *arena, const void *from, size_t count, size_t s
   return copy;
 }
 
-static bool copy_arrays(strut_flat *flat) {
+static bool copy_arrays(strut_level_frame *flat) {
   strut_scene *s = &flat->scene;
   s->nodes = copied(&flat->arena, s->nodes, s->node_count, sizeof *s->nodes);
   s->members = copied(&flat->arena, s->members, s->member_count, sizeof *s->members);
@@ -79,27 +79,27 @@ static void quieten(strut_scene *s) {
     s->nodes[i].velocity[0] = s->nodes[i].velocity[1] = 0.0;
 }
 
-static void level(strut_flat *flat) {
+static void level(strut_level_frame *flat) {
   strut_scene *s = &flat->scene;
   if (flat->sine == 0.0) return;
   s->ground.height *= flat->cosine;
   s->ground.slope = 0.0;
-  strut_flat_from_original(flat, 1, s->gravity);
+  strut_level_frame_from_original(flat, 1, s->gravity);
   for (size_t i = 0; i < s->node_count; i++) {
-    strut_flat_from_original(flat, 1, s->nodes[i].position);
-    strut_flat_from_original(flat, 1, s->nodes[i].start);
+    strut_level_frame_from_original(flat, 1, s->nodes[i].position);
+    strut_level_frame_from_original(flat, 1, s->nodes[i].start);
   }
-  for (size_t i = 0; i < s->load_count; i++) strut_flat_from_original(flat, 1, s->loads[i].force);
+  for (size_t i = 0; i < s->load_count; i++) strut_level_frame_from_original(flat, 1, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
-      strut_flat_from_original(flat, s->node_count, s->configurations[i].position[0]);
+      strut_level_frame_from_original(flat, s->node_count, s->configurations[i].position[0]);
 }
 
-strut_status strut_flat_create(const strut_scene *original, strut_flat *flat, strut_error *error) {
-  *flat = (strut_flat){.scene = *original, .cosine = 1.0, .askew = held_askew(original)};
+strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *flat, strut_error *error) {
+  *flat = (strut_level_frame){.scene = *original, .cosine = 1.0, .askew = held_askew(original)};
   flat->scene.arena = (strut_arena){0};
   if (!copy_arrays(flat)) {
-    strut_flat_free(flat);
+    strut_level_frame_free(flat);
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }
   if (original->ground.present && flat->askew < 0 && original->ground.slope != 0.0) {
@@ -112,7 +112,7 @@ strut_status strut_flat_create(const strut_scene *original, strut_flat *flat, st
   return STRUT_OK;
 }
 
-void strut_flat_free(strut_flat *flat) {
+void strut_level_frame_free(strut_level_frame *flat) {
   strut_arena_free(&flat->arena);
   memset(flat, 0, sizeof *flat);
 }

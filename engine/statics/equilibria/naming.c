@@ -99,7 +99,7 @@ static bool on_a_set(const strut_configuration *c, const strut_equilibrium *e) {
 }
 
 static bool may_be_named(const strut_equilibrium *e) {
-  return !e->name && e->fate == STRUT_FATE_STANDS;
+  return !e->name && e->fate == STRUT_OUTCOME_STANDS;
 }
 
 static void name_shaped(const strut_model *model, const strut_configuration *c, size_t count,

@@ -22,7 +22,7 @@ static int32_t root(int32_t *parent, int32_t a) {
 }
 
 /* parent[] of each node becomes its part's first found node; part[] is filled there. */
-static void sum_parts(const strut_hunt *h, int32_t *parent, part *parts) {
+static void sum_parts(const strut_equilibrium_search *h, int32_t *parent, part *parts) {
   const strut_model *model = h->model;
   for (int32_t i = 0; i < model->node_count; i++) parent[i] = i;
   for (int32_t j = 0; j < model->members.count; j++) {
@@ -41,13 +41,13 @@ static void sum_parts(const strut_hunt *h, int32_t *parent, part *parts) {
 }
 
 /* Why a part cannot be at rest: the forces on it against what could hold them. */
-static strut_unrest unrest_of(const strut_hunt *h, const part *p) {
+static strut_instability_cause unrest_of(const strut_equilibrium_search *h, const part *p) {
   double scale = 1e-12 * h->world->force_scale;
   bool across = !p->held[1] && fabs(p->force[1]) > scale;
   bool along = !p->held[0] && fabs(p->force[0]) > scale;
-  if (!p->touches) return across || along ? STRUT_UNREST_FALLS : STRUT_UNREST_NONE;
-  if (across && p->force[1] > 0) return STRUT_UNREST_LIFTED;
-  return along ? STRUT_UNREST_SLIDES : STRUT_UNREST_NONE;
+  if (!p->touches) return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
+  if (across && p->force[1] > 0) return STRUT_INSTABILITY_LIFTED;
+  return along ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
 }
 
 /* What friction would have to do: the force along the ground against the one that presses on it. */
@@ -59,7 +59,7 @@ static void say_friction(const part *p, size_t room, char *text) {
     snprintf(text, room, "with it too, as nothing presses it down");
 }
 
-static void say_unrest(strut_hunt *h, strut_unrest unrest, const part *p, const uint8_t *flag) {
+static void say_unrest(strut_equilibrium_search *h, strut_instability_cause unrest, const part *p, const uint8_t *flag) {
   char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t count = 0;
@@ -68,9 +68,9 @@ static void say_unrest(strut_hunt *h, strut_unrest unrest, const part *p, const 
   bool all = count == h->model->node_count;
   if (!all) strut_list_nodes(&h->flat.scene, flag, sizeof names, names);
   const char *what = all ? "the structure" : "a part of the structure";
-  if (unrest == STRUT_UNREST_FALLS)
+  if (unrest == STRUT_INSTABILITY_FALLS)
     snprintf(remark, room, "nothing holds %s: it falls freely, %s", what, names);
-  else if (unrest == STRUT_UNREST_LIFTED)
+  else if (unrest == STRUT_INSTABILITY_LIFTED)
     snprintf(remark, room, "loads lift %s off the ground, %s", what, names);
   else
     snprintf(remark, room,
@@ -78,17 +78,17 @@ static void say_unrest(strut_hunt *h, strut_unrest unrest, const part *p, const 
              what, names, friction);
 }
 
-strut_unrest strut_hunt_look_for_unrest(strut_hunt *h) {
+strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_search *h) {
   int32_t nodes = h->model->node_count, moves = -1;
-  strut_unrest worst = STRUT_UNREST_NONE;
+  strut_instability_cause worst = STRUT_INSTABILITY_NONE;
   strut_arena scratch = {0};
   int32_t *parent = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parent);
   part *parts = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parts);
   uint8_t *flag = strut_arena_allocate(&scratch, (size_t)nodes, 1);
   if (parent && parts && flag) {
     sum_parts(h, parent, parts);
-    for (int32_t i = 0; i < nodes && worst == STRUT_UNREST_NONE; i++)
-      if (parent[i] == i && (worst = unrest_of(h, &parts[i])) != STRUT_UNREST_NONE) moves = i;
+    for (int32_t i = 0; i < nodes && worst == STRUT_INSTABILITY_NONE; i++)
+      if (parent[i] == i && (worst = unrest_of(h, &parts[i])) != STRUT_INSTABILITY_NONE) moves = i;
     for (int32_t i = 0; i < nodes; i++) flag[i] = parent[i] == moves;
     if (moves >= 0) say_unrest(h, worst, &parts[moves], flag);
   }
@@ -97,7 +97,7 @@ strut_unrest strut_hunt_look_for_unrest(strut_hunt *h) {
 }
 
 /* Does the free motion lead anywhere? Asked of the forces that it was found with. */
-static bool leads_away(const strut_hunt *h, const strut_equilibrium *e, uint8_t *held) {
+static bool leads_away(const strut_equilibrium_search *h, const strut_equilibrium *e, uint8_t *held) {
   strut_potential *potential = NULL;
   if (!e->supports) return strut_floppy_stays(h->world, &e->point);
   memset(held, 0, (size_t)h->model->length);
@@ -109,7 +109,7 @@ static bool leads_away(const strut_hunt *h, const strut_equilibrium *e, uint8_t 
 }
 
 /* True if it leads away at one energy. flag: (length) */
-static bool say_floppy(strut_hunt *h, const strut_equilibrium *e, uint8_t *flag, size_t room,
+static bool say_floppy(strut_equilibrium_search *h, const strut_equilibrium *e, uint8_t *flag, size_t room,
                        char *text) {
   char names[NAMES];
   int32_t count = 0;
@@ -126,7 +126,7 @@ static bool say_floppy(strut_hunt *h, const strut_equilibrium *e, uint8_t *flag,
   return away;
 }
 
-static void say_tips(strut_hunt *h, const strut_find *finds, const strut_find *f, uint8_t *flag,
+static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds, const strut_candidate_equilibrium *f, uint8_t *flag,
                      strut_equilibrium *e) {
   char names[NAMES];
   const strut_scene *scene = &h->flat.scene;
@@ -141,27 +141,27 @@ static void say_tips(strut_hunt *h, const strut_find *finds, const strut_find *f
            end ? end : "");
 }
 
-static void say_no_rest(const strut_hunt *h, strut_equilibrium *e) {
+static void say_no_rest(const strut_equilibrium_search *h, strut_equilibrium *e) {
   static const char *const why[] = {
-      [STRUT_UNREST_NONE] = "does not come to rest", [STRUT_UNREST_FALLS] = "falls",
-      [STRUT_UNREST_SLIDES] = "slides along the ground without friction",
-      [STRUT_UNREST_LIFTED] = "is lifted off the ground"};
+      [STRUT_INSTABILITY_NONE] = "does not come to rest", [STRUT_INSTABILITY_FALLS] = "falls",
+      [STRUT_INSTABILITY_SLIDES] = "slides along the ground without friction",
+      [STRUT_INSTABILITY_LIFTED] = "is lifted off the ground"};
   snprintf(e->verdict, sizeof e->verdict, "%s", why[h->unrest]);
 }
 
-static void say_one(strut_hunt *h, strut_find *finds, strut_find *f, uint8_t *flag) {
+static void say_one(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, strut_candidate_equilibrium *f, uint8_t *flag) {
   strut_equilibrium *e = &f->e;
   size_t room = sizeof e->verdict;
   char names[NAMES];
   switch (e->fate) {
-    case STRUT_FATE_STANDS: snprintf(e->verdict, room, "stands"); break;
-    case STRUT_FATE_TIPS: say_tips(h, finds, f, flag, e); break;
-    case STRUT_FATE_BELOW_GROUND:
+    case STRUT_OUTCOME_STANDS: snprintf(e->verdict, room, "stands"); break;
+    case STRUT_OUTCOME_TIPS: say_tips(h, finds, f, flag, e); break;
+    case STRUT_OUTCOME_BELOW_GROUND:
       strut_list_nodes(&h->flat.scene, e->below, sizeof names, names);
       snprintf(e->verdict, room, "below ground (%s)", names);
       break;
-    case STRUT_FATE_FLOPPY: say_floppy(h, e, flag, room, e->verdict); break;
-    case STRUT_FATE_UNSTABLE:
+    case STRUT_OUTCOME_FLOPPY: say_floppy(h, e, flag, room, e->verdict); break;
+    case STRUT_OUTCOME_UNSTABLE:
       snprintf(e->verdict, room, "unstable: %d negative eigenvalue%s", (int)e->point.negative,
                e->point.negative == 1 ? "" : "s");
       break;
@@ -170,13 +170,13 @@ static void say_one(strut_hunt *h, strut_find *finds, strut_find *f, uint8_t *fl
 }
 
 /* Only where there is nothing better to stand in do free motions need a remark. */
-static void remark_on(strut_hunt *h, strut_find *finds, size_t count, uint8_t *flag) {
+static void remark_on(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, size_t count, uint8_t *flag) {
   char *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t floppy = -1;
   for (size_t i = 0; i < count; i++) {
-    if (finds[i].e.fate == STRUT_FATE_STANDS) return;
-    if (floppy < 0 && finds[i].e.fate == STRUT_FATE_FLOPPY) floppy = (int32_t)i;
+    if (finds[i].e.fate == STRUT_OUTCOME_STANDS) return;
+    if (floppy < 0 && finds[i].e.fate == STRUT_OUTCOME_FLOPPY) floppy = (int32_t)i;
   }
   if (floppy >= 0) {
     bool away = say_floppy(h, &finds[floppy].e, flag, room, remark);
@@ -202,7 +202,7 @@ static void remark_on(strut_hunt *h, strut_find *finds, size_t count, uint8_t *f
   }
 }
 
-void strut_hunt_say(strut_hunt *h, strut_find *finds, size_t count) {
+void strut_report_candidates(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, size_t count) {
   uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, 1);
   if (!flag) return;
   for (size_t i = 0; i < count; i++) say_one(h, finds, &finds[i], flag);

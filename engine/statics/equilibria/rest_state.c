@@ -32,7 +32,7 @@ static double member_forces(const strut_model *model, const double *q) {
   return sum;
 }
 
-static bool find_closed(const strut_model *model, strut_arena *arena, strut_stand *stand) {
+static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *stand) {
   const strut_contact_table *c = &model->contacts;
   stand->closed = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->closed);
   stand->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->normal);
@@ -48,7 +48,7 @@ static bool find_closed(const strut_model *model, strut_arena *arena, strut_stan
 }
 
 /* All but name and q from q. */
-static strut_status judge(const strut_model *model, strut_arena *arena, strut_stand *stand,
+static strut_status judge(const strut_model *model, strut_arena *arena, strut_rest_state *stand,
                           strut_error *error) {
   strut_potential *potential = NULL;
   strut_status status = strut_potential_create(model, NULL, true, &potential, error);
@@ -70,29 +70,29 @@ static strut_status judge(const strut_model *model, strut_arena *arena, strut_st
 }
 
 /* A relaxation by itself: the rooms of a hunt without the searches. */
-static strut_status prepare(strut_hunt *h, const strut_model *model) {
-  strut_status status = strut_flat_create(model->scene, &h->flat, h->error);
+static strut_status prepare(strut_equilibrium_search *h, const strut_model *model) {
+  strut_status status = strut_level_frame_create(model->scene, &h->flat, h->error);
   if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
   if (!status) {
     h->on_ground = h->model->contacts.count > 0;
     status = strut_potential_create(h->model, NULL, h->on_ground, &h->world, h->error);
   }
-  if (!status && strut_hunt_look_for_unrest(h) != STRUT_UNREST_NONE)
+  if (!status && strut_equilibrium_search_instability(h) != STRUT_INSTABILITY_NONE)
     status = strut_fail(h->error, STRUT_NOT_SETTLED, "%s", h->out->remark);
   if (!status && h->world->n > 0) status = strut_relaxer_create(h->world, &h->relaxer, h->error);
   return status;
 }
 
-static void clean_up(strut_hunt *h) {
+static void clean_up(strut_equilibrium_search *h) {
   strut_relaxer_free(h->relaxer);
   strut_potential_free(h->world);
   strut_model_free(h->model);
-  strut_flat_free(&h->flat);
+  strut_level_frame_free(&h->flat);
   strut_arena_free(&h->out->arena);
 }
 
 /* The node that moved most from one shape to the other. */
-static const char *farthest(const strut_hunt *h, const double *from, const double *to) {
+static const char *farthest(const strut_equilibrium_search *h, const double *from, const double *to) {
   int32_t node = 0;
   double most = -1.0;
   for (int32_t i = 0; i < h->model->node_count; i++) {
@@ -103,7 +103,7 @@ static const char *farthest(const strut_hunt *h, const double *from, const doubl
 }
 
 /* q (level coordinates) goes where the structure comes to rest from it. */
-static strut_status relax(strut_hunt *h, const char *what, double *q) {
+static strut_status relax(strut_equilibrium_search *h, const char *what, double *q) {
   size_t bytes = (size_t)h->model->length * sizeof *q;
   strut_relaxed relaxed;
   strut_status status = STRUT_OK;
@@ -131,16 +131,16 @@ static strut_status relax(strut_hunt *h, const char *what, double *q) {
                     what, farthest(h, from, q));
 }
 
-static strut_status from_start(strut_hunt *h, double *q) {
+static strut_status from_start(strut_equilibrium_search *h, double *q) {
   memcpy(q, h->model->start, (size_t)h->model->length * sizeof *q);
   return relax(h, "the scene's start", q);
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
-static bool fits(strut_hunt *h, const strut_configuration *c, const double *shape, const double *q,
+static bool fits(strut_equilibrium_search *h, const strut_configuration *c, const double *shape, const double *q,
                  strut_node_set *rests_on) {
   strut_equilibrium e = {0};
-  if (strut_hunt_contacts(h, q, &e)) return false;
+  if (strut_equilibrium_search_contacts(h, q, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
   bool on_set = c->set_count == 0;
   for (size_t k = 0; k < c->set_count; k++)
@@ -150,7 +150,7 @@ static bool fits(strut_hunt *h, const strut_configuration *c, const double *shap
 }
 
 /* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
-static strut_status from_shape(strut_hunt *h, const strut_configuration *c, double *q, bool *found,
+static strut_status from_shape(strut_equilibrium_search *h, const strut_configuration *c, double *q, bool *found,
                                strut_node_set *rests_on) {
   size_t nodes = h->flat.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
@@ -173,7 +173,7 @@ static strut_status take_named(const strut_model *model, const strut_node_set *s
   strut_status status = strut_equilibria_find(model, &options, &all, error);
   for (size_t i = 0; i < all.count && !status && !*found; i++) {
     const strut_equilibrium *e = &all.list[i];
-    if (e->fate != STRUT_FATE_STANDS || strcmp(e->name, name) != 0) continue;
+    if (e->fate != STRUT_OUTCOME_STANDS || strcmp(e->name, name) != 0) continue;
     memcpy(q, e->rest, (size_t)model->length * sizeof *q);
     *found = true;
   }
@@ -242,7 +242,7 @@ static bool is_listed(const strut_scene *scene, const char *name) {
 
 /* The equilibrium of that name in the list that the scene's own search makes. */
 static strut_status from_list(const strut_model *model, const char *name, strut_arena *arena,
-                              strut_stand *stand, strut_error *error) {
+                              strut_rest_state *stand, strut_error *error) {
   strut_equilibria_options options = {0};
   strut_equilibria all;
   strut_status status = strut_equilibria_find(model, &options, &all, error);
@@ -253,7 +253,7 @@ static strut_status from_list(const strut_model *model, const char *name, strut_
     found = true;
     stand->name = strut_arena_text(arena, name, strlen(name));
     if (!stand->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-    bool stands = e->fate == STRUT_FATE_STANDS && e->rest;
+    bool stands = e->fate == STRUT_OUTCOME_STANDS && e->rest;
     memcpy(stand->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *stand->q);
   }
   strut_equilibria_free(&all);
@@ -266,7 +266,7 @@ static strut_status from_list(const strut_model *model, const char *name, strut_
 static strut_status seek(const strut_model *model, const strut_configuration *c, double *q,
                          strut_error *error) {
   strut_equilibria scratch = {0};
-  strut_hunt h = {.out = &scratch, .error = error};
+  strut_equilibrium_search h = {.out = &scratch, .error = error};
   strut_node_set rests_on = {0};
   bool found = !c, turned = true;
   strut_status status = prepare(&h, model);
@@ -278,13 +278,13 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
     turned = false;
     status = by_search(model, c, q, &rests_on, error);
   }
-  if (!status && turned) strut_flat_to_original(&h.flat, (size_t)model->node_count, q);
+  if (!status && turned) strut_level_frame_to_original(&h.flat, (size_t)model->node_count, q);
   clean_up(&h);
   return status;
 }
 
 /* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
-static strut_status from_settling(const strut_model *model, strut_arena *arena, strut_stand *stand,
+static strut_status from_settling(const strut_model *model, strut_arena *arena, strut_rest_state *stand,
                                   strut_error *error) {
   double time;
   strut_status status =
@@ -294,12 +294,12 @@ static strut_status from_settling(const strut_model *model, strut_arena *arena, 
   return status;
 }
 
-strut_status strut_stand_find(const strut_model *model, const char *name, strut_arena *arena,
-                              strut_stand *stand, strut_error *error) {
+strut_status strut_rest_state_find(const strut_model *model, const char *name, strut_arena *arena,
+                              strut_rest_state *stand, strut_error *error) {
   const strut_scene *scene = model->scene;
   const strut_configuration *c = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
-  *stand = (strut_stand){.name = start ? "start" : "drawn"};
+  *stand = (strut_rest_state){.name = start ? "start" : "drawn"};
   stand->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *stand->q);
   if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
@@ -324,14 +324,14 @@ strut_status strut_stand_find(const strut_model *model, const char *name, strut_
   return status;
 }
 
-strut_status strut_stand_resolve(strut_scene *scene, strut_error *error) {
+strut_status strut_resolve_start_equilibrium(strut_scene *scene, strut_error *error) {
   if (scene->start_equilibrium < 0) return STRUT_OK;
   const char *name = scene->configurations[scene->start_equilibrium].name;
   strut_model *model = NULL;
   strut_arena arena = {0};
-  strut_stand stand;
+  strut_rest_state stand;
   strut_status status = strut_model_compile(scene, &model, error);
-  if (!status) status = strut_stand_find(model, name, &arena, &stand, error);
+  if (!status) status = strut_rest_state_find(model, name, &arena, &stand, error);
   for (size_t i = 0; i < scene->node_count && !status; i++)
     for (size_t c = 0; c < 2; c++)
       if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = stand.q[2 * i + c];

@@ -8,7 +8,7 @@
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 
-typedef struct strut_stand {
+typedef struct strut_rest_state {
   const char *name;  /* "drawn", "start", a configuration's, or one that the list of all gives */
   double *q;         /* (length) [m] */
   bool at_rest;      /* false where it is no equilibrium on the real ground: as drawn, or listed on
@@ -19,7 +19,7 @@ typedef struct strut_stand {
   int32_t *closed;   /* (closed_count) nodes that touch the ground */
   double *normal;    /* (closed_count) forces of the ground on them [N] */
   strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
-} strut_stand;
+} strut_rest_state;
 
 /**
  * name NULL or "start": the equilibrium that the scene's start comes to rest in, where the scene
@@ -30,14 +30,14 @@ typedef struct strut_stand {
  * name, STRUT_NOT_SETTLED where there is no such equilibrium, with a sentence that says which nodes
  * move, STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_stand_find(const strut_model *model, const char *name,
-                                        strut_arena *arena, strut_stand *stand,
+STRUT_API strut_status strut_rest_state_find(const strut_model *model, const char *name,
+                                        strut_arena *arena, strut_rest_state *stand,
                                         strut_error *error);
 
 /**
  * Puts the equilibrium that the scene wants to start from into its nodes' start positions, and
  * start_equilibrium to -1. Does nothing where the scene wants none. The scene is compiled in between.
  */
-STRUT_API strut_status strut_stand_resolve(strut_scene *scene, strut_error *error);
+STRUT_API strut_status strut_resolve_start_equilibrium(strut_scene *scene, strut_error *error);
 
 #endif

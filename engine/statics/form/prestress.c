@@ -121,7 +121,7 @@ static void set_costs(prestress *p, int32_t from, int32_t to, double cost) {
 }
 
 static strut_status solve(prestress *p, double *sum, strut_error *error) {
-  strut_program_end end;
+  strut_quantity_program_end end;
   strut_status status = strut_linear_program_solve(&p->program, p->x, sum, &end);
   if (status) return strut_fail(error, status, "out of memory");
   if (end == STRUT_PROGRAM_OPTIMAL) return STRUT_OK;

@@ -17,7 +17,7 @@ const char *strut_mode_kind_name(strut_mode_kind kind) {
 }
 
 /* Nodes that touch, held along the ground: only where that is one coordinate. */
-static strut_status hold_stuck(const strut_model *model, const strut_stand *stand, uint8_t *held,
+static strut_status hold_stuck(const strut_model *model, const strut_rest_state *stand, uint8_t *held,
                                strut_error *error) {
   const double *tangent = model->contacts.tangent;
   if (stand->closed_count && tangent[0] != 0 && tangent[1] != 0)
@@ -231,7 +231,7 @@ static int32_t wanted_of(const strut_modes_options *options, bool dense) {
 
 strut_status strut_modes_find(const strut_model *model, const strut_modes_options *options,
                               strut_modes *modes, strut_error *error) {
-  strut_stand stand = {0};
+  strut_rest_state stand = {0};
   *modes = (strut_modes){0};
   strut_modes_work work = {.arena = &modes->arena};
   strut_status status = strut_modes_shape(model, options->at, &modes->arena, &stand, error);

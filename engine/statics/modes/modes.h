@@ -51,7 +51,7 @@ typedef struct strut_modes {
   bool dense;            /* all modes were computed */
   bool damped_exactly;   /* damping from the quadratic eigenproblem; else by the modal quotient */
   bool at_rest;          /* the shape is an equilibrium */
-  strut_settle_summary settle; /* of strut_stand */
+  strut_settle_summary settle; /* of strut_rest_state */
   double condition;      /* largest eigenvalue over the smallest that is not zero */
   size_t count;
   strut_mode *list; /* by eigenvalue */
@@ -59,14 +59,14 @@ typedef struct strut_modes {
 } strut_modes;
 
 typedef struct strut_modes_options {
-  const char *at; /* as for strut_stand_find */
+  const char *at; /* as for strut_rest_state_find */
   int32_t count;  /* lowest so many; 0: all where dense, else STRUT_SPARSE_MODES */
   bool stuck;     /* nodes that touch are held along the ground too, as friction would */
   bool sparse;    /* by Lanczos's method whatever the size */
 } strut_modes_options;
 
 /**
- * Fails with what strut_stand_find fails with; STRUT_SINGULAR where an elastic mode asked for
+ * Fails with what strut_rest_state_find fails with; STRUT_SINGULAR where an elastic mode asked for
  * cannot be had to 1e-8, with the condition, and where a node without mass is held by nothing;
  * STRUT_BAD_SCENE where nothing is free to move or nothing has mass; STRUT_NO_MEMORY.
  * strut_modes_free releases it, after a failure too. The model must outlive it.

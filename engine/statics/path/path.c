@@ -175,8 +175,8 @@ static strut_status descend(const strut_model *model, const uint8_t *held, bool 
 
 /* The equilibrium of that name. */
 static strut_status begin_at_name(beginning *b, strut_error *error) {
-  strut_stand stand;
-  strut_status status = strut_stand_find(b->model, b->options->at, &b->arena, &stand, error);
+  strut_rest_state stand;
+  strut_status status = strut_rest_state_find(b->model, b->options->at, &b->arena, &stand, error);
   if (status) return status;
   if (!stand.at_rest)
     return strut_fail(error, STRUT_NOT_SETTLED,

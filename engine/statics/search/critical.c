@@ -25,8 +25,8 @@ typedef struct search {
   const strut_potential *potential;
   const strut_critical_effort *effort;
   strut_critical_set *set;
-  strut_gathering all;
-  strut_descents *batch;
+  strut_stationary_set all;
+  strut_search_tasks *batch;
   strut_task task[STRUT_BATCH];
   size_t tasks;
   int64_t random, room; /* random starts made; how many points `hits` has room for */
@@ -63,7 +63,7 @@ static strut_status read_result(search *s, const strut_task *task,
   if (start && result->end == STRUT_DESCENT_RUNAWAY) s->set->runaway++;
   if (start && result->end == STRUT_DESCENT_EXHAUSTED) s->set->exhausted++;
   if (result->end != STRUT_DESCENT_REACHED) return STRUT_OK;
-  strut_status status = strut_gathering_add(&s->all, result->q, &index, &fresh, s->error);
+  strut_status status = strut_stationary_set_add(&s->all, result->q, &index, &fresh, s->error);
   if (status) return status;
   if (!keep_hits(s)) return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
   if (task->kind == STRUT_TASK_RANDOM) s->hits[index]++;
@@ -75,7 +75,7 @@ static strut_status read_result(search *s, const strut_task *task,
 }
 
 static strut_status run(search *s) {
-  const strut_task_result *result = strut_descents_run(s->batch, s->task, s->tasks);
+  const strut_task_result *result = strut_search_tasks_run(s->batch, s->task, s->tasks);
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < s->tasks && !status; i++) {
     s->spent += s->cost * (double)result[i].looks;
@@ -269,7 +269,7 @@ static strut_status climb_pairs(search *s) {
       if (!is_minimum(&s->all.points[i])) continue;
       const double *a = s->all.points[i].q, *b;
       for (int32_t k = i == s->paired; k < 3 && !status; k++) {
-        b = strut_gathering_placement(&s->all, (int32_t)s->paired, k);
+        b = strut_stationary_set_placement(&s->all, (int32_t)s->paired, k);
         if (!b) break;
         status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
         if (!status)
@@ -403,8 +403,8 @@ strut_status strut_critical_search(const strut_potential *potential,
   bool climbs = effort->saddles && potential->n <= STRUT_DENSE_STATICS;
   *set = (strut_critical_set){0};
   set_budget(&s);
-  strut_gathering_start(&s.all, potential, &set->arena);
-  strut_status status = strut_descents_create(potential, effort->seed, climbs, &s.batch, error);
+  strut_stationary_set_start(&s.all, potential, &set->arena);
+  strut_status status = strut_search_tasks_create(potential, effort->seed, climbs, &s.batch, error);
   if (!status) status = known_starts(&s);
   if (!status) status = random_starts(&s);
   if (!status) status = folded_minima(&s);
@@ -414,8 +414,8 @@ strut_status strut_critical_search(const strut_potential *potential,
   if (!status) status = find_saddles(&s);
   if (!status) count_unmet(&s);
   if (!status) status = hand_over(&s);
-  strut_descents_free(s.batch);
-  strut_gathering_free(&s.all);
+  strut_search_tasks_free(s.batch);
+  strut_stationary_set_free(&s.all);
   strut_release(s.hits);
   if (status) strut_critical_free(set);
   return status;

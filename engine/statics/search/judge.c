@@ -21,7 +21,7 @@ static bool judge_dense(const strut_judgement *j, const double *q, strut_arena *
                         strut_critical_point *point) {
   int32_t n = j->potential->n;
   strut_spectrum spectrum;
-  strut_spectrum_room *room = strut_spectrum_create(j->potential);
+  strut_spectrum_workspace *room = strut_spectrum_create(j->potential);
   bool good = room && strut_spectrum_compute(room, q, j->least, true, &spectrum);
   point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
   if (good && point->eigenvalues) {

@@ -7,13 +7,13 @@
 /* Rounding may set copies of one point apart by so many times what separates points elsewhere. */
 static const double MOST_BLUR = 1000.0;
 
-struct strut_placement {
+struct strut_congruent_copy {
   const double *q;
-  strut_placement *next;
+  strut_congruent_copy *next;
 };
 
 /* What rigid motions of the whole change nothing: no support, no load, no ground is in their way. */
-static void see_motions(strut_gathering *g) {
+static void see_motions(strut_stationary_set *g) {
   const strut_potential *p = g->potential;
   const strut_model *model = p->model;
   int32_t fixed[2] = {0, 0}, first = -1;
@@ -33,11 +33,11 @@ static void see_motions(strut_gathering *g) {
   g->turns = at_one_node && !loaded && !grounded;
 }
 
-void strut_gathering_start(strut_gathering *g, const strut_potential *potential,
+void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *potential,
                            strut_arena *arena) {
   const strut_model *model = potential->model;
   double size = model->size > 0 ? model->size : 1.0, stiffest = 0.0;
-  *g = (strut_gathering){.potential = potential, .arena = arena};
+  *g = (strut_stationary_set){.potential = potential, .arena = arena};
   for (int32_t j = 0; j < model->members.count; j++)
     stiffest = fmax(stiffest, model->members.stiffness[j]);
   g->near = 1e-6 * size;
@@ -45,14 +45,14 @@ void strut_gathering_start(strut_gathering *g, const strut_potential *potential,
   see_motions(g);
 }
 
-void strut_gathering_free(strut_gathering *g) {
+void strut_stationary_set_free(strut_stationary_set *g) {
   strut_release(g->points);
   strut_release(g->placement);
   g->points = NULL, g->placement = NULL, g->count = g->room = 0;
 }
 
 /* The largest distance between two placements, motions apart that change nothing. */
-static double place_distance(const strut_gathering *g, const double *a, const double *b) {
+static double place_distance(const strut_stationary_set *g, const double *a, const double *b) {
   const strut_model *model = g->potential->model;
   double mean[2] = {0.0, 0.0}, largest = 0.0;
   if (g->turns) return strut_shape_distance(model, a, b, false, NULL);
@@ -63,11 +63,11 @@ static double place_distance(const strut_gathering *g, const double *a, const do
   return largest;
 }
 
-static bool same_energy(const strut_gathering *g, double a, double b) {
+static bool same_energy(const strut_stationary_set *g, double a, double b) {
   return fabs(a - b) <= g->flat + 1e-9 * fmin(fabs(a), fabs(b));
 }
 
-static bool same_point(const strut_gathering *g, const double *q, const double *known,
+static bool same_point(const strut_stationary_set *g, const double *q, const double *known,
                        double near) {
   if (place_distance(g, q, known) <= near) return true;
   return g->congruent && strut_shape_distance(g->potential->model, q, known, true, NULL) <= near;
@@ -77,7 +77,7 @@ static bool same_point(const strut_gathering *g, const double *q, const double *
  * Close to a fork the softest direction is so soft that a point is known there only to the rounding
  * of the forces over that stiffness: each of two copies to no more than strut_minimise allows.
  */
-static double blur(const strut_gathering *g, const strut_critical_point *point) {
+static double blur(const strut_stationary_set *g, const strut_critical_point *point) {
   const strut_potential *p = g->potential;
   double soft = 0.0, last = 0.0;
   for (int32_t skip = 0; skip <= point->zero; skip++) { /* the next larger one, in magnitude */
@@ -92,7 +92,7 @@ static double blur(const strut_gathering *g, const strut_critical_point *point) 
   return fmin(far, MOST_BLUR * g->near);
 }
 
-static int32_t find(const strut_gathering *g, const double *q, double energy) {
+static int32_t find(const strut_stationary_set *g, const double *q, double energy) {
   for (size_t i = 0; i < g->count; i++)
     if (same_energy(g, energy, g->points[i].potential) &&
         same_point(g, q, g->points[i].q, g->near))
@@ -106,12 +106,12 @@ static int32_t find(const strut_gathering *g, const double *q, double energy) {
   return -1;
 }
 
-int32_t strut_gathering_find(const strut_gathering *g, const double *q) {
+int32_t strut_stationary_set_find(const strut_stationary_set *g, const double *q) {
   return find(g, q, strut_potential_value(g->potential, q));
 }
 
-static bool remember_placement(strut_gathering *g, int32_t index, const double *q) {
-  strut_placement **end = &g->placement[index];
+static bool remember_placement(strut_stationary_set *g, int32_t index, const double *q) {
+  strut_congruent_copy **end = &g->placement[index];
   double near = fmax(g->near, blur(g, &g->points[index]));
   for (; *end; end = &(*end)->next)
     if (place_distance(g, q, (*end)->q) <= near) return true;
@@ -127,13 +127,13 @@ static bool remember_placement(strut_gathering *g, int32_t index, const double *
   return true;
 }
 
-static bool make_room(strut_gathering *g) {
+static bool make_room(strut_stationary_set *g) {
   if (g->count < g->room) return true;
   size_t room = g->room ? 2 * g->room : 16;
   strut_critical_point *points = strut_reallocate(g->points, room, sizeof *points);
   if (!points) return false;
   g->points = points;
-  strut_placement **placement = strut_reallocate(g->placement, room, sizeof *placement);
+  strut_congruent_copy **placement = strut_reallocate(g->placement, room, sizeof *placement);
   if (!placement) return false;
   g->placement = placement;
   g->room = room;
@@ -148,7 +148,7 @@ static bool is_minimum(const strut_critical_point *point) {
 static bool is_degenerate(const strut_critical_point *point) { return point->zero > point->rigid; }
 
 /* A continuum counts as one point: all of one energy, its ends included. */
-static int32_t find_degenerate(const strut_gathering *g, const strut_critical_point *point) {
+static int32_t find_degenerate(const strut_stationary_set *g, const strut_critical_point *point) {
   for (size_t i = 0; i < g->count; i++)
     if ((is_degenerate(point) || is_degenerate(&g->points[i])) &&
         is_minimum(point) == is_minimum(&g->points[i]) &&
@@ -157,9 +157,9 @@ static int32_t find_degenerate(const strut_gathering *g, const strut_critical_po
   return -1;
 }
 
-static int32_t count_placements(const strut_gathering *g, int32_t index) {
+static int32_t count_placements(const strut_stationary_set *g, int32_t index) {
   int32_t count = 0;
-  for (const strut_placement *at = g->placement[index]; at; at = at->next) count++;
+  for (const strut_congruent_copy *at = g->placement[index]; at; at = at->next) count++;
   return count;
 }
 
@@ -172,10 +172,10 @@ static void make_degenerate(strut_critical_point *known, const strut_critical_po
   known->down[0] = before.down[0], known->down[1] = before.down[1];
 }
 
-strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *index, bool *fresh,
+strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, int32_t *index, bool *fresh,
                                  strut_error *error) {
   strut_critical_point point;
-  *index = strut_gathering_find(g, q);
+  *index = strut_stationary_set_find(g, q);
   *fresh = *index < 0;
   if (*fresh) {
     strut_status status = strut_critical_judge(g->potential, q, g->arena, &point, error);
@@ -199,13 +199,13 @@ strut_status strut_gathering_add(strut_gathering *g, const double *q, int32_t *i
   return STRUT_OK;
 }
 
-const double *strut_gathering_placement(const strut_gathering *g, int32_t index, int32_t k) {
-  const strut_placement *at = g->placement[index];
+const double *strut_stationary_set_placement(const strut_stationary_set *g, int32_t index, int32_t k) {
+  const strut_congruent_copy *at = g->placement[index];
   while (at && k-- > 0) at = at->next;
   return at ? at->q : NULL;
 }
 
-void strut_number_shapes(const strut_gathering *like, strut_critical_point *points, size_t count) {
+void strut_number_shapes(const strut_stationary_set *like, strut_critical_point *points, size_t count) {
   const strut_model *model = like->potential->model;
   int32_t next = 0;
   for (size_t i = 0; i < count; i++) {

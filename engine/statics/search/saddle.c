@@ -12,7 +12,7 @@ enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 
 struct strut_climber {
   const strut_potential *potential;
-  strut_spectrum_room *spectra;
+  strut_spectrum_workspace *spectra;
   strut_spectrum now;
   double size;
   int64_t looks;
@@ -51,7 +51,7 @@ void strut_climber_free(strut_climber *c) {
   strut_release(c);
 }
 
-int64_t strut_climber_looks(const strut_climber *c) { return c->looks; }
+int64_t strut_climber_hessian_count(const strut_climber *c) { return c->looks; }
 
 static double dot(const double *a, const double *b, int32_t n) {
   double sum = 0.0;

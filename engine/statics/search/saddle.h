@@ -15,7 +15,7 @@ typedef struct strut_climber strut_climber;
 /** For one thread at a time. NULL: out of memory. */
 strut_climber *strut_climber_create(const strut_potential *potential);
 /** How many Hessians it has taken apart so far: a measure of its work. */
-int64_t strut_climber_looks(const strut_climber *climber);
+int64_t strut_climber_hessian_count(const strut_climber *climber);
 void strut_climber_free(strut_climber *climber);
 
 /**

@@ -20,7 +20,7 @@ typedef struct worker {
   double *direction; /* (n) */
 } worker;
 
-struct strut_descents {
+struct strut_search_tasks {
   const strut_potential *potential;
   uint64_t seed;
   int worker_count;
@@ -46,9 +46,9 @@ static int this_thread(void) {
 #endif
 }
 
-strut_status strut_descents_create(const strut_potential *potential, uint64_t seed, bool climbs,
-                                strut_descents **batch, strut_error *error) {
-  strut_descents *b = *batch = strut_allocate(1, sizeof *b);
+strut_status strut_search_tasks_create(const strut_potential *potential, uint64_t seed, bool climbs,
+                                strut_search_tasks **batch, strut_error *error) {
+  strut_search_tasks *b = *batch = strut_allocate(1, sizeof *b);
   size_t length = (size_t)potential->model->length;
   if (!b) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   b->potential = potential;
@@ -65,12 +65,12 @@ strut_status strut_descents_create(const strut_potential *potential, uint64_t se
     if (good && climbs) good = (w->climber = strut_climber_create(potential));
   }
   if (good) return STRUT_OK;
-  strut_descents_free(b);
+  strut_search_tasks_free(b);
   *batch = NULL;
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
-void strut_descents_free(strut_descents *batch) {
+void strut_search_tasks_free(strut_search_tasks *batch) {
   if (!batch) return;
   for (int i = 0; batch->workers && i < batch->worker_count; i++) {
     strut_minimiser_free(batch->workers[i].minimiser);
@@ -105,7 +105,7 @@ static void highest_between(const strut_potential *p, const double *a, const dou
   }
 }
 
-static bool climb(const strut_descents *b, worker *w, const strut_task *task, double *q) {
+static bool climb(const strut_search_tasks *b, worker *w, const strut_task *task, double *q) {
   const strut_potential *p = b->potential;
   double far = 0.02 * (p->model->size > 0 ? p->model->size : 1.0);
   size_t bytes = (size_t)p->model->length * sizeof *q;
@@ -129,7 +129,7 @@ static bool climb(const strut_descents *b, worker *w, const strut_task *task, do
   return index <= p->n && strut_climb(w->climber, index, NULL, q);
 }
 
-static strut_descent_end descend(const strut_descents *b, worker *w, const strut_task *task,
+static strut_descent_end descend(const strut_search_tasks *b, worker *w, const strut_task *task,
                                  double *q) {
   const strut_potential *p = b->potential;
   if (task->kind == STRUT_TASK_RANDOM)
@@ -151,10 +151,10 @@ static strut_descent_end descend(const strut_descents *b, worker *w, const strut
 }
 
 static int64_t looks_of(const worker *w) {
-  return strut_minimiser_looks(w->minimiser) + (w->climber ? strut_climber_looks(w->climber) : 0);
+  return strut_minimiser_hessian_count(w->minimiser) + (w->climber ? strut_climber_hessian_count(w->climber) : 0);
 }
 
-static void work(strut_descents *b, const strut_task *task, strut_task_result *result) {
+static void work(strut_search_tasks *b, const strut_task *task, strut_task_result *result) {
   worker *w = &b->workers[this_thread()];
   bool up = task->kind >= STRUT_TASK_CLIMB_MODE && task->kind <= STRUT_TASK_CLIMB_RANDOM;
   int64_t before = looks_of(w);
@@ -165,7 +165,7 @@ static void work(strut_descents *b, const strut_task *task, strut_task_result *r
   result->looks = looks_of(w) - before;
 }
 
-const strut_task_result *strut_descents_run(strut_descents *batch, const strut_task *task, size_t count) {
+const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task, size_t count) {
   int tasks = (int)count;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(batch->worker_count)

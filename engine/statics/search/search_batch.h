@@ -39,13 +39,13 @@ typedef struct strut_task_result {
   int64_t looks; /* Hessians taken apart on the way */
 } strut_task_result;
 
-typedef struct strut_descents strut_descents;
+typedef struct strut_search_tasks strut_search_tasks;
 /** climbs: will there be any? Only below STRUT_DENSE_STATICS coordinates. */
-strut_status strut_descents_create(const strut_potential *potential, uint64_t seed, bool climbs,
-                                strut_descents **batch, strut_error *error);
-void strut_descents_free(strut_descents *batch);
+strut_status strut_search_tasks_create(const strut_potential *potential, uint64_t seed, bool climbs,
+                                strut_search_tasks **batch, strut_error *error);
+void strut_search_tasks_free(strut_search_tasks *batch);
 
 /** Works off up to STRUT_BATCH tasks; the results are valid until the next call. */
-const strut_task_result *strut_descents_run(strut_descents *batch, const strut_task *task, size_t count);
+const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task, size_t count);
 
 #endif

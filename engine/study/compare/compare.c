@@ -85,13 +85,13 @@ strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_
 static strut_status find_stand(strut_compare_work *work, const strut_model *model) {
   strut_error error = {0};
   strut_compare_column *column = work->column;
-  strut_status status = strut_stand_find(model, NULL, work->arena, &work->stand, &error);
+  strut_status status = strut_rest_state_find(model, NULL, work->arena, &work->stand, &error);
   if (status == STRUT_OK) {
     column->shape = work->stand.name;
     column->q = work->stand.q;
     return STRUT_OK;
   }
-  work->stand = (strut_stand){0};
+  work->stand = (strut_rest_state){0};
   status = strut_compare_leave_failed(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_STIFFNESS_Y,
                                       &error, status, false);
   double *q = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *q);
@@ -122,7 +122,7 @@ static strut_status find_limit(strut_compare_work *work, const strut_model *mode
 }
 
 static strut_status look_at_rest(strut_compare_work *work, const strut_model *model) {
-  strut_status status = strut_compare_things(work, model);
+  strut_status status = strut_compare_structure(work, model);
   if (status == STRUT_OK) status = find_stand(work, model);
   if (status == STRUT_OK) status = strut_compare_rigidity(work, model);
   if (status == STRUT_OK) status = strut_compare_states(work, model);
@@ -135,7 +135,7 @@ static strut_status look_at_rest(strut_compare_work *work, const strut_model *mo
 static strut_status look_at_motion(strut_compare_work *work) {
   strut_scene *scene = work->column->input->scene;
   strut_error error = {0};
-  strut_status status = strut_stand_resolve(scene, &error);
+  strut_status status = strut_resolve_start_equilibrium(scene, &error);
   bool resolved = status == STRUT_OK;
   if (!resolved)
     status = strut_compare_leave_failed(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, &error,

@@ -13,7 +13,7 @@ typedef struct strut_compare_work {
   const strut_compare_options *options;
   strut_compare_column *column;
   strut_arena *arena; /* of the result */
-  strut_stand stand;  /* where it stands; q is NULL where it does not */
+  strut_rest_state stand;  /* where it stands; q is NULL where it does not */
 } strut_compare_work;
 
 void strut_compare_put(strut_compare_work *work, strut_compare_quantity quantity, double value);
@@ -31,7 +31,7 @@ strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_
 /* Each returns STRUT_OK, STRUT_NO_MEMORY or STRUT_INTERRUPTED. */
 
 /** Counts, mass, and what contacts and drive are like. */
-strut_status strut_compare_things(strut_compare_work *work, const strut_model *model);
+strut_status strut_compare_structure(strut_compare_work *work, const strut_model *model);
 /** Self-stress and mechanisms of the drawn shape; forces of the one in which it stands. */
 strut_status strut_compare_rigidity(strut_compare_work *work, const strut_model *model);
 /** Stable states with energies and barriers. */

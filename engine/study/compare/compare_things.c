@@ -61,7 +61,7 @@ static void put_drive(strut_compare_work *work, const strut_scene *scene) {
                         "the drive is not a wave of one amplitude");
 }
 
-strut_status strut_compare_things(strut_compare_work *work, const strut_model *model) {
+strut_status strut_compare_structure(strut_compare_work *work, const strut_model *model) {
   const strut_scene *scene = model->scene;
   double kinds[3] = {0, 0, 0};
   for (size_t j = 0; j < scene->member_count; j++) kinds[scene->members[j].kind]++;

@@ -30,7 +30,7 @@ typedef struct structure {
   pthread_mutex_t lock;  /* of configurations */
 } structure;
 
-struct strut_standing {
+struct strut_equilibrium_cache {
   pthread_mutex_t lock;
   size_t count;
   structure *kept[MOST_KEPT];
@@ -153,7 +153,7 @@ static bool alike(const structure *a, const structure *b) {
 }
 
 /* The structure of a scene, kept or new; *own: the caller frees it. NULL: memory is out. */
-static structure *structure_of(strut_standing *standing, const strut_scene *scene, bool *own) {
+static structure *structure_of(strut_equilibrium_cache *standing, const strut_scene *scene, bool *own) {
   structure *s = describe(scene), *same = NULL;
   *own = false;
   if (!s) return NULL;
@@ -172,12 +172,12 @@ static structure *structure_of(strut_standing *standing, const strut_scene *scen
 static void look(const strut_scene *scene, size_t configuration, found *f) {
   strut_model *model = NULL;
   strut_arena arena = {0};
-  strut_stand stand;
+  strut_rest_state stand;
   size_t size = 2 * scene->node_count;
   f->known = true;
   f->status = strut_model_compile(scene, &model, &f->error);
   if (!f->status)
-    f->status = strut_stand_find(model, scene->configurations[configuration].name, &arena, &stand,
+    f->status = strut_rest_state_find(model, scene->configurations[configuration].name, &arena, &stand,
                                  &f->error);
   if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
     f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
@@ -196,21 +196,21 @@ static const found *find(structure *s, const strut_scene *scene, size_t configur
   return f;
 }
 
-strut_standing *strut_standing_create(void) {
-  strut_standing *standing = strut_allocate(1, sizeof *standing);
+strut_equilibrium_cache *strut_equilibrium_cache_create(void) {
+  strut_equilibrium_cache *standing = strut_allocate(1, sizeof *standing);
   if (standing && pthread_mutex_init(&standing->lock, NULL) == 0) return standing;
   strut_release(standing);
   return NULL;
 }
 
-void strut_standing_free(strut_standing *standing) {
+void strut_equilibrium_cache_free(strut_equilibrium_cache *standing) {
   if (!standing) return;
   for (size_t i = 0; i < standing->count; i++) free_structure(standing->kept[i]);
   pthread_mutex_destroy(&standing->lock);
   strut_release(standing);
 }
 
-strut_status strut_standing_resolve(strut_standing *standing, strut_scene *scene,
+strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_scene *scene,
                                     strut_error *error) {
   bool own;
   if (scene->start_equilibrium < 0) return STRUT_OK;
@@ -254,7 +254,7 @@ static int32_t nearest(structure *s, const strut_scene *scene, const double *pos
 }
 
 /* What the nearest configuration is must not depend on where the run began. */
-strut_status strut_standing_nearest(strut_standing *standing, const strut_scene *scene,
+strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing, const strut_scene *scene,
                                     const double *positions, int32_t *index, strut_error *error) {
   bool own = false;
   strut_scene drawn = *scene;

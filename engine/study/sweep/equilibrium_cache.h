@@ -12,14 +12,14 @@
 #include "engine/scene/scene.h"
 
 /** Safe from several threads. */
-typedef struct strut_standing strut_standing;
+typedef struct strut_equilibrium_cache strut_equilibrium_cache;
 
 /** NULL: memory is out. */
-strut_standing *strut_standing_create(void);
-void strut_standing_free(strut_standing *standing); /* NULL is allowed */
+strut_equilibrium_cache *strut_equilibrium_cache_create(void);
+void strut_equilibrium_cache_free(strut_equilibrium_cache *standing); /* NULL is allowed */
 
-/** As strut_stand_resolve. */
-strut_status strut_standing_resolve(strut_standing *standing, strut_scene *scene,
+/** As strut_resolve_start_equilibrium. */
+strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_scene *scene,
                                     strut_error *error);
 
 /**
@@ -27,7 +27,7 @@ strut_status strut_standing_resolve(strut_standing *standing, strut_scene *scene
  * will, or mirrored too where contacts alone tell the configuration: its index, -1 where none is
  * within a tenth of the structure's size. STRUT_OK, STRUT_NO_MEMORY.
  */
-strut_status strut_standing_nearest(strut_standing *standing, const strut_scene *scene,
+strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing, const strut_scene *scene,
                                     const double *positions, int32_t *index, strut_error *error);
 
 #endif

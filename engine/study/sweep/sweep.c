@@ -37,7 +37,7 @@ int strut_sweep_threads(void) {
 #endif
 }
 
-static bool make_room(const strut_sweep_plan *plan, strut_arena *arena, strut_sweep_room *room) {
+static bool make_room(const strut_sweep_plan *plan, strut_arena *arena, strut_row_buffer *room) {
   room->values = strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *room->values);
   room->numbers = strut_arena_allocate(arena, plan->column_count + 1, sizeof *room->numbers);
   room->words = strut_arena_allocate(arena, plan->column_count + 1, sizeof *room->words);
@@ -57,7 +57,7 @@ static bool going(sweep *s) {
 /* The first one says why. */
 static void stop(sweep *s, strut_status status, const strut_error *error) {
 #ifdef _OPENMP
-#pragma omp critical(strut_sweep_tell)
+#pragma omp critical(strut_sweep_report_progress)
 #endif
   if (!s->stopped) {
     strut_fail(s->error, status, "%s", error->message);
@@ -71,7 +71,7 @@ static void stop(sweep *s, strut_status status, const strut_error *error) {
 
 static void count_point(sweep *s, int64_t point, const strut_slot *row) {
 #ifdef _OPENMP
-#pragma omp critical(strut_sweep_tell)
+#pragma omp critical(strut_sweep_report_progress)
 #endif
   {
     strut_sweep_state *state = s->state;
@@ -146,7 +146,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   int threads = options->threads > 0 ? options->threads : strut_sweep_threads();
   strut_arena arena = {0};
   strut_error own = {0};
-  sweep s = {.worker = {plan, options, strut_standing_create()},
+  sweep s = {.worker = {plan, options, strut_equilibrium_cache_create()},
              .slots = slots,
              .state = state,
              .began = strut_run_clock(),
@@ -167,7 +167,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
     s.status = strut_fail(s.error, STRUT_INTERRUPTED, "interrupted");
   state->seconds = strut_run_clock() - s.began;
   state->row = NULL;
-  strut_standing_free(s.worker.standing);
+  strut_equilibrium_cache_free(s.worker.standing);
   strut_arena_free(&arena);
   return s.status;
 }

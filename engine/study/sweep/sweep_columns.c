@@ -169,11 +169,11 @@ void strut_sweep_plan_free(strut_sweep_plan *plan) {
   *plan = (strut_sweep_plan){0};
 }
 
-void strut_sweep_number(strut_sweep_room *room, double value) {
+void strut_sweep_number(strut_row_buffer *room, double value) {
   room->numbers[room->number_count++] = value;
 }
 
-void strut_sweep_word(strut_sweep_room *room, const char *word) {
+void strut_sweep_word(strut_row_buffer *room, const char *word) {
   char *to = room->words[room->word_count++];
   memset(to, 0, STRUT_SLOT_WORD);
   for (size_t i = 0; i + 1 < STRUT_SLOT_WORD && word[i]; i++) to[i] = word[i];
@@ -223,7 +223,7 @@ static const char *word_of(const strut_summary *s, strut_keep keep) {
 }
 
 static void fill_things(const strut_sweep_plan *plan, const strut_scene *scene,
-                        const strut_summary *s, strut_sweep_room *room) {
+                        const strut_summary *s, strut_row_buffer *room) {
   for (size_t i = 0; i < scene->contact_count && keeps(plan, STRUT_KEEP_CONTACTS); i++) {
     bool known = s && i < s->contact_count;
     strut_sweep_number(room, known ? s->contacts[i].duty : (double)NAN);
@@ -241,7 +241,7 @@ static double measured(const strut_summary *s, const char *name) {
 }
 
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
-                      const strut_summary *summary, const char *outcome, strut_sweep_room *room) {
+                      const strut_summary *summary, const char *outcome, strut_row_buffer *room) {
   for (size_t i = 0; i < ENTRIES; i++) {
     if (!keeps(plan, entries[i].keep)) continue;
     if (entries[i].word)

@@ -10,29 +10,29 @@
 #include "engine/study/sweep/sweep.h"
 
 /** The room of one thread, taken once. */
-typedef struct strut_sweep_room {
+typedef struct strut_row_buffer {
   strut_study_value *values;       /* (axis columns) */
   double *numbers;                 /* (columns) */
   char (*words)[STRUT_SLOT_WORD];  /* (columns) */
   size_t number_count, word_count; /* filled so far */
   char message[STRUT_SLOT_MESSAGE];
   strut_slot row;
-} strut_sweep_room;
+} strut_row_buffer;
 
 /* sweep_columns.c */
 
 /** Appends what is kept of a run; summary NULL: nothing of it is known. outcome may be "". */
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
-                      const strut_summary *summary, const char *outcome, strut_sweep_room *room);
-void strut_sweep_number(strut_sweep_room *room, double value);
-void strut_sweep_word(strut_sweep_room *room, const char *word);
+                      const strut_summary *summary, const char *outcome, strut_row_buffer *room);
+void strut_sweep_number(strut_row_buffer *room, double value);
+void strut_sweep_word(strut_row_buffer *room, const char *word);
 
 /* sweep_point.c */
 
 typedef struct strut_sweep_worker {
   const strut_sweep_plan *plan;
   const strut_sweep_options *options;
-  strut_standing *standing;
+  strut_equilibrium_cache *standing;
 } strut_sweep_worker;
 
 typedef enum strut_sweep_stage {
@@ -45,7 +45,7 @@ typedef enum strut_sweep_stage {
 typedef struct strut_sweep_job {
   strut_sweep_stage stage;
   int64_t point;
-  strut_sweep_room room;
+  strut_row_buffer room;
   strut_scene scene;
   strut_model *model; /* of the scene, where someone has compiled it */
   strut_run_options options;

@@ -15,7 +15,7 @@ static bool stops(strut_status status) {
 }
 
 /* What is not known of a point that failed. */
-static void pad(const strut_sweep_plan *plan, strut_sweep_room *room) {
+static void pad(const strut_sweep_plan *plan, strut_row_buffer *room) {
   size_t words = 0;
   for (size_t i = 0; i < plan->column_count; i++) words += plan->columns[i].word;
   while (room->word_count < words) strut_sweep_word(room, "");
@@ -24,7 +24,7 @@ static void pad(const strut_sweep_plan *plan, strut_sweep_room *room) {
 
 /* The point is over: its row, or what stops the sweep. */
 static bool end(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
-  strut_sweep_room *room = &job->room;
+  strut_row_buffer *room = &job->room;
   job->stage = STRUT_SWEEP_IDLE;
   job->status = stops(status) ? status : STRUT_OK;
   if (job->status) return false;
@@ -64,7 +64,7 @@ static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *j
 
 bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
   const strut_sweep_plan *plan = w->plan;
-  strut_sweep_room *room = &job->room;
+  strut_row_buffer *room = &job->room;
   room->number_count = room->word_count = 0;
   room->message[0] = '\0';
   job->point = point;
@@ -81,7 +81,7 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   strut_status status =
       plan->scenes.scene(plan->scenes.context, room->values, &job->scene, &job->error);
   if (status) return end(w, job, status);
-  status = strut_standing_resolve(w->standing, &job->scene, &job->error);
+  status = strut_equilibrium_cache_resolve(w->standing, &job->scene, &job->error);
   if (!status) status = begin_record(w, job);
   if (status) return end_scene(w, job, status);
   job->stage = STRUT_SWEEP_WAITING;
@@ -95,7 +95,7 @@ static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *j
   int32_t index = -1;
   if (!(w->plan->keep >> STRUT_KEEP_OUTCOME & 1u) || !scene->configuration_count) return STRUT_OK;
   strut_status status =
-      strut_standing_nearest(w->standing, scene, summary->positions, &index, &job->error);
+      strut_equilibrium_cache_nearest(w->standing, scene, summary->positions, &index, &job->error);
   snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
   return status;
 }
@@ -144,7 +144,7 @@ static bool take_first(const strut_sweep_worker *w, strut_sweep_job *job, strut_
 static bool take_second(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
                         const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
-  strut_sweep_room *room = &job->room;
+  strut_row_buffer *room = &job->room;
   if (!status) status = name_outcome(w, job, summary, outcome);
   const char *word = status ? "failed" : told(w, summary, outcome);
   bool same = !status && strcmp(job->first, word) == 0;

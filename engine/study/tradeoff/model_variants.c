@@ -83,7 +83,7 @@ static double soft_speed(const study *s, const strut_friction *friction) {
   return friction->width > 0 ? friction->width : s->scale[0];
 }
 
-static void describe(const study *s, kind what, strut_tradeoff_fidelity *f) {
+static void describe(const study *s, kind what, strut_model_variant *f) {
   const strut_scene *scene = s->scenes[0];
   if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
   if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
@@ -99,7 +99,7 @@ static void describe(const study *s, kind what, strut_tradeoff_fidelity *f) {
              strut_quantity_of(speed, 3, "m/s").text);
   }
   if (what != GROUND) return;
-  bool printed = scene->ground.damping_law == STRUT_DAMPING_PRINTED;
+  bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
   snprintf(f->name, sizeof f->name, "%s",
            printed ? "Hunt-Crossley ground" : "printed ground damping");
   snprintf(f->remark, sizeof f->remark,
@@ -122,7 +122,7 @@ strut_status strut_study_list_fidelities(study *s) {
   if (!r->fidelities) return STRUT_NO_MEMORY;
   for (int what = OWN; what < KINDS; what++) {
     if (!makes_sense(s->scenes[0], (kind)what) || (what != OWN && !all)) continue;
-    strut_tradeoff_fidelity *f = &r->fidelities[r->fidelity_count++];
+    strut_model_variant *f = &r->fidelities[r->fidelity_count++];
     describe(s, (kind)what, f);
     f->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof *f->value);
     f->floor = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->floor);
@@ -162,9 +162,9 @@ strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene 
   strut_contact *contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *contacts);
   if (!contacts) return STRUT_NO_MEMORY;
   if (what == GROUND)
-    scene->ground.damping_law = scene->ground.damping_law == STRUT_DAMPING_PRINTED
+    scene->ground.damping_law = scene->ground.damping_law == STRUT_DAMPING_APPROACH
                                     ? STRUT_DAMPING_HUNT_CROSSLEY
-                                    : STRUT_DAMPING_PRINTED;
+                                    : STRUT_DAMPING_APPROACH;
   for (size_t i = 0; i < scene->contact_count; i++) {
     contacts[i] = scene->contacts[i];
     change_contact(s, what, scene, &contacts[i]);

@@ -53,7 +53,7 @@ typedef struct strut_spread {
 } strut_spread;
 
 /** A model of the scene. The first is the scene's own. */
-typedef struct strut_tradeoff_fidelity {
+typedef struct strut_model_variant {
   char name[120];     /* such as "lumped masses" */
   char remark[600];   /* why it could not be run, or what was assumed; may be empty */
   bool run;
@@ -62,7 +62,7 @@ typedef struct strut_tradeoff_fidelity {
   double *floor;      /* (points) where the two agree; relative as errors are */
   double *model_error; /* (points); 0 for the first */
   strut_spread model_spread, floor_spread;
-} strut_tradeoff_fidelity;
+} strut_model_variant;
 
 /** One setting, run at every operating point. */
 typedef struct strut_tradeoff_row {
@@ -96,7 +96,7 @@ typedef struct strut_tradeoff {
   size_t base;      /* row */
   size_t left_out;  /* settings for which the budget did not suffice */
   double spent;     /* CPU time [s] */
-  strut_tradeoff_fidelity *fidelities;
+  strut_model_variant *fidelities;
   strut_tradeoff_row *rows;
   strut_arena arena;
 } strut_tradeoff;

@@ -14,7 +14,7 @@ static const double EDGE = 4, BETWEEN = 10, ASPECT = 0.62;
 
 /* A panel being gathered. */
 typedef struct panel {
-  strut_bargain *bargains;
+  strut_saving *bargains;
   size_t count;
   const char *groups[MOST_GROUPS];
   size_t group_count;
@@ -40,14 +40,14 @@ static bool add_bargain(panel *p, const strut_tradeoff *r, const strut_tradeoff_
     for (size_t k = 0; k < r->point_count; k++)
       if (errors[k] <= BEYOND) worst = fmax(worst, errors[k]);
   }
-  p->bargains[p->count++] = (strut_bargain){.group = group,
+  p->bargains[p->count++] = (strut_saving){.group = group,
                                             .label = name,
                                             .cost = row->evaluations,
                                             .error = gone ? HUGE_VAL : spread->median,
                                             .low = many ? spread->median : (double)NAN,
                                             .high = many ? worst : (double)NAN};
   if (row->diverged && !gone)
-    p->bargains[p->count++] = (strut_bargain){.group = group,
+    p->bargains[p->count++] = (strut_saving){.group = group,
                                               .cost = row->evaluations,
                                               .error = HUGE_VAL,
                                               .low = (double)NAN,

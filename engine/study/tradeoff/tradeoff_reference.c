@@ -57,14 +57,14 @@ static strut_status choose(const study *s, study_reference *r, int which,
   }
 }
 
-static void give_up(strut_tradeoff_fidelity *f, const char *why) {
+static void give_up(strut_model_variant *f, const char *why) {
   f->run = false;
   snprintf(f->remark, sizeof f->remark, "%s", why);
 }
 
 strut_status strut_study_reference_begin(study *s, int fidelity, study_reference *r) {
   strut_tradeoff *result = s->result;
-  strut_tradeoff_fidelity *f = &result->fidelities[fidelity];
+  strut_model_variant *f = &result->fidelities[fidelity];
   *r = (study_reference){.fidelity = fidelity, .limit = s->base.step};
   r->level = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->level);
   r->idle = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->idle);
@@ -118,7 +118,7 @@ static double doubt(const study *s, const study_reference *r, size_t p) {
 /* One level more at one point. */
 static strut_status refine_point(study *s, study_reference *r, size_t p) {
   strut_tradeoff *result = s->result;
-  strut_tradeoff_fidelity *f = &result->fidelities[r->fidelity];
+  strut_model_variant *f = &result->fidelities[r->fidelity];
   size_t count = result->value_count;
   double *a = r->latest, *b = r->latest + count, *kept = f->value + p * count;
   double before = strut_study_clock();
@@ -146,7 +146,7 @@ static strut_status refine_point(study *s, study_reference *r, size_t p) {
 strut_status strut_study_reference_refine(study *s, study_reference *r, double target,
                                           double share) {
   strut_tradeoff *result = s->result;
-  strut_tradeoff_fidelity *f = &result->fidelities[r->fidelity];
+  strut_model_variant *f = &result->fidelities[r->fidelity];
   if (!f->run || !r->method[0]) return STRUT_OK;
   for (bool more = true; more;) {
     more = false;

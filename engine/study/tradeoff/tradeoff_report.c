@@ -33,7 +33,7 @@ static void add_head(strut_buffer *table, const strut_tradeoff *r) {
 }
 
 static void add_fidelity(strut_buffer *table, const strut_tradeoff *r, int fidelity) {
-  const strut_tradeoff_fidelity *f = &r->fidelities[fidelity];
+  const strut_model_variant *f = &r->fidelities[fidelity];
   char a[STRUT_STUDY_WORDS];
   if (!f->run) return;
   strut_buffer_add(table, "\n%s%s\n", f->name, fidelity ? ", the best of its settings" : "");
@@ -141,7 +141,7 @@ static void put_spread(strut_json *json, struct cJSON *to, const char *key,
 static void put_fidelities(strut_json *json, const strut_tradeoff *r) {
   struct cJSON *list = strut_json_array(json, json->root, "models");
   for (size_t i = 0; i < r->fidelity_count; i++) {
-    const strut_tradeoff_fidelity *f = &r->fidelities[i];
+    const strut_model_variant *f = &r->fidelities[i];
     struct cJSON *object = strut_json_object(json, list, NULL);
     strut_json_text(json, object, "name", f->name);
     strut_json_text(json, object, "remark", f->remark[0] ? f->remark : NULL);

@@ -25,7 +25,7 @@ strut_spread strut_spread_of(const double *values, size_t count, double *scratch
 
 static void judge_row(study *s, strut_tradeoff_row *row) {
   strut_tradeoff *r = s->result;
-  const strut_tradeoff_fidelity *own = &r->fidelities[0], *f = &r->fidelities[row->fidelity];
+  const strut_model_variant *own = &r->fidelities[0], *f = &r->fidelities[row->fidelity];
   for (size_t p = 0; p < r->point_count; p++) {
     const double *value = row->value + p * r->value_count;
     double error = strut_study_distance(s, p, value, f->value + p * r->value_count);
@@ -56,7 +56,7 @@ static void find_fronts(strut_tradeoff *r) {
 void strut_study_judge(study *s) {
   strut_tradeoff *r = s->result;
   for (size_t i = 0; i < r->fidelity_count; i++) {
-    strut_tradeoff_fidelity *f = &r->fidelities[i];
+    strut_model_variant *f = &r->fidelities[i];
     for (size_t p = 0; p < r->point_count && i > 0 && f->run; p++)
       f->model_error[p] = strut_study_distance(s, p, f->value + p * r->value_count,
                                                r->fidelities[0].value + p * r->value_count);

@@ -84,7 +84,7 @@ static int bargain_of(const strut_tradeoff *r, int fidelity, double *level) {
 }
 
 static void advise_model(strut_buffer *text, const strut_tradeoff *r, int fidelity) {
-  const strut_tradeoff_fidelity *f = &r->fidelities[fidelity];
+  const strut_model_variant *f = &r->fidelities[fidelity];
   char a[STRUT_STUDY_WORDS], b[STRUT_STUDY_WORDS], c[STRUT_STUDY_WORDS];
   if (!f->run) {
     strut_buffer_add(text, "  %s: not run; %s\n", f->name, f->remark);
