@@ -11,7 +11,7 @@ packages="gcc libc6-dev make cmake pkg-config
   libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
 case ${1:-} in
   '') ;;
-  tests) packages="$packages g++ clang libcmocka-dev locales jq
+  tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq
   python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge parallel
   python3-pandas python3-matplotlib" ;;
   *) echo "usage: sh tests/install.sh [tests]" >&2; exit 1 ;;

@@ -12,24 +12,24 @@
 #include "engine/base/export.h"
 
 /* X(code, exit code of the program, text) */
-#define STRUT_STATUS_TABLE(X)                                                                     \
-  X(STRUT_OK, 0, "completed")                                                                     \
-  X(STRUT_USAGE, 1, "wrong use of the program or of a function")                                  \
-  X(STRUT_BAD_SCENE, 2, "the scene is not valid")                                                 \
-  X(STRUT_DIVERGED, 3, "diverged")                                                                \
-  X(STRUT_STEP_TOO_LARGE, 3, "the step is above the stability limit")                             \
-  X(STRUT_NOT_SETTLED, 3, "the structure did not come to rest")                                   \
-  X(STRUT_SINGULAR, 3, "a matrix is singular")                                                    \
-  X(STRUT_WORK_LIMIT, 3, "the work allowed was used up")                                          \
-  X(STRUT_FILE_TROUBLE, 4, "a file could not be read or written")                                 \
-  X(STRUT_NO_MEMORY, 4, "out of memory")                                                          \
+#define STRUT_STATUS_TABLE(X)                                                                      \
+  X(STRUT_OK, 0, "completed")                                                                      \
+  X(STRUT_USAGE, 1, "wrong use of the program or of a function")                                   \
+  X(STRUT_BAD_SCENE, 2, "the scene is not valid")                                                  \
+  X(STRUT_DIVERGED, 3, "diverged")                                                                 \
+  X(STRUT_STEP_TOO_LARGE, 3, "the step is above the stability limit")                              \
+  X(STRUT_NOT_SETTLED, 3, "the structure did not come to rest")                                    \
+  X(STRUT_SINGULAR, 3, "a matrix is singular")                                                     \
+  X(STRUT_WORK_LIMIT, 3, "the work allowed was used up")                                           \
+  X(STRUT_FILE_TROUBLE, 4, "a file could not be read or written")                                  \
+  X(STRUT_NO_MEMORY, 4, "out of memory")                                                           \
   X(STRUT_INTERRUPTED, 130, "interrupted")
 
 typedef enum strut_status {
 #define STRUT_STATUS_ENUM(code, exit_code, text) code,
   STRUT_STATUS_TABLE(STRUT_STATUS_ENUM)
 #undef STRUT_STATUS_ENUM
-  STRUT_STATUS_COUNT
+      STRUT_STATUS_COUNT
 } strut_status;
 
 /** What went wrong, in one sentence. A zeroed struct means "nothing". */

@@ -20,15 +20,15 @@
 #define STRUT_DEFINE_TRIG(inlined, number, sine, cosine)                                           \
   inlined number sine(number x) {                                                                  \
     number s = x * x, ss = s * s;                                                                  \
-    number even = -1.0 / 6 + ss * (-1.0 / 5040 +                                                   \
-                                   ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));        \
+    number even =                                                                                  \
+        -1.0 / 6 + ss * (-1.0 / 5040 + ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));    \
     number odd = 1.0 / 120 + ss * (1.0 / 362880 + ss * (1.0 / 6227020800.0));                      \
     return x + x * (s * (even + s * odd));                                                         \
   }                                                                                                \
   inlined number cosine(number x) {                                                                \
     number s = x * x, ss = s * s;                                                                  \
-    number even = 1.0 / 24 + ss * (1.0 / 40320 +                                                   \
-                                   ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));      \
+    number even =                                                                                  \
+        1.0 / 24 + ss * (1.0 / 40320 + ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));  \
     number odd = -1.0 / 720 + ss * (-1.0 / 3628800 + ss * (-1.0 / 87178291200.0));                 \
     number half = 0.5 * s, rest = 1.0 - half;                                                      \
     return rest + (((1.0 - rest) - half) + ss * (even + s * odd));                                 \

@@ -6,7 +6,8 @@
 
 #include "engine/forces/forces.h"
 
-bool strut_discrete_gradient_create(const strut_model *model, strut_state *state, strut_discrete_gradient *step) {
+bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
+                                    strut_discrete_gradient *step) {
   size_t slots = (size_t)model->members.slots;
   double **all[] = {&step->length0, &step->rest0,   &step->rest_rate, &step->sum[0],
                     &step->sum[1],  &step->lengths, &step->tension,   &step->slope};
@@ -17,7 +18,7 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
 }
 
 void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
-                          double begin, double h, strut_discrete_gradient *step) {
+                                   double begin, double h, strut_discrete_gradient *step) {
   const strut_member_table *t = &model->members;
   step->begin = begin, step->h = h;
   if (model->plan & STRUT_TERM_DRIVE) {
@@ -45,8 +46,7 @@ typedef struct stretching {
 
 static average of_taut(const stretching *m) {
   double elastic = 0.5 * m->stiffness * (m->s0 + m->s1);
-  return (average){elastic + m->damping * m->rate, elastic,
-                   0.5 * m->stiffness + m->damping / m->h};
+  return (average){elastic + m->damping * m->rate, elastic, 0.5 * m->stiffness + m->damping / m->h};
 }
 
 /* Slack at one end it pulls for a part of the step, in which it has half of that end's stretch. */
@@ -62,8 +62,7 @@ static average of_cable(const stretching *m) {
     double grows = tightens ? part * (2.0 - part) : part * part;
     double part_grows = (tightens ? 1.0 - part : -part) / change;
     a = (average){elastic + m->damping * m->rate * part, elastic,
-                  0.5 * m->stiffness * grows +
-                      m->damping * (part / m->h + m->rate * part_grows)};
+                  0.5 * m->stiffness * grows + m->damping * (part / m->h + m->rate * part_grows)};
     a.slope = fmax(a.slope, 0.0);
   }
   return a.tension > 0.0 ? a : (average){0.0, a.elastic, 0.0};
@@ -105,8 +104,9 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
   }
 }
 
-void strut_discrete_gradient_forces(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
-                           const double *q1, const double *u) {
+void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,
+                                    strut_discrete_gradient *step, const double *q1,
+                                    const double *u) {
   size_t bytes = (size_t)model->length * sizeof(double);
   state->evaluations++;
   memset(state->power, 0, sizeof state->power);
@@ -114,11 +114,13 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
     memcpy(state->force, model->constant_force, bytes);
   else
     memset(state->force, 0, bytes);
-  if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
+  if (model->plan & STRUT_TERM_LOADS)
+    strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
 }
 
-void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state, double *tension) {
+void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,
+                                      double *tension) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
     double dx = state->q[t->to[j]] - state->q[t->from[j]];

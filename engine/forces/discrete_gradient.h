@@ -18,29 +18,32 @@
 
 /** A step, and what its members do: (count) arrays in member order. */
 typedef struct strut_discrete_gradient {
-  double begin, h;       /* [s] */
-  double *length0;       /* at its begin [m] */
-  double *rest0;         /* (slots) rest lengths there [m] */
-  double *rest_rate;     /* (slots) at the middle of the step [m/s] */
-  double *sum[2];        /* x and y of the member's vectors at both ends, added [m] */
-  double *lengths;       /* lengths at both ends, added [m] */
-  double *tension;       /* on average [N] */
-  double *slope;         /* d tension / d length at the end [N/m] */
+  double begin, h;   /* [s] */
+  double *length0;   /* at its begin [m] */
+  double *rest0;     /* (slots) rest lengths there [m] */
+  double *rest_rate; /* (slots) at the middle of the step [m/s] */
+  double *sum[2];    /* x and y of the member's vectors at both ends, added [m] */
+  double *lengths;   /* lengths at both ends, added [m] */
+  double *tension;   /* on average [N] */
+  double *slope;     /* d tension / d length at the end [N/m] */
 } strut_discrete_gradient;
 
 /** Arrays in the state's arena. False: out of memory. */
-bool strut_discrete_gradient_create(const strut_model *model, strut_state *state, strut_discrete_gradient *step);
+bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
+                                    strut_discrete_gradient *step);
 /** Sets the step off at positions q (length), and rest lengths to those at its end. */
 void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
-                          double begin, double h, strut_discrete_gradient *step);
+                                   double begin, double h, strut_discrete_gradient *step);
 /**
  * Net forces on the nodes over the step that ends at q1 with velocity u on average, (length) both,
  * into state->force; with the ledger powers, which times h are the works. Loads are taken at the
  * middle of the step. Counts as an evaluation.
  */
-void strut_discrete_gradient_forces(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
-                           const double *q1, const double *u);
+void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,
+                                    strut_discrete_gradient *step, const double *q1,
+                                    const double *u);
 /** Tensions as (1) gives them at the state's q, with its rest lengths, into `tension` (count). */
-void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state, double *tension);
+void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,
+                                      double *tension);
 
 #endif

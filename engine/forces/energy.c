@@ -59,7 +59,7 @@ static double contact(const strut_model *model, const double *q) {
 strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t) {
   strut_drive_apply(model, state, t);
   return (strut_energies){strut_energy_kinetic(model, state->v), elastic(model, state),
-                        gravity(model, state->q), contact(model, state->q)};
+                          gravity(model, state->q), contact(model, state->q)};
 }
 
 double strut_energy_load_potential(const strut_model *model, const strut_state *state) {

@@ -16,7 +16,8 @@ typedef struct strut_energies {
 } strut_energies;
 
 /** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
-STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t);
+STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state,
+                                               double t);
 
 /** The first of them alone, at velocities v (length) [J]. */
 STRUT_API double strut_energy_kinetic(const strut_model *model, const double *v);

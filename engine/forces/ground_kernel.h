@@ -70,10 +70,9 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   if (ledger) ground_ledger(state, c->belt_speed, damper, into, friction, slip);
 }
 
-STRUT_INLINE void ground_all(const strut_model *model, strut_state *state,
-                             const double *restrict q, const double *restrict v,
-                             double *restrict force, bool sloped, bool rough, bool laws,
-                             bool ledger) {
+STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const double *restrict q,
+                             const double *restrict v, double *restrict force, bool sloped,
+                             bool rough, bool laws, bool ledger) {
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;

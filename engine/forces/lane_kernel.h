@@ -243,7 +243,8 @@ STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *rest
 /* The members' powers, place by place within groups as a single run sums them. */
 STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
                                        lane_powers (*powers)[LANE_PARTS]) {
-  lane_real drive = {0}, lost = {0}, zero = {0}, moved = lane_row(t->power, STRUT_POWER_EXCHANGED, p);
+  lane_real drive = {0}, lost = {0}, zero = {0},
+            moved = lane_row(t->power, STRUT_POWER_EXCHANGED, p);
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers[l][p].drive;
     lost += powers[l][p].lost;
@@ -270,9 +271,7 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
     int32_t begin = b * STRUT_BLOCK,
             end = begin + STRUT_BLOCK < m->count ? begin + STRUT_BLOCK : m->count;
 #define STRUT_CASE(set)                                                                            \
-  case set:                                                                                        \
-    lane_block(t, q, v, t->force, begin, end, set, ledger, powers);                                \
-    break
+  case set: lane_block(t, q, v, t->force, begin, end, set, ledger, powers); break
     switch (m->block_terms[b] & (K | S | D)) {
       STRUT_CASE(0);
       STRUT_CASE(K);

@@ -24,10 +24,10 @@ typedef struct member_vectors {
 
 STRUT_INLINE member_vectors members_gather(const double *restrict p, const uint32_t *restrict from,
                                            const uint32_t *restrict to) {
-  strut_lanes even = strut_lanes_join(p + to[0], p + to[2]) -
-                     strut_lanes_join(p + from[0], p + from[2]);
-  strut_lanes odd = strut_lanes_join(p + to[1], p + to[3]) -
-                    strut_lanes_join(p + from[1], p + from[3]);
+  strut_lanes even =
+      strut_lanes_join(p + to[0], p + to[2]) - strut_lanes_join(p + from[0], p + from[2]);
+  strut_lanes odd =
+      strut_lanes_join(p + to[1], p + to[3]) - strut_lanes_join(p + from[1], p + from[3]);
   return (member_vectors){__builtin_shufflevector(even, odd, 0, 4, 2, 6),
                           __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
 }
@@ -66,7 +66,8 @@ STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
   member_vectors d = members_gather(q, from, to);
   strut_lanes length = members_root(d.x * d.x + d.y * d.y);
-  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0}), rate = {0};
+  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0}),
+              rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
     member_vectors w = members_gather(v, from, to);
     rate = (w.x * d.x + w.y * d.y) * inverse; /* the products need not wait for the root */
@@ -100,7 +101,7 @@ STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
   for (int32_t b = 0; b < t.blocks; b++) {
     int32_t begin = b * STRUT_BLOCK;
     int32_t end = begin + STRUT_BLOCK < t.slots ? begin + STRUT_BLOCK : t.slots;
-#define STRUT_CASE(set)                                                                           \
+#define STRUT_CASE(set)                                                                            \
   case set: members_block(&t, state, q, v, force, begin, end, set, ledger, powers); break
     switch (t.block_terms[b] & (K | S | D)) {
       STRUT_CASE(0);

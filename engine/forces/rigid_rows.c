@@ -91,7 +91,8 @@ void strut_rigid_spread(const strut_rigid *rigid, double *force) {
   for (int32_t r = 0; r < rigid->rows; r++)
     for (int e = 0; e < 2; e++) {
       if (rigid->row[r][e] < 0) continue;
-      double *f = force + rigid->at[rigid->row[r][e]], push = e ? rigid->right[r] : -rigid->right[r];
+      double *f = force + rigid->at[rigid->row[r][e]],
+             push = e ? rigid->right[r] : -rigid->right[r];
       f[0] += push * rigid->way[r][0];
       f[1] += push * rigid->way[r][1];
     }

@@ -16,8 +16,7 @@ static void add_member(strut_triplets *sum, const int32_t *row_of, uint32_t a, u
 }
 
 static void add_members(const strut_model *model, const double *q, const double *rest,
-                        const int32_t *row_of, strut_triplets *stiffness,
-                        strut_triplets *damping) {
+                        const int32_t *row_of, strut_triplets *stiffness, strut_triplets *damping) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
     uint32_t a = t->from[j], b = t->to[j];

@@ -9,10 +9,10 @@
 #include "engine/model/state.h"
 
 typedef struct strut_tangent {
-  int32_t n;           /* free coordinates */
-  int32_t *coordinate; /* (n) index into coordinate arrays */
-  strut_sparse *stiffness; /* K = sum c u u' + (t/L)(1 - u u') + ground [N/m] */
-  strut_sparse *damping;   /* D = sum k u u' + ground [N s/m] */
+  int32_t n;                 /* free coordinates */
+  int32_t *coordinate;       /* (n) index into coordinate arrays */
+  strut_sparse *stiffness;   /* K = sum c u u' + (t/L)(1 - u u') + ground [N/m] */
+  strut_sparse *damping;     /* D = sum k u u' + ground [N s/m] */
   struct strut_rigid *rigid; /* NULL; for who wants the motions that rigid bars leave, rigid.h */
 } strut_tangent;
 

@@ -23,10 +23,10 @@ typedef struct strut_integrator {
   int order;               /* of convergence on smooth scenes */
   int evaluations;         /* of the forces per step, where no event interrupts it */
   strut_region region;
-  bool implicit_damper;    /* the ground's dampers do not limit the step */
-  bool events;             /* locates events: modes of contacts are frozen within a step */
-  bool rigid;              /* keeps the lengths of rigid bars */
-  bool no_ground;          /* cannot step over contacts */
+  bool implicit_damper; /* the ground's dampers do not limit the step */
+  bool events;          /* locates events: modes of contacts are frozen within a step */
+  bool rigid;           /* keeps the lengths of rigid bars */
+  bool no_ground;       /* cannot step over contacts */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
   void *(*create)(const strut_model *model, strut_state *state);
   /** Must be called whenever someone else has changed q or v; NULL where nothing depends on it. */
@@ -52,8 +52,8 @@ STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_error *error);
 
 /* The rows of the table. */
-extern const strut_integrator strut_integrator_rk4, strut_integrator_euler,
-    strut_integrator_verlet, strut_integrator_rk4_events, strut_integrator_euler_events,
-    strut_integrator_verlet_events, strut_integrator_adaptive, strut_integrator_midpoint;
+extern const strut_integrator strut_integrator_rk4, strut_integrator_euler, strut_integrator_verlet,
+    strut_integrator_rk4_events, strut_integrator_euler_events, strut_integrator_verlet_events,
+    strut_integrator_adaptive, strut_integrator_midpoint;
 
 #endif

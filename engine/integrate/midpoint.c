@@ -24,14 +24,14 @@ static const double ROUNDING = 0x1p-52;
 typedef struct midpoint_workspace {
   strut_discrete_gradient step;
   strut_midpoint_matrix matrix;
-  double *u, *q1;           /* (length) mean velocity, positions at the end */
-  double *before[2];        /* (length) mean velocities of the last two steps, latest first */
-  int known;                /* of those */
-  double *grid[2];          /* (length) positions and velocities on the latest grid point */
-  double *held;             /* (members) tension in the step before [N] */
-  double *x, *residual;     /* (n) correction, and what it is to undo */
-  double stiffest;          /* about the largest squared frequency [1/s^2] */
-  double factor_step;       /* the step that the factor is for [s]; 0: none; below: never restarted */
+  double *u, *q1;       /* (length) mean velocity, positions at the end */
+  double *before[2];    /* (length) mean velocities of the last two steps, latest first */
+  int known;            /* of those */
+  double *grid[2];      /* (length) positions and velocities on the latest grid point */
+  double *held;         /* (members) tension in the step before [N] */
+  double *x, *residual; /* (n) correction, and what it is to undo */
+  double stiffest;      /* about the largest squared frequency [1/s^2] */
+  double factor_step;   /* the step that the factor is for [s]; 0: none; below: never restarted */
 } midpoint_workspace;
 
 /* Stiffness over mass at the worst node. */
@@ -82,7 +82,8 @@ static void guess(const strut_model *model, const strut_state *state, midpoint_w
 }
 
 /* Correction at u into x. False where there are no numbers. */
-static bool correct(const strut_model *model, strut_state *state, midpoint_workspace *w, double *x) {
+static bool correct(const strut_model *model, strut_state *state, midpoint_workspace *w,
+                    double *x) {
   const strut_midpoint_matrix *m = &w->matrix;
   double h = w->step.h;
   for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + h * w->u[i];

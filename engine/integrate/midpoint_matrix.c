@@ -28,7 +28,8 @@ static void add_masses(const strut_model *model, const int32_t *row_of, strut_tr
 
 static size_t mass_entries(const strut_model *model) {
   const strut_mass_operator *op = model->mass->coordinate;
-  return (size_t)op[0].matrix->start[op[0].matrix->n] + (size_t)op[1].matrix->start[op[1].matrix->n];
+  return (size_t)op[0].matrix->start[op[0].matrix->n] +
+         (size_t)op[1].matrix->start[op[1].matrix->n];
 }
 
 /* M with room for what members add: the pattern of the step's matrix. */
@@ -138,7 +139,7 @@ static void add_member(const strut_discrete_gradient *step, int32_t j, double te
 }
 
 bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
-                            const double *tension, bool stiff, strut_midpoint_matrix *m) {
+                                  const double *tension, bool stiff, strut_midpoint_matrix *m) {
   for (bool clip = stiff;; clip = true) {
     memcpy(m->matrix->value, m->mass, (size_t)m->matrix->start[m->n] * sizeof *m->mass);
     for (int32_t j = 0; j < model->members.count; j++)

@@ -16,22 +16,23 @@ typedef struct strut_midpoint_matrix {
   int32_t n;           /* free coordinates */
   int32_t *coordinate; /* (n) where they stand in coordinate arrays */
   strut_sparse *matrix;
-  double *mass;        /* M at the matrix's places */
-  int32_t *place;      /* (members, STRUT_MIDPOINT_PLACES) into its values; -1 where supported */
+  double *mass;           /* M at the matrix's places */
+  int32_t *place;         /* (members, STRUT_MIDPOINT_PLACES) into its values; -1 where supported */
   strut_refactor *factor; /* NULL where nothing is free */
-  double *lightness;   /* (members) inverse masses of their free ends, added [1/kg] */
+  double *lightness;      /* (members) inverse masses of their free ends, added [1/kg] */
   double *way[2], *slope; /* (members) direction and slope that the factor was made with */
 } strut_midpoint_matrix;
 
 /** In the arena; false: out of memory. */
-bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena, strut_midpoint_matrix *m);
+bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
+                                  strut_midpoint_matrix *m);
 /**
  * Builds and factorises it for the step as it was evaluated last. `tension` (members): what turns
  * with a member; where that leaves no positive definite matrix, or with `stiff`, compression is left
  * out, which makes it one. False: not even then.
  */
 bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
-                            const double *tension, bool stiff, strut_midpoint_matrix *m);
+                                  const double *tension, bool stiff, strut_midpoint_matrix *m);
 /**
  * Would the factor mislead? A stiff member that has turned by an angle a since, whose force it takes
  * for one along the old direction, moves its ends aside so far that its length changes by

@@ -25,9 +25,9 @@ static void *rk4_create(const strut_model *model, strut_state *state) {
 }
 
 /* Positions and velocities of the next stage: q + h v, v0 + h a. */
-STRUT_INLINE void stage(int32_t n, double h, const double *restrict q0,
-                        const double *restrict v0, const double *restrict v,
-                        const double *restrict a, double *restrict q, double *restrict next) {
+STRUT_INLINE void stage(int32_t n, double h, const double *restrict q0, const double *restrict v0,
+                        const double *restrict v, const double *restrict a, double *restrict q,
+                        double *restrict next) {
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes_store(q + i, strut_lanes_load(q0 + i) + h * strut_lanes_load(v + i));
     strut_lanes_store(next + i, strut_lanes_load(v0 + i) + h * strut_lanes_load_pairs(a + i));
@@ -81,7 +81,7 @@ STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)
 
 STRUT_CLONES
 static void rk4_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
-                          int64_t count) {
+                      int64_t count) {
   run_steps(model, state, w, dt, count, state->ledger, true);
 }
 

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
-#include "engine/model/model.h"
 #include "engine/model/memory_estimate.h"
+#include "engine/model/model.h"
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
@@ -188,8 +188,8 @@ static void compile_contacts(strut_model *model, bool *failed) {
     model->plan |= STRUT_TERM_FRICTION;
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->plan |= STRUT_TERM_LAWS;
   }
-  *t = (strut_contact_table){(int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height,
-                             scene->ground.belt_speed};
+  *t = (strut_contact_table){
+      (int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height, scene->ground.belt_speed};
   model->plan |= STRUT_TERM_CONTACT;
   if (scene->ground.slope == 0.0) return;
   double c = cos(scene->ground.slope), s = sin(scene->ground.slope);
@@ -206,9 +206,9 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   if (!model) return strut_memory_fail_model(scene, error);
   model->scene = scene;
   bool failed = false;
-  void (*const passes[])(strut_model *, bool *) = {compile_nodes,   compile_members,
-                                                   compile_drives,  compile_weights,
-                                                   compile_loads,   compile_contacts};
+  void (*const passes[])(strut_model *, bool *) = {compile_nodes,  compile_members,
+                                                   compile_drives, compile_weights,
+                                                   compile_loads,  compile_contacts};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

@@ -10,7 +10,7 @@
 #ifndef STRUT_ENGINE_MODEL_HOT_H
 #define STRUT_ENGINE_MODEL_HOT_H
 
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(STRUT_NO_CLONES) && \
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(STRUT_NO_CLONES) &&                  \
     !defined(__AVX2__) && defined(__OPTIMIZE__)
 #define STRUT_CLONES __attribute__((target_clones("avx2", "default")))
 #else

@@ -15,16 +15,16 @@
 /** Lower triangle of a symmetric n x n matrix, compressed columns, rows ascending, diagonal first. */
 typedef struct strut_sparse {
   int32_t n;
-  int32_t *start;  /* (n + 1) */
-  int32_t *row;    /* (start[n]) */
-  double *value;   /* (start[n]) */
+  int32_t *start; /* (n + 1) */
+  int32_t *row;   /* (start[n]) */
+  double *value;  /* (start[n]) */
 } strut_sparse;
 
 /** P A P' = L D L' with unit lower L. */
 typedef struct strut_factor {
   int32_t n;
-  int32_t *order;  /* (n) order[i] = the row of A that stands at i */
-  int32_t *start;  /* (n + 1) columns of L without the diagonal */
+  int32_t *order; /* (n) order[i] = the row of A that stands at i */
+  int32_t *start; /* (n + 1) columns of L without the diagonal */
   int32_t *row;
   double *value;
   double *inverse_diagonal; /* (n) 1 / D */
@@ -51,9 +51,9 @@ void strut_factor_solve_pair(const strut_factor *factor, double *restrict b);
 typedef struct strut_ldl strut_ldl;
 
 typedef struct strut_inertia {
-  int32_t negative;     /* entries of D below zero: as many as eigenvalues, if `smallest` is large */
-  int32_t row;          /* of A, at the pivot that `smallest` belongs to */
-  double smallest;      /* least |D| / |its diagonal in A| (1 for a diagonal of 0): what the
+  int32_t negative; /* entries of D below zero: as many as eigenvalues, if `smallest` is large */
+  int32_t row;      /* of A, at the pivot that `smallest` belongs to */
+  double smallest;  /* least |D| / |its diagonal in A| (1 for a diagonal of 0): what the
                            subtractions left; 0: no factor, rounding (1e-16) and little above: the
                            pivot is noise */
   double least, largest; /* |D| */

@@ -2,8 +2,8 @@
 #include "engine/model/mass.h"
 
 #include "engine/model/mass_matrix.h"
-#include "engine/model/model.h"
 #include "engine/model/memory_estimate.h"
+#include "engine/model/model.h"
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
 static int32_t find_root(int32_t *parent, int32_t i) {
@@ -173,8 +173,7 @@ static strut_status make_operator(strut_model *model, strut_arena *scratch, stru
 /* A free coordinate without mass cannot be moved: such a model is for statics only. */
 static bool has_massless_node(const strut_model *model) {
   for (int32_t i = 0; i < model->node_count; i++)
-    if (!(model->weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1]))
-      return true;
+    if (!(model->weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1])) return true;
   return false;
 }
 

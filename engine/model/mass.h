@@ -27,13 +27,13 @@ typedef struct strut_mass_operator {
   const double *inverse; /* (length) 1/m where no mass couples; 0 where supported or in a block;
                             at 2 i + coordinate, the other places belong to the other one */
   int32_t block_count;
-  const int32_t *block_size;  /* (block_count) */
-  const uint32_t *block_at;   /* 2 * node of their rows, one block after the other */
+  const int32_t *block_size;   /* (block_count) */
+  const uint32_t *block_at;    /* 2 * node of their rows, one block after the other */
   const double *block_inverse; /* dense inverses, row by row, one after the other */
-  const strut_factor *factor; /* of the remaining nodes, or NULL */
-  const int32_t *factor_node; /* (factor->n) node of each row, already in the factor's order */
-  const strut_sparse *matrix; /* M of the free nodes, lower triangle */
-  const int32_t *matrix_node; /* (matrix->n) node of each row of it */
+  const strut_factor *factor;  /* of the remaining nodes, or NULL */
+  const int32_t *factor_node;  /* (factor->n) node of each row, already in the factor's order */
+  const strut_sparse *matrix;  /* M of the free nodes, lower triangle */
+  const int32_t *matrix_node;  /* (matrix->n) node of each row of it */
 } strut_mass_operator;
 
 typedef struct strut_mass {

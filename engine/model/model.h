@@ -32,8 +32,8 @@ typedef enum strut_term {
   STRUT_TERM_FRICTION = 1 << 7, /* Coulomb with Karnopp's band (9) */
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
   STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
-  STRUT_TERM_LAWS = 1 << 10,    /* some contact has another law of damping or friction than (8), (9) */
-  STRUT_TERM_RIGID = 1 << 11    /* bars keep their lengths */
+  STRUT_TERM_LAWS = 1 << 10, /* some contact has another law of damping or friction than (8), (9) */
+  STRUT_TERM_RIGID = 1 << 11 /* bars keep their lengths */
 } strut_term;
 
 /**
@@ -42,12 +42,12 @@ typedef enum strut_term {
  */
 typedef struct strut_member_table {
   int32_t count, slots, blocks;
-  const uint32_t *from, *to; /* where nodes i1, i2 have their x in coordinate arrays: 2 * node */
-  const double *stiffness;   /* c [N/m] */
-  const double *damping;     /* k [N s/m] */
-  const double *rest;        /* lambda_0 [m] */
-  const double *slack;       /* least force [N]: 0 for cables, -INFINITY otherwise */
-  const double *mass;        /* m [kg] */
+  const uint32_t *from, *to;   /* where nodes i1, i2 have their x in coordinate arrays: 2 * node */
+  const double *stiffness;     /* c [N/m] */
+  const double *damping;       /* k [N s/m] */
+  const double *rest;          /* lambda_0 [m] */
+  const double *slack;         /* least force [N]: 0 for cables, -INFINITY otherwise */
+  const double *mass;          /* m [kg] */
   const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
 } strut_member_table;
 
@@ -66,9 +66,9 @@ typedef struct strut_contact_table {
   int32_t count;
   const uint32_t *at;               /* where its x stands in coordinate arrays: 2 * node */
   const strut_contact_entry *entry; /* (count) */
-  double tangent[2], normal[2];           /* unit vectors along and out of the ground */
-  double height;                          /* at x = 0 [m] */
-  double belt_speed;                      /* [m/s] */
+  double tangent[2], normal[2];     /* unit vectors along and out of the ground */
+  double height;                    /* at x = 0 [m] */
+  double belt_speed;                /* [m/s] */
 } strut_contact_table;
 
 /** Signals that act on the structure. */
@@ -88,13 +88,13 @@ typedef struct strut_model {
   const strut_scene *scene;
   unsigned plan; /* strut_term bits */
   int32_t node_count, length;
-  double size;             /* largest extent as drawn, or 1 [m]: the scale for "beyond" */
-  const double *start;     /* (length) positions at t = 0 */
-  const double *velocity;  /* (length) velocities at t = 0 */
+  double size;                  /* largest extent as drawn, or 1 [m]: the scale for "beyond" */
+  const double *start;          /* (length) positions at t = 0 */
+  const double *velocity;       /* (length) velocities at t = 0 */
   const double *constant_force; /* (length) gravity and constant loads; NULL when all zero */
-  const double *weight;    /* (node_count) mass half of each member at each node, and point masses */
-  const uint8_t *fixed;    /* (length) 1 where supported */
-  const double *point_mass;     /* (node_count) [kg] */
+  const double *weight; /* (node_count) mass half of each member at each node, and point masses */
+  const uint8_t *fixed; /* (length) 1 where supported */
+  const double *point_mass; /* (node_count) [kg] */
   strut_member_table members;
   strut_contact_table contacts;
   strut_drive_table drives;

@@ -24,8 +24,8 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
-  if (!state->q || !state->v || !state->rest || !state->taut_stretch || !state->taut_tension || !state->rest_rate || !state->force ||
-      !state->normal || !state->friction || !state->scratch) {
+  if (!state->q || !state->v || !state->rest || !state->taut_stretch || !state->taut_tension ||
+      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

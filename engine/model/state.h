@@ -14,64 +14,64 @@
 
 /** Powers that the ledger integrates beside the motion [W]. Kernels write them by fours. */
 typedef enum strut_power {
-  STRUT_POWER_DRIVE,    /* actuators, on the structure */
-  STRUT_POWER_LOAD,     /* loads that change with time */
-  STRUT_POWER_BELT,     /* the ground's own motion, through friction */
-  STRUT_POWER_MEMBERS,  /* lost in member dampers, > 0 */
-  STRUT_POWER_CONTACT,  /* lost in ground dampers, > 0 */
-  STRUT_POWER_FRICTION, /* lost in friction, > 0 */
-  STRUT_POWER_EXCHANGED,    /* sum of the absolute values of the above */
+  STRUT_POWER_DRIVE,     /* actuators, on the structure */
+  STRUT_POWER_LOAD,      /* loads that change with time */
+  STRUT_POWER_BELT,      /* the ground's own motion, through friction */
+  STRUT_POWER_MEMBERS,   /* lost in member dampers, > 0 */
+  STRUT_POWER_CONTACT,   /* lost in ground dampers, > 0 */
+  STRUT_POWER_FRICTION,  /* lost in friction, > 0 */
+  STRUT_POWER_EXCHANGED, /* sum of the absolute values of the above */
   STRUT_POWER_COUNT,
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
 typedef enum strut_failure {
   STRUT_FAILURE_NONE,
-  STRUT_FAILURE_STEP,   /* the step has become too small to matter */
-  STRUT_FAILURE_NEWTON, /* an implicit step has no solution nearby */
-  STRUT_FAILURE_RIGID,  /* rigid bars cannot keep their lengths */
+  STRUT_FAILURE_STEP,      /* the step has become too small to matter */
+  STRUT_FAILURE_NEWTON,    /* an implicit step has no solution nearby */
+  STRUT_FAILURE_RIGID,     /* rigid bars cannot keep their lengths */
   STRUT_FAILURE_INTERRUPT, /* *interrupt was set */
-  STRUT_FAILURE_WORK, /* most_evaluations were made */
-  STRUT_FAILURE_IMPLICIT /* an implicit step of the whole structure has no solution nearby */
+  STRUT_FAILURE_WORK,      /* most_evaluations were made */
+  STRUT_FAILURE_IMPLICIT   /* an implicit step of the whole structure has no solution nearby */
 } strut_failure;
 
 typedef struct strut_state {
   /* the state proper: filled by strut_state_reset, advanced by an integrator */
-  int64_t step;  /* n; time is n * dt, never a sum */
-  double *q;     /* positions [m] */
-  double *v;     /* velocities [m/s] */
-  double work[STRUT_POWER_ROOM];  /* powers integrated since t = 0 [J] */
-  double load_mark;               /* strut_energy_reset_load_work: where the works count from [J] */
-  double refined_until;           /* methods that refine after touchdowns do so until then [s] */
-  int64_t evaluations;            /* of the forces since the reset */
-  int64_t events;                 /* switches located in time, since the reset */
+  int64_t step;                  /* n; time is n * dt, never a sum */
+  double *q;                     /* positions [m] */
+  double *v;                     /* velocities [m/s] */
+  double work[STRUT_POWER_ROOM]; /* powers integrated since t = 0 [J] */
+  double load_mark;              /* strut_energy_reset_load_work: where the works count from [J] */
+  double refined_until;          /* methods that refine after touchdowns do so until then [s] */
+  int64_t evaluations;           /* of the forces since the reset */
+  int64_t events;                /* switches located in time, since the reset */
   const volatile sig_atomic_t *interrupt; /* a method whose steps may take long gives up soon after
                                              it becomes non-zero; NULL after the reset */
-  int64_t most_evaluations;       /* of the forces: it gives up soon after so many too; 0: any
+  int64_t most_evaluations; /* of the forces: it gives up soon after so many too; 0: any
                                      number, as after the reset */
-  strut_failure trouble;          /* why a method could not go on; it stays on the latest grid point */
-  int32_t trouble_node;           /* where, with STRUT_FAILURE_IMPLICIT */
+  strut_failure trouble;    /* why a method could not go on; it stays on the latest grid point */
+  int32_t trouble_node;     /* where, with STRUT_FAILURE_IMPLICIT */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */
   double *rest_rate; /* (slots) [m/s] */
   double *taut_stretch, *taut_tension; /* (slots) a member acts where both are exceeded [m], [N]:
                         0 for cables, -INFINITY otherwise; methods with events freeze cables here */
-  double drive_time; /* the time these two are for [s]; NAN before the first evaluation */
+  double drive_time;  /* the time these two are for [s]; NAN before the first evaluation */
   double time_offset; /* drives and loads stand where they do so much later than n * dt [s] */
 
   /* position, velocity and time dependent: strut_forces */
-  double *force;     /* net force on each node [N] */
-  double *normal;    /* (contacts) normal force [N]; in the step only where it touches */
-  double *friction;  /* (contacts) friction force along the ground [N] */
+  double *force;    /* net force on each node [N] */
+  double *normal;   /* (contacts) normal force [N]; in the step only where it touches */
+  double *friction; /* (contacts) friction force along the ground [N] */
   double power[STRUT_POWER_ROOM]; /* [W]; only where the ledger is kept */
 
   /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
      forces follow from q, v and t alone */
   const double *held_normal, *held_friction;
   struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
-  bool ledger;       /* keep the ledger? It costs some arithmetic per evaluation */
-  double *scratch;   /* (length) for the mass solve */
+  bool ledger;               /* keep the ledger? It costs some arithmetic per evaluation */
+  double *scratch;           /* (length) for the mass solve */
   strut_arena arena;
 } strut_state;
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/file.h"
 #include "engine/base/number_text.h"
+#include "engine/output/file.h"
 
 enum { BUFFER = 1 << 16, FILE_COUNT = 4 };
 

@@ -22,8 +22,7 @@ STRUT_API strut_status strut_directory_create(const char *directory, strut_error
 STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
                                        strut_error *error);
 /** The same for a path of any kind, such as the argument of an option; its folder exists. */
-STRUT_API strut_status strut_file_open_path(strut_file *file, const char *path,
-                                            strut_error *error);
+STRUT_API strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error);
 /** Flushes, synchronises and renames; on failure nothing of it is left. */
 STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
 /** Closes and removes what was written. Does nothing on a committed or zeroed file. */

@@ -37,27 +37,20 @@ typedef struct hdf5 {
 static const char *item_scale(strut_channel id) {
   switch (id) {
     case STRUT_CHANNEL_POSITION:
-    case STRUT_CHANNEL_VELOCITY:
-      return "node";
+    case STRUT_CHANNEL_VELOCITY: return "node";
     case STRUT_CHANNEL_LENGTH:
-    case STRUT_CHANNEL_FORCE:
-      return "member";
-    case STRUT_CHANNEL_CONTACT:
-      return "contact_node";
-    case STRUT_CHANNEL_ENERGY:
-      break;
+    case STRUT_CHANNEL_FORCE: return "member";
+    case STRUT_CHANNEL_CONTACT: return "contact_node";
+    case STRUT_CHANNEL_ENERGY: break;
   }
   return "system";
 }
 
 static const char *component_scale(strut_channel id) {
   switch (id) {
-    case STRUT_CHANNEL_CONTACT:
-      return "contact_component";
-    case STRUT_CHANNEL_ENERGY:
-      return "energy_component";
-    default:
-      return "axis";
+    case STRUT_CHANNEL_CONTACT: return "contact_component";
+    case STRUT_CHANNEL_ENERGY: return "energy_component";
+    default: return "axis";
   }
 }
 

@@ -10,11 +10,17 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 
-static const char *const names[] = {
-    "node_names.csv",        "rows.csv",                "columns.csv",
-    "connectivity.mtx",    "equilibrium.mtx", "mass.mtx",
-    "stiffness_elastic.mtx", "stiffness_geometric.mtx", "stiffness_contact.mtx",
-    "damping.mtx",         NULL};
+static const char *const names[] = {"node_names.csv",
+                                    "rows.csv",
+                                    "columns.csv",
+                                    "connectivity.mtx",
+                                    "equilibrium.mtx",
+                                    "mass.mtx",
+                                    "stiffness_elastic.mtx",
+                                    "stiffness_geometric.mtx",
+                                    "stiffness_contact.mtx",
+                                    "damping.mtx",
+                                    NULL};
 
 /* All that the files are made of. */
 typedef struct source {
@@ -160,10 +166,9 @@ static strut_status write_file(const strut_results *results, const char *name,
 }
 
 static strut_status write_all(const char *directory, const source *from, strut_error *error) {
-  static write_function *const writers[] = {write_nodes,   write_rows,        write_columns,
-                                            write_connectivity, write_equilibrium, write_mass,
-                                            write_elastic, write_geometric,   write_contact,
-                                            write_damping};
+  static write_function *const writers[] = {
+      write_nodes, write_rows,    write_columns,   write_connectivity, write_equilibrium,
+      write_mass,  write_elastic, write_geometric, write_contact,      write_damping};
   strut_results results = {0};
   strut_status status = strut_results_begin_named(&results, directory, names, error);
   if (status != STRUT_OK) return status;
@@ -175,13 +180,12 @@ static strut_status write_all(const char *directory, const source *from, strut_e
   return status;
 }
 
-strut_status strut_matrices_write(const char *directory, const strut_model *model,
-                                  const double *q, const char *at, strut_error *error) {
+strut_status strut_matrices_write(const char *directory, const strut_model *model, const double *q,
+                                  const char *at, strut_error *error) {
   source from = {.model = model, .q = q, .at = at};
   strut_arena arena = {0};
   strut_status status = strut_equilibrium_matrix_build(model, q, &arena, &from.equilibrium);
-  if (status == STRUT_OK)
-    status = strut_linear_matrices_build(model, q, &arena, &from.linear);
+  if (status == STRUT_OK) status = strut_linear_matrices_build(model, q, &arena, &from.linear);
   if (status == STRUT_OK) {
     strut_c_locale locale = strut_c_locale_enter();
     status = write_all(directory, &from, error);

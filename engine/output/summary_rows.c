@@ -126,12 +126,9 @@ static void add_energy(rows *r) {
   static const struct {
     const char *key, *label;
   } parts[] = {
-      {"drive_work", "work of the drives"},
-      {"load_work", "work of the loads"},
-      {"belt_work", "work of the belt"},
-      {"dissipated_members", "lost in members"},
-      {"dissipated_contact", "lost in contacts"},
-      {"dissipated_friction", "lost to friction"},
+      {"drive_work", "work of the drives"},       {"load_work", "work of the loads"},
+      {"belt_work", "work of the belt"},          {"dissipated_members", "lost in members"},
+      {"dissipated_contact", "lost in contacts"}, {"dissipated_friction", "lost to friction"},
   };
   const cJSON *energy = cJSON_GetObjectItemCaseSensitive(r->from, "energy");
   char value[VALUE];

@@ -101,9 +101,8 @@ bool strut_trajectory_contacts(strut_trajectory *t, const strut_scene *scene) {
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   keeper *k = context;
   strut_trajectory *t = k->t;
-  *t = (strut_trajectory){.every = 1,
-                          .node_count = k->scene->node_count,
-                          .member_count = k->scene->member_count};
+  *t = (strut_trajectory){
+      .every = 1, .node_count = k->scene->node_count, .member_count = k->scene->member_count};
   k->width = layout->width;
   k->arrays[0] = (strut_trajectory_array){.values = &t->time, .size = 1};
   k->array_count = k->frame_size = 1;
@@ -123,8 +122,7 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   return ready ? STRUT_OK : no_memory(error);
 }
 
-static strut_status take_rows(void *context, const double *rows, size_t count,
-                              strut_error *error) {
+static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
   keeper *k = context;
   for (size_t i = 0; i < count; i++)
     if (!take_row(k, rows + i * k->width)) return no_memory(error);

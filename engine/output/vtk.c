@@ -98,8 +98,9 @@ static strut_status write_frames(const char *stage, const strut_model *model,
 static strut_status write_list(const char *stage, const strut_model *model,
                                const strut_trajectory *motion, const strut_vtk_written *written,
                                strut_buffer *buffer, strut_error *error) {
-  strut_buffer_add(buffer, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-                           "byte_order=\"LittleEndian\">\n<Collection>\n");
+  strut_buffer_add(buffer,
+                   "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+                   "byte_order=\"LittleEndian\">\n<Collection>\n");
   for (size_t i = 0; i < written->frames; i++) {
     char name[FRAME_NAME], time[STRUT_NUMBER_TEXT];
     strut_number_text(motion->time ? motion->time[i * written->every] : 0, time);

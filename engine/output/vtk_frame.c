@@ -78,8 +78,9 @@ static void add_name(strut_buffer *buffer, const char *text) {
 static void add_fields(const strut_vtk_frame *frame, size_t i, strut_buffer *buffer) {
   const strut_scene *scene = frame->model->scene;
   double time = frame->motion->time ? frame->motion->time[i] : 0;
-  strut_buffer_add(buffer, "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
-                           "NumberOfTuples=\"1\" format=\"binary\">");
+  strut_buffer_add(buffer,
+                   "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
+                   "NumberOfTuples=\"1\" format=\"binary\">");
   add_bytes(buffer, &time, 1, 8);
   strut_buffer_add(buffer, "</DataArray>\n");
   begin_names(buffer, "node_names", scene->node_count);

@@ -13,9 +13,9 @@
 typedef struct strut_vtk_frame {
   const strut_model *model;
   const strut_trajectory *motion;
-  double *points;  /* (nodes, 3) */
-  double *cells;   /* (members) */
-  int32_t *whole;  /* (max(2 members, nodes)) */
+  double *points; /* (nodes, 3) */
+  double *cells;  /* (members) */
+  int32_t *whole; /* (max(2 members, nodes)) */
   strut_arena arena;
 } strut_vtk_frame;
 

@@ -19,11 +19,11 @@ enum { STRUT_PLAN_TERMS = 10 };
 
 typedef struct strut_plan {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
-  size_t mass_nonzeros;   /* stored entries of M (lower triangle, each coordinate that differs) */
-  size_t factor_nonzeros; /* of its sparse factor; 0 without one */
-  size_t dense_entries;   /* of dense block inverses */
-  size_t bytes;           /* of the compiled model */
-  bool runnable;          /* every free coordinate has mass; else the figures below are 0 */
+  size_t mass_nonzeros;     /* stored entries of M (lower triangle, each coordinate that differs) */
+  size_t factor_nonzeros;   /* of its sparse factor; 0 without one */
+  size_t dense_entries;     /* of dense block inverses */
+  size_t bytes;             /* of the compiled model */
+  bool runnable;            /* every free coordinate has mass; else the figures below are 0 */
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */

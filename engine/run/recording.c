@@ -12,9 +12,16 @@
 static const char *const xy[] = {"x", "y"};
 static const char *const single[] = {""};
 static const char *const reactions[] = {"normal", "friction"};
-static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact", "drive_work",
-                                       "load_work", "belt_work", "dissipated_members",
-                                       "dissipated_contact", "dissipated_friction"};
+static const char *const energies[] = {"kinetic",
+                                       "elastic",
+                                       "gravity",
+                                       "contact",
+                                       "drive_work",
+                                       "load_work",
+                                       "belt_work",
+                                       "dissipated_members",
+                                       "dissipated_contact",
+                                       "dissipated_friction"};
 static const char *const total[] = {"total"};
 
 static const struct {
@@ -32,8 +39,8 @@ static const struct {
 };
 
 /* Names of the items that a channel is about, in the arena; *count of them. */
-static const char *const *item_names(const strut_model *model, strut_channel id,
-                                     strut_arena *arena, size_t *count) {
+static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
+                                     size_t *count) {
   const strut_scene *scene = model->scene;
   bool of_nodes = id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY;
   bool of_contacts = id == STRUT_CHANNEL_CONTACT;
@@ -112,8 +119,8 @@ static strut_status begin_sinks(strut_recording *r, strut_error *error) {
 }
 
 strut_status strut_recording_create(const strut_model *model, const strut_time_grid *grid,
-                                    double begin, strut_sink **sinks, size_t sink_count, strut_recording *r,
-                                    strut_error *error) {
+                                    double begin, strut_sink **sinks, size_t sink_count,
+                                    strut_recording *r, strut_error *error) {
   *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .grid = *grid, .last = -1};
   if (!sink_count) return STRUT_OK;
   strut_span span = strut_scene_span(model->scene);
@@ -157,9 +164,7 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
   const double *from = c->id == STRUT_CHANNEL_POSITION ? state->q : state->v;
   switch (c->id) {
     case STRUT_CHANNEL_POSITION:
-    case STRUT_CHANNEL_VELOCITY:
-      memcpy(out, from, 2 * c->items * sizeof *out);
-      break;
+    case STRUT_CHANNEL_VELOCITY: memcpy(out, from, 2 * c->items * sizeof *out); break;
     case STRUT_CHANNEL_LENGTH: memcpy(out, r->length, c->items * sizeof *out); break;
     case STRUT_CHANNEL_FORCE: memcpy(out, r->force, c->items * sizeof *out); break;
     case STRUT_CHANNEL_CONTACT:
@@ -169,14 +174,15 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
       }
       break;
     case STRUT_CHANNEL_ENERGY: {
-      strut_energies stored = strut_energy_evaluate(model, state, strut_time_grid_at(&r->grid, state->step));
+      strut_energies stored =
+          strut_energy_evaluate(model, state, strut_time_grid_at(&r->grid, state->step));
       const double *w = state->work;
-      double values[] = {stored.kinetic,           stored.elastic,
-                         stored.gravity,           stored.contact,
-                         w[STRUT_POWER_DRIVE],     w[STRUT_POWER_LOAD] +
-                                                       strut_energy_load_work(model, state),
-                         w[STRUT_POWER_BELT],      w[STRUT_POWER_MEMBERS],
-                         w[STRUT_POWER_CONTACT],   w[STRUT_POWER_FRICTION]};
+      double values[] = {
+          stored.kinetic,         stored.elastic,
+          stored.gravity,         stored.contact,
+          w[STRUT_POWER_DRIVE],   w[STRUT_POWER_LOAD] + strut_energy_load_work(model, state),
+          w[STRUT_POWER_BELT],    w[STRUT_POWER_MEMBERS],
+          w[STRUT_POWER_CONTACT], w[STRUT_POWER_FRICTION]};
       memcpy(out, values, sizeof values);
     }
   }

@@ -6,8 +6,8 @@
 #define STRUT_ENGINE_RUN_RECORDING_H
 
 #include "engine/model/state.h"
-#include "engine/run/recorder.h"
 #include "engine/run/measure/time_grid.h"
+#include "engine/run/recorder.h"
 
 enum { STRUT_CHANNELS = 6 };
 
@@ -21,17 +21,17 @@ typedef struct strut_recording_part {
 
 typedef struct strut_recording {
   strut_sink **sinks;
-  size_t sink_count, begun;  /* sinks whose begin succeeded */
+  size_t sink_count, begun;   /* sinks whose begin succeeded */
   strut_record_layout layout; /* of all that some sink wants */
   strut_record_channel channel[STRUT_CHANNELS];
   strut_recording_part *parts; /* (sink_count) */
-  double *rows;              /* (capacity, width) waiting to be handed over */
-  double *picked;            /* (capacity, width) those of one sink; NULL where all want all */
+  double *rows;                /* (capacity, width) waiting to be handed over */
+  double *picked;              /* (capacity, width) those of one sink; NULL where all want all */
   size_t row_count, capacity;
   strut_time_grid grid;
-  double start, every;       /* first sample, interval [s] */
-  int64_t sampled, last;     /* samples taken; the step of the latest, -1 before the first */
-  double *length, *force;    /* (members) scratch */
+  double start, every;    /* first sample, interval [s] */
+  int64_t sampled, last;  /* samples taken; the step of the latest, -1 before the first */
+  double *length, *force; /* (members) scratch */
   strut_arena arena;
 } strut_recording;
 

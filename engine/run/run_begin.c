@@ -5,18 +5,19 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/memory_estimate.h"
-#include "engine/run/simulate_parts.h"
 #include "engine/run/settle.h"
+#include "engine/run/simulate_parts.h"
 
 static strut_status refuse_large_step(const strut_run *r, bool bound) {
   double limit = r->summary->step_limit;
   if (r->dt <= limit || r->options->force) return STRUT_OK;
   if (bound)
-    return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
-                      "the step %g s is above %.4g s, up to which %s is stable (all contacts closed; "
-                      "a bound, the structure being too large for its largest stable step to be "
-                      "found); use solver.step <= %.3g s, or --force to run all the same",
-                      r->dt, limit, r->method->name, 0.99 * limit);
+    return strut_fail(
+        r->error, STRUT_STEP_TOO_LARGE,
+        "the step %g s is above %.4g s, up to which %s is stable (all contacts closed; "
+        "a bound, the structure being too large for its largest stable step to be "
+        "found); use solver.step <= %.3g s, or --force to run all the same",
+        r->dt, limit, r->method->name, 0.99 * limit);
   return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                     "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
                     "closed); use solver.step <= %.2g s, or --force to run all the same",
@@ -31,8 +32,7 @@ static strut_status fill_names(strut_run *r) {
   s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
   s->contacts = strut_allocate(contacts, sizeof *s->contacts);
-  if (e->quantity_count)
-    s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
+  if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
   if (!s->node_names || !s->positions || !s->contacts || (e->quantity_count && !s->measured))
     return strut_memory_fail_model(r->model->scene, r->error);
   s->node_count = scene->node_count;
@@ -131,6 +131,6 @@ strut_status strut_run_prepare(strut_run *r) {
   strut_energy_reset_load_work(r->model, r->state);
   r->initial = strut_energy_evaluate(r->model, r->state, begin);
   strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
-  return strut_recording_create(r->model, &r->grid, begin, r->options->sinks, r->options->sink_count,
-                                &r->recording, r->error);
+  return strut_recording_create(r->model, &r->grid, begin, r->options->sinks,
+                                r->options->sink_count, &r->recording, r->error);
 }

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/simulate_parts.h"
 #include "engine/run/orbit/shooting.h"
+#include "engine/run/simulate_parts.h"
 
 int64_t strut_run_middle(int64_t period) { return (int64_t)(0.382 * (double)period); }
 
@@ -59,7 +59,8 @@ static strut_status shoot(strut_run *r) {
 
 strut_status strut_run_watch(strut_run *r) {
   int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
-  if (past == strut_run_middle(r->period_steps)) strut_steady_detector_half_period(r->state, &r->watch);
+  if (past == strut_run_middle(r->period_steps))
+    strut_steady_detector_half_period(r->state, &r->watch);
   if (past != 0) return STRUT_OK;
   double x, v;
   bool before = r->watch.known;

@@ -17,7 +17,8 @@ int32_t strut_run_lost_node(const strut_model *model, const strut_state *state) 
 }
 
 strut_status strut_run_diverged(const strut_run *r, int32_t node) {
-  double limit = strut_step_limit_monitor_last_limit(r->model, &r->guard), least = r->summary->step_limit;
+  double limit = strut_step_limit_monitor_last_limit(r->model, &r->guard),
+         least = r->summary->step_limit;
   double seen = (double)r->guard.last * r->dt;
   const char *remedy = r->dt > 0.5 * fmin(limit, least)
                            ? "use a smaller step"
@@ -29,13 +30,12 @@ strut_status strut_run_diverged(const strut_run *r, int32_t node) {
     return strut_fail(r->error, STRUT_DIVERGED,
                       "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                       "at the start: %.4g s, at t = %.9g s: %.4g s); %s",
-                      r->summary->node_names[node], strut_run_time(r), r->dt, least,
-                      seen, limit, remedy);
+                      r->summary->node_names[node], strut_run_time(r), r->dt, least, seen, limit,
+                      remedy);
   return strut_fail(r->error, STRUT_DIVERGED,
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
-                    r->summary->node_names[node], strut_run_time(r), r->dt, least,
-                    remedy);
+                    r->summary->node_names[node], strut_run_time(r), r->dt, least, remedy);
 }
 
 strut_status strut_run_stuck(const strut_run *r) {
@@ -53,8 +53,7 @@ strut_status strut_run_stuck(const strut_run *r) {
         r->error, STRUT_DIVERGED,
         "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g "
         "s; use a smaller step, or look there for a member that passes through no length",
-        r->method->name, strut_run_time(r),
-        r->summary->node_names[r->state->trouble_node], r->dt);
+        r->method->name, strut_run_time(r), r->summary->node_names[r->state->trouble_node], r->dt);
   return strut_fail(r->error, STRUT_DIVERGED, "%s could not go on at t = %.9g s: %s",
                     r->method->name, strut_run_time(r), why[r->state->trouble]);
 }
@@ -65,8 +64,8 @@ static bool energy_from_nowhere(const strut_run *r) {
   strut_energy e;
   if (!r->state->ledger) return false;
   if (!(r->dt > 0.5 * r->summary->step_limit)) return false; /* then it is not the step's limit */
-  strut_balance_fill(r->model, r->state, &r->initial,
-                     strut_time_grid_at(&r->grid, r->state->step), &e);
+  strut_balance_fill(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
+                     &e);
   double there = e.kinetic + e.elastic + fabs(e.gravity) + e.contact;
   return e.residual > 0.5 * (e.moved + fabs(e.initial) + there);
 }
@@ -75,7 +74,8 @@ strut_status strut_run_watch_step(strut_run *r) {
   if (r->state->step < r->guard.next) return STRUT_OK;
   strut_stick_band_sample(r->model, r->state, &r->band);
   bool garbage = !r->options->force && energy_from_nowhere(r);
-  if (garbage && !(r->guard.lowest > 0.0)) strut_step_limit_monitor_check(r->model, r->state, &r->guard);
+  if (garbage && !(r->guard.lowest > 0.0))
+    strut_step_limit_monitor_check(r->model, r->state, &r->guard);
   if (!garbage) strut_step_limit_monitor_sample(r->model, r->state, &r->guard);
   if (r->options->force) return STRUT_OK;
   if (!r->guard.hopeless && !garbage) return STRUT_OK;

@@ -57,9 +57,7 @@ static void step_to(strut_run *r, int64_t stop) {
   }
 }
 
-double strut_run_time(const strut_run *r) {
-  return strut_time_grid_real(&r->grid, r->state->step);
-}
+double strut_run_time(const strut_run *r) { return strut_time_grid_real(&r->grid, r->state->step); }
 
 bool strut_run_last_step_due(const strut_run *r) {
   return r->state->step == r->grid.last - 1 && strut_time_grid_rest(&r->grid) > 0.0;
@@ -95,8 +93,9 @@ void strut_run_step(strut_run *r, int64_t stop) {
 }
 
 static void look_at_balance(strut_run *r) {
-  strut_balance_sample(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
-                     &r->balance, &r->summary->energy);
+  strut_balance_sample(r->model, r->state, &r->initial,
+                       strut_time_grid_at(&r->grid, r->state->step), &r->balance,
+                       &r->summary->energy);
 }
 
 strut_status strut_run_sample(strut_run *r, int64_t *stop) {
@@ -160,9 +159,9 @@ static void fill_summary(strut_run *r, strut_status status) {
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
   s->limit_fell = (strut_step_limit_violation){.limit = r->guard.lowest,
-                                     .time = r->guard.lowest_time,
-                                     .since = r->guard.first_time,
-                                     .steps = r->guard.steps_below};
+                                               .time = r->guard.lowest_time,
+                                               .since = r->guard.first_time,
+                                               .steps = r->guard.steps_below};
   strut_measure_finish(r->model, &r->measure, s);
   if (r->watching) strut_steady_detector_finish(&r->watch, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
@@ -180,11 +179,8 @@ strut_status strut_run_begin(const strut_model *model, const strut_run_options *
                              strut_run *r) {
   int64_t chunk = CHUNK_WORK / (model->members.count + model->node_count + 1);
   *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
-  *r = (strut_run){.model = model,
-                   .options = options,
-                   .limits = limits,
-                   .summary = summary,
-                   .error = error};
+  *r = (strut_run){
+      .model = model, .options = options, .limits = limits, .summary = summary, .error = error};
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
   strut_status status = strut_run_prepare(r);
   r->begun = !status;

@@ -8,13 +8,13 @@
 #include <signal.h>
 
 #include "engine/model/model.h"
-#include "engine/run/recorder.h"
 #include "engine/run/measure/summary.h"
+#include "engine/run/recorder.h"
 
 /** A state to go on from, or to keep: coordinate arrays of the model's length, owned by the caller. */
 typedef struct strut_snapshot {
-  double *q, *v; /* [m], [m/s] */
-  double time;   /* [s]: where drives and loads stand */
+  double *q, *v;  /* [m], [m/s] */
+  double time;    /* [s]: where drives and loads stand */
   double refined; /* refinement after a touchdown still lasts so long [s] */
 } strut_snapshot;
 
@@ -25,15 +25,16 @@ typedef struct strut_run_options {
   void (*progress)(void *context, double fraction); /* a few times a second; may be NULL */
   void (*phase)(void *context, const char *name); /* a run in several parts begins another one, such
                                  as "checking by adaptive"; may be NULL */
-  void *progress_context;     /* of both */
-  strut_sink **sinks; /* (sink_count) */
+  void *progress_context;                         /* of both */
+  strut_sink **sinks;                             /* (sink_count) */
   size_t sink_count;
   const strut_snapshot *from; /* instead of the scene's start; in a run that stops when it is steady
                                  its time becomes a whole number of steps; may be NULL */
   strut_snapshot *to;         /* filled at the end; may be NULL */
-  int64_t most_evaluations;   /* of the forces: the run ends soon after with STRUT_WORK_LIMIT; 0: any */
-  bool chosen;                /* method and step were chosen for a wanted accuracy */
-  bool without_ledger;        /* no works and no energy residual in the summary: 0. Cheaper */
+  int64_t
+      most_evaluations; /* of the forces: the run ends soon after with STRUT_WORK_LIMIT; 0: any */
+  bool chosen;          /* method and step were chosen for a wanted accuracy */
+  bool without_ledger;  /* no works and no energy residual in the summary: 0. Cheaper */
 } strut_run_options;
 
 /**

@@ -7,13 +7,13 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/measure/balance.h"
-#include "engine/run/measure/step_limit_monitor.h"
 #include "engine/run/measure/measure.h"
-#include "engine/run/recording.h"
-#include "engine/run/simulate.h"
-#include "engine/run/orbit/steady_detector.h"
+#include "engine/run/measure/step_limit_monitor.h"
 #include "engine/run/measure/stick_band.h"
 #include "engine/run/measure/time_grid.h"
+#include "engine/run/orbit/steady_detector.h"
+#include "engine/run/recording.h"
+#include "engine/run/simulate.h"
 
 /** All that belongs to one run. */
 typedef struct strut_run {

@@ -49,7 +49,7 @@ typedef enum strut_purpose {
   STRUT_FOR_STATICS,
   STRUT_FOR_RUN,
   STRUT_FOR_RUN_STEP_LATER, /* for a run whose step, or the accuracy it is chosen by, is told later */
-  STRUT_FOR_ANY       /* for a run where the scene says anything about one, else for statics */
+  STRUT_FOR_ANY /* for a run where the scene says anything about one, else for statics */
 } strut_purpose;
 
 /** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */

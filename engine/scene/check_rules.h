@@ -19,8 +19,9 @@ typedef struct strut_checker {
 } strut_checker;
 
 /** Adds a finding; remembers when memory is out. */
-void strut_candidate_equilibrium(strut_checker *checker, strut_subject subject, size_t index, const char *key,
-                const char *format, ...) __attribute__((format(printf, 5, 6)));
+void strut_candidate_equilibrium(strut_checker *checker, strut_subject subject, size_t index,
+                                 const char *key, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
 
 /** A name for messages: "member 'm1'", or "member number 3" where it has none. */
 const char *strut_called(char buffer[200], const char *kind, const char *name, size_t index);

@@ -29,10 +29,10 @@ typedef enum strut_column_owner {
 /** X(id, owner, word, powers of kg, m, s, angle) */
 #define STRUT_COLUMN_TABLE(X)                                                                      \
   X(TIME, RUN, "time", 0, 0, 1, 0)                                                                 \
-  X(NODE_X, NODE, "x", 0, 1, 0, 0)                                                                      \
-  X(NODE_Y, NODE, "y", 0, 1, 0, 0)                                                                      \
-  X(NODE_VX, NODE, "vx", 0, 1, -1, 0)                                                                   \
-  X(NODE_VY, NODE, "vy", 0, 1, -1, 0)                                                                   \
+  X(NODE_X, NODE, "x", 0, 1, 0, 0)                                                                 \
+  X(NODE_Y, NODE, "y", 0, 1, 0, 0)                                                                 \
+  X(NODE_VX, NODE, "vx", 0, 1, -1, 0)                                                              \
+  X(NODE_VY, NODE, "vy", 0, 1, -1, 0)                                                              \
   X(HEIGHT, NODE, "height", 0, 1, 0, 0) /* above the ground, along its normal */                   \
   X(NORMAL, CONTACT, "normal", 1, 1, -2, 0)                                                        \
   X(FRICTION, CONTACT, "friction", 1, 1, -2, 0)                                                    \
@@ -122,7 +122,7 @@ typedef enum strut_reduction {
   STRUT_TAKE_MEAN,
   STRUT_TAKE_MIN,
   STRUT_TAKE_MAX,
-  STRUT_TAKE_RANGE,  /* max - min */
+  STRUT_TAKE_RANGE, /* max - min */
   STRUT_TAKE_RMS,
   STRUT_TAKE_FINAL,  /* at the window's end */
   STRUT_TAKE_CHANGE, /* end - begin */
@@ -130,8 +130,8 @@ typedef enum strut_reduction {
 } strut_reduction;
 
 typedef struct strut_quantity_definition {
-  const char *name, *unit; /* unit of the value; "1": none */
-  size_t length, depth;    /* instructions; the most numbers on the stack */
+  const char *name, *unit;    /* unit of the value; "1": none */
+  size_t length, depth;       /* instructions; the most numbers on the stack */
   strut_instruction *program; /* (length) */
   strut_reduction take;
   double accuracy;          /* wanted, relative [1]; 0: that of the run */

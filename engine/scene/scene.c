@@ -22,9 +22,7 @@ void strut_scene_init(strut_scene *scene) {
   scene->experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE;
 }
 
-strut_node strut_node_default(void) {
-  return (strut_node){.name = ""};
-}
+strut_node strut_node_default(void) { return (strut_node){.name = ""}; }
 
 strut_member strut_member_default(void) {
   return (strut_member){.name = "",
@@ -34,9 +32,7 @@ strut_member strut_member_default(void) {
                         .rest_value = 1};
 }
 
-strut_contact strut_contact_default(void) {
-  return (strut_contact){.node = -1};
-}
+strut_contact strut_contact_default(void) { return (strut_contact){.node = -1}; }
 
 void strut_scene_free(strut_scene *scene) {
   strut_arena_free(&scene->arena);
@@ -64,20 +60,15 @@ bool strut_member_rest(const strut_scene *scene, size_t index, strut_rest *rest)
   const strut_member *member = &scene->members[index];
   double drawn = drawn_length(scene, member), force = (double)NAN, length;
   switch (member->rest_kind) {
-    case STRUT_REST_RATIO:
-      length = member->rest_value * drawn;
-      break;
-    case STRUT_REST_LENGTH:
-      length = member->rest_value;
-      break;
+    case STRUT_REST_RATIO: length = member->rest_value * drawn; break;
+    case STRUT_REST_LENGTH: length = member->rest_value; break;
     case STRUT_REST_PRETENSION:
       length = length_under(member, drawn, force = member->rest_value);
       break;
     case STRUT_REST_FORCE_DENSITY:
       length = length_under(member, drawn, force = member->rest_value * drawn);
       break;
-    default:
-      return false;
+    default: return false;
   }
   bool by_ea = member->axial_stiffness > 0.0;
   if (!isfinite(drawn) || !isfinite(length) || length < 0.0 || (by_ea && length == 0.0))

@@ -76,24 +76,24 @@ typedef struct strut_friction {
 
 /** How the ground damps; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
-  STRUT_DAMPING_APPROACH,      /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
+  STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
   STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */
 } strut_ground_damping;
 
 /** The ground line y = height + x tan(slope); its surface moves along itself at belt_speed. */
 typedef struct strut_ground {
   bool present;
-  double height;     /* [m] */
-  double slope;      /* [rad], within +-pi/2 */
-  double belt_speed; /* [m/s], along the slope, positive towards +x */
+  double height;                    /* [m] */
+  double slope;                     /* [rad], within +-pi/2 */
+  double belt_speed;                /* [m/s], along the slope, positive towards +x */
   strut_ground_damping damping_law; /* of all contacts */
 } strut_ground;
 
 /** One node that may touch the ground. */
 typedef struct strut_contact {
   int32_t node;
-  double stiffness; /* c_g [N/m], > 0 */
-  double damping;   /* k_g [N s/m], >= 0; acts while the node moves into the ground, (8) */
+  double stiffness;   /* c_g [N/m], > 0 */
+  double damping;     /* k_g [N s/m], >= 0; acts while the node moves into the ground, (8) */
   double dissipation; /* chi [s/m], >= 0; instead of k_g with the Hunt-Crossley law */
   strut_friction friction;
 } strut_contact;
@@ -133,10 +133,11 @@ typedef struct strut_settle {
   double speed;        /* at rest when every speed is below this [m/s]; paper 1e-8 */
   double acceleration; /* and every acceleration below this [m/s^2]; paper 1e-8 */
   double limit;        /* gives up after this much simulated time [s] */
-  double evaluations;  /* and after this many evaluations of the forces; 0: STRUT_SETTLE_EVALUATIONS */
-  double step;         /* of the Runge-Kutta method that settles [s]; 0: the experiment's, whatever its
+  double
+      evaluations; /* and after this many evaluations of the forces; 0: STRUT_SETTLE_EVALUATIONS */
+  double step;     /* of the Runge-Kutta method that settles [s]; 0: the experiment's, whatever its
                           method; below zero: chosen by the stability limit */
-  bool perturb;        /* leave an equilibrium that is unstable, and settle again */
+  bool perturb;    /* leave an equilibrium that is unstable, and settle again */
 } strut_settle;
 
 static const double STRUT_SETTLE_EVALUATIONS = 4e7;
@@ -180,12 +181,13 @@ typedef struct strut_search {
 /** Stopping when the motion repeats itself, in a run by periods. */
 typedef struct strut_steady {
   bool wanted;
-  double tolerance; /* of the measured velocity, relative to it [1]; default 0.005 */
-  double floor;     /* differences below this count as none [m/s]; 0: taken from the scene */
+  double tolerance;   /* of the measured velocity, relative to it [1]; default 0.005 */
+  double floor;       /* differences below this count as none [m/s]; 0: taken from the scene */
   int32_t successive; /* so many repetitions in a row must agree; default 5 */
-  double mean_tolerance; /* of an irregular motion's mean velocity [1], where the run goes on from one
+  double
+      mean_tolerance; /* of an irregular motion's mean velocity [1], where the run goes on from one
                             that was long enough already; 0: tolerance */
-  bool shooting;    /* finish the orbit by Newton's method, and give its Floquet multipliers */
+  bool shooting;      /* finish the orbit by Newton's method, and give its Floquet multipliers */
 } strut_steady;
 
 /** What to integrate, for how long, and what to measure. */
@@ -203,18 +205,18 @@ typedef struct strut_experiment {
                              chosen by it; 0: they are as given */
   double budget;          /* work allowed for that, in fine runs by a fixed step */
   strut_steady steady;
-  double duration;        /* [s]; 0 when given in periods */
-  double periods;         /* number of periods of signal `period_signal`; 0 when in seconds */
-  int32_t period_signal;  /* or -1 */
-  const char *period_of;  /* the name the file used for it, or NULL */
-  double measure_last;    /* window: the last so many periods (if periods > 0), else seconds; 0 =
+  double duration;       /* [s]; 0 when given in periods */
+  double periods;        /* number of periods of signal `period_signal`; 0 when in seconds */
+  int32_t period_signal; /* or -1 */
+  const char *period_of; /* the name the file used for it, or NULL */
+  double measure_last;   /* window: the last so many periods (if periods > 0), else seconds; 0 =
                              the whole run */
-  int32_t measure_node;   /* whose velocity (14) is measured; -1: the centre of mass */
+  int32_t measure_node;  /* whose velocity (14) is measured; -1: the centre of mass */
   size_t quantity_count;
   strut_quantity_definition *quantities; /* (quantity_count) measured beside that velocity */
-  double output_every;    /* sampling interval [s]; 0: a thousandth of the recorded time */
-  double output_last;     /* record only the last so many periods or seconds; 0: all */
-  unsigned channels;      /* strut_channel bits; default position, length, force */
+  double output_every; /* sampling interval [s]; 0: a thousandth of the recorded time */
+  double output_last;  /* record only the last so many periods or seconds; 0: all */
+  unsigned channels;   /* strut_channel bits; default position, length, force */
 } strut_experiment;
 
 typedef struct strut_scene {

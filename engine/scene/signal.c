@@ -62,15 +62,11 @@ static void evaluate(const strut_signal *signals, int32_t index, double t, doubl
   }
   if (t < s->start || t >= s->stop) return;
   switch (s->kind) {
-    case STRUT_CONSTANT:
-      *value = s->amplitude;
-      break;
+    case STRUT_CONSTANT: *value = s->amplitude; break;
     case STRUT_HALF_SINE:
       if (turns < 0.5) wave(s, turns, value, rate);
       break;
-    case STRUT_SQUARE:
-      *value = turns - floor(turns) < 0.5 ? s->amplitude : -s->amplitude;
-      break;
+    case STRUT_SQUARE: *value = turns - floor(turns) < 0.5 ? s->amplitude : -s->amplitude; break;
     default:
       for (size_t i = 0; i < s->term_count; i++) {
         double part, part_rate;
@@ -103,10 +99,8 @@ static double next_half_period(const strut_signal *s, double t) {
 static double next_break_inside(const strut_signal *signals, const strut_signal *s, double t) {
   double first = (double)INFINITY;
   switch (s->kind) {
-    case STRUT_SQUARE:
-      return next_half_period(s, t);
-    case STRUT_HALF_SINE:
-      return s->start + 0.5 / s->frequency;
+    case STRUT_SQUARE: return next_half_period(s, t);
+    case STRUT_HALF_SINE: return s->start + 0.5 / s->frequency;
     case STRUT_TABLE:
       for (size_t k = s->point_count; k > 0 && s->time[k - 1] > t; k--) first = s->time[k - 1];
       return first;
@@ -116,8 +110,7 @@ static double next_break_inside(const strut_signal *signals, const strut_signal 
       return first;
     case STRUT_CONSTANT:
     case STRUT_SINE:
-    case STRUT_RAMP:
-      break;
+    case STRUT_RAMP: break;
   }
   return first;
 }

@@ -101,23 +101,23 @@ typedef struct strut_study_figure {
   /* columns of the table; NULL where none is named */
   const char *x, *y, *series, *color, *panels, *difference;
   const char *band, *only; /* "COLUMN=TEXT", or NULL */
-  const char *title; /* or NULL */
-  double from, to;     /* of MOTION [s]; without limits infinite */
-  double scale[2];     /* of PERIOD; 0: 1 */
-  size_t time_count;   /* of SNAPSHOTS; 0: six */
-  const double *times; /* (time_count) [s] */
+  const char *title;       /* or NULL */
+  double from, to;         /* of MOTION [s]; without limits infinite */
+  double scale[2];         /* of PERIOD; 0: 1 */
+  size_t time_count;       /* of SNAPSHOTS; 0: six */
+  const double *times;     /* (time_count) [s] */
 } strut_study_figure;
 
 typedef struct strut_study {
   const char *name, *description, *model; /* model: its file, from the study's folder */
   size_t axis_count, figure_count;
   strut_study_axis *axes;
-  unsigned keep;         /* bits 1 << strut_keep; 0: what is usual, if no quantity is kept either */
+  unsigned keep; /* bits 1 << strut_keep; 0: what is usual, if no quantity is kept either */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) measured quantities that are kept by name */
-  bool trajectories;     /* a directory of results for each run */
-  bool half_step;        /* run each point again with half the step */
-  double check_accuracy; /* or with this accuracy; 0: not */
+  bool trajectories;       /* a directory of results for each run */
+  bool half_step;          /* run each point again with half the step */
+  double check_accuracy;   /* or with this accuracy; 0: not */
   strut_study_figure *figures;
 } strut_study;
 

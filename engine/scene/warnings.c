@@ -83,11 +83,12 @@ static void warn_of_rest_lengths(strut_checker *checker) {
     name(&below, member, scene->members[member].name);
   }
   if (!below.count) return;
-  strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, below.first, "rest_length_below_zero",
-             "the drive takes the rest length of '%s' to %.4g m at t = %.4g s, below zero, where a "
-             "member has no meaning; give it a smaller amplitude or a longer member%s%s",
-             scene->members[below.first].name, worst, when, below.count > 1 ? "; the same of " : "",
-             below.count > 1 ? names_of(&below) : "");
+  strut_candidate_equilibrium(
+      checker, STRUT_ON_MEMBER, below.first, "rest_length_below_zero",
+      "the drive takes the rest length of '%s' to %.4g m at t = %.4g s, below zero, where a "
+      "member has no meaning; give it a smaller amplitude or a longer member%s%s",
+      scene->members[below.first].name, worst, when, below.count > 1 ? "; the same of " : "",
+      below.count > 1 ? names_of(&below) : "");
 }
 
 /* Deeper in the ground than where anything would rest. */
@@ -165,10 +166,11 @@ static void warn_of_pairs(strut_checker *checker) {
   }
   strut_release(pairs);
   if (twice.count)
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, twice.first, "same_nodes",
-               "members %s join the same two nodes, so that both act there; leave one out if that "
-               "is not meant",
-               names_of(&twice));
+    strut_candidate_equilibrium(
+        checker, STRUT_ON_MEMBER, twice.first, "same_nodes",
+        "members %s join the same two nodes, so that both act there; leave one out if that "
+        "is not meant",
+        names_of(&twice));
 }
 
 /* Where other nodes have members. */
@@ -190,8 +192,9 @@ static void warn_of_loose_masses(strut_checker *checker) {
   strut_release(used);
   if (loose.count)
     strut_candidate_equilibrium(checker, STRUT_ON_NODE, loose.first, "loose_mass",
-               "node%s %s %s mass and can move, but no member holds %s", loose.count > 1 ? "s" : "",
-               names_of(&loose), loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
+                                "node%s %s %s mass and can move, but no member holds %s",
+                                loose.count > 1 ? "s" : "", names_of(&loose),
+                                loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
 }
 
 strut_status strut_scene_warn(const strut_scene *scene, strut_findings *warnings) {

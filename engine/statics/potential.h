@@ -14,14 +14,14 @@
 
 typedef struct strut_potential {
   const strut_model *model;
-  bool ground;         /* contacts push with c_g depth; else the ground is not there */
-  int32_t n;           /* free coordinates */
-  int32_t *coordinate; /* (n) index into coordinate arrays */
-  int32_t *row_of;     /* (length) row of a coordinate, -1 where held */
+  bool ground;           /* contacts push with c_g depth; else the ground is not there */
+  int32_t n;             /* free coordinates */
+  int32_t *coordinate;   /* (n) index into coordinate arrays */
+  int32_t *row_of;       /* (length) row of a coordinate, -1 where held */
   strut_sparse *pattern; /* of the Hessian: every member and contact, touching or not */
-  int32_t *place;      /* where the entries of members and contacts stand in the pattern's values */
-  double *force;       /* (length) gravity and constant loads [N] */
-  double force_scale;  /* sum of their magnitudes [N]: "the weight"; 0 without any */
+  int32_t *place;     /* where the entries of members and contacts stand in the pattern's values */
+  double *force;      /* (length) gravity and constant loads [N] */
+  double force_scale; /* sum of their magnitudes [N]: "the weight"; 0 without any */
   strut_arena arena;
 } strut_potential;
 

@@ -11,7 +11,8 @@
  * Fills up to three orthonormal rows (3, n) of `motion` with motions that move no held coordinate;
  * returns how many there are.
  */
-STRUT_API int32_t strut_rigid_motions(const strut_potential *potential, const double *q, double *motion);
+STRUT_API int32_t strut_rigid_motions(const strut_potential *potential, const double *q,
+                                      double *motion);
 
 /**
  * Of the first `count` of them, those combinations that the Hessian meets with no more than

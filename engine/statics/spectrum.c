@@ -11,13 +11,13 @@ struct strut_spectrum_workspace {
   const strut_potential *potential;
   strut_arena arena;
   strut_sparse *hessian;
-  double least; /* of the spectrum at hand [N] */
-  bool uneven;  /* stiffnesses differ by so much that the dense solver may lose the soft ones */
-  double *dense;               /* (n, n) Hessian, then its eigenvectors */
-  double *soft;                /* (n, n) room for the form on soft modes, then its eigenvectors */
-  double *raw, *value, *noise; /* (n) */
-  double *work;                /* (n) */
-  double *vector, *turned;     /* (n, n) */
+  double least;  /* of the spectrum at hand [N] */
+  bool uneven;   /* stiffnesses differ by so much that the dense solver may lose the soft ones */
+  double *dense; /* (n, n) Hessian, then its eigenvectors */
+  double *soft;  /* (n, n) room for the form on soft modes, then its eigenvectors */
+  double *raw, *value, *noise;         /* (n) */
+  double *work;                        /* (n) */
+  double *vector, *turned;             /* (n, n) */
   double *along, *across, *form_noise; /* (n) of one member in each soft mode; noise of the form */
   int32_t *order;                      /* (n) */
 };
@@ -99,8 +99,8 @@ static double moved(const strut_spectrum_workspace *room, const double *mode, ui
  * Adds stiffness * x x' + geometric * y y' to the form on `count` modes, where x, y are how a member
  * stretches and turns in them; and to each mode's noise what the rounding of both amounts to.
  */
-static void add_form(strut_spectrum_workspace *room, int32_t count, double stiffness, double geometric,
-                     double uncertain) {
+static void add_form(strut_spectrum_workspace *room, int32_t count, double stiffness,
+                     double geometric, double uncertain) {
   const double *x = room->along, *y = room->across;
   for (int32_t i = 0; i < count; i++) {
     for (int32_t k = 0; k <= i; k++)
@@ -182,8 +182,8 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
   return true;
 }
 
-bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least, bool careful,
-                            strut_spectrum *spectrum) {
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
+                            bool careful, strut_spectrum *spectrum) {
   int32_t n = room->potential->n, soft = 0, lost = 0;
   *spectrum = (strut_spectrum){n, room->value, room->vector, room->noise};
   if (n == 0) return true;

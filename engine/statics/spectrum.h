@@ -29,7 +29,7 @@ void strut_spectrum_free(strut_spectrum_workspace *room);
  * and soft modes are refined in any case; else only where the dense solver's error could matter, and
  * noise is the same for all. False where the Hessian holds numbers that are not finite.
  */
-bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least, bool careful,
-                            strut_spectrum *spectrum);
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
+                            bool careful, strut_spectrum *spectrum);
 
 #endif

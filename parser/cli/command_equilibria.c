@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/report/equilibria_report.h"
 #include "engine/output/figures/equilibria_figure.h"
 #include "engine/output/file.h"
+#include "engine/output/report/equilibria_report.h"
 #include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"

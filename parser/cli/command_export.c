@@ -33,8 +33,8 @@ static strut_status write_matrices(const strut_arguments *arguments, const char 
 static strut_status export_format(const strut_arguments *arguments, const char *matrices) {
   static const char *const formats[] = {"vtk", NULL};
   int format = 0;
-  strut_status status = strut_option_word(&strut_command_export, arguments, STRUT_OPTION_FORMAT,
-                                          formats, &format);
+  strut_status status =
+      strut_option_word(&strut_command_export, arguments, STRUT_OPTION_FORMAT, formats, &format);
   if (status != STRUT_OK) return status;
   if (arguments->output && *arguments->output && !matrices)
     return strut_export_vtk(&strut_command_export, arguments);

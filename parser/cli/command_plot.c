@@ -103,8 +103,7 @@ static bool read_choice(const strut_arguments *arguments, const strut_table *tab
                         strut_table_choice *choice) {
   return read_match(arguments, table, STRUT_OPTION_ONLY, "only", &choice->only,
                     &choice->only_value) &&
-         read_column(arguments, table, STRUT_OPTION_DIFFERENCE, "difference",
-                     &choice->difference);
+         read_column(arguments, table, STRUT_OPTION_DIFFERENCE, "difference", &choice->difference);
 }
 
 static bool read_log(const strut_arguments *arguments, strut_table_figure *figure) {
@@ -143,10 +142,10 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
 static strut_status draw_bargains(const strut_arguments *arguments, const strut_plot *plot,
                                   const strut_table *table, strut_error *error) {
   strut_table_savings_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
-                                        .width = plot->width,
-                                        .y = table->column_count > 1 ? 1 : 0,
-                                        .by = STRUT_NO_COLUMN,
-                                        .label = STRUT_NO_COLUMN};
+                                       .width = plot->width,
+                                       .y = table->column_count > 1 ? 1 : 0,
+                                       .by = STRUT_NO_COLUMN,
+                                       .label = STRUT_NO_COLUMN};
   bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
               read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
               read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
@@ -162,28 +161,29 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
                                .panels = STRUT_NO_COLUMN,
                                .band = STRUT_NO_COLUMN,
                                .choice = STRUT_TABLE_ALL};
-  bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
-              read_y(arguments, table, &figure) &&
-              read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
-              read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
-              read_match(arguments, table, STRUT_OPTION_BAND, "band", &figure.band,
-                         &figure.band_value) &&
-              read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure);
+  bool good =
+      read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
+      read_y(arguments, table, &figure) &&
+      read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
+      read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
+      read_match(arguments, table, STRUT_OPTION_BAND, "band", &figure.band, &figure.band_value) &&
+      read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure);
   return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
 /* Kinds of diagrams, with the options that go with one of them only. */
 static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_table *table, strut_error *error) = {
-    draw_curves, draw_map, draw_bargains};
+                                     const strut_table *table,
+                                     strut_error *error) = {draw_curves, draw_map, draw_bargains};
 static const struct {
   strut_option_id id;
   const char *name;
   unsigned kinds; /* a bit for each that has it */
 } limited[] = {
-    {STRUT_OPTION_BY, "by", 5},    {STRUT_OPTION_PANELS, "panels", 3}, {STRUT_OPTION_BAND, "band", 1},
-    {STRUT_OPTION_LABEL, "label", 6}, {STRUT_OPTION_DOUBT, "doubt", 2},  {STRUT_OPTION_LOG, "log", 1},
+    {STRUT_OPTION_BY, "by", 5},       {STRUT_OPTION_PANELS, "panels", 3},
+    {STRUT_OPTION_BAND, "band", 1},   {STRUT_OPTION_LABEL, "label", 6},
+    {STRUT_OPTION_DOUBT, "doubt", 2}, {STRUT_OPTION_LOG, "log", 1},
     {STRUT_OPTION_ONLY, "only", 3},   {STRUT_OPTION_DIFFERENCE, "difference", 3},
 };
 

@@ -169,8 +169,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
   if (status != STRUT_OK) return status;
   status = strut_run_settings_apply(&strut_command_run, arguments, &scene);
-  if (status == STRUT_OK)
-    status = strut_model_options_apply(&strut_command_run, arguments, &scene);
+  if (status == STRUT_OK) status = strut_model_options_apply(&strut_command_run, arguments, &scene);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
     strut_scene_free(&scene);

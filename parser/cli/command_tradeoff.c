@@ -25,8 +25,9 @@ static const strut_option options[] = {
     {STRUT_OPTION_METHODS, "methods", "LIST", "only these, such as rk4,verlet-events"},
     {STRUT_OPTION_STEPS, "steps", "N", "of each method, five in a decade; 8 if not given"},
     {STRUT_OPTION_PERIODS, "periods", "N", "of a run given in periods, at most; 120 if not given"},
-    {STRUT_OPTION_VARY, "vary", "NAME=RANGE", "draw a parameter: LOW..HIGH, or WORD,WORD; may be "
-                                              "repeated"},
+    {STRUT_OPTION_VARY, "vary", "NAME=RANGE",
+     "draw a parameter: LOW..HIGH, or WORD,WORD; may be "
+     "repeated"},
     {STRUT_OPTION_POINTS, "points", "N", "drawn with --vary; 40 if not given"},
     {STRUT_OPTION_SEED, "seed", "N", "of what is drawn; 1 if not given"},
     {STRUT_OPTION_BUDGET, "budget", "TIME", "CPU time to spend about; 2 min if not given"},
@@ -135,8 +136,8 @@ static strut_status write_files(const char *stage, const strut_tradeoff *result,
   strut_release(csv);
   int used = snprintf(path, sizeof path, "%s/tradeoff.svg", stage);
   if (status == STRUT_OK && used >= (int)sizeof path)
-    status = strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long",
-                        stage);
+    status =
+        strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", stage);
   return status == STRUT_OK ? strut_tradeoff_figure(path, PAGE, result, error) : status;
 }
 
@@ -197,8 +198,8 @@ static strut_status run(const strut_arguments *arguments) {
   strut_operating_points points = {0};
   strut_status status = read_options(arguments, &w);
   if (status == STRUT_OK)
-    status = strut_operating_points_open(&strut_command_tradeoff, arguments, w.points, w.seed,
-                                         &points);
+    status =
+        strut_operating_points_open(&strut_command_tradeoff, arguments, w.points, w.seed, &points);
   if (status != STRUT_OK) return status;
   status = study(arguments, &w, &points);
   strut_operating_points_free(&points);

@@ -55,7 +55,7 @@ static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
 }
 
 strut_status strut_model_options_apply(const strut_command *command,
-                                           const strut_arguments *arguments, strut_scene *scene) {
+                                       const strut_arguments *arguments, strut_scene *scene) {
   int bars = -1, mass = -1, friction = -1, damping = -1;
   const struct {
     strut_option_id id;
@@ -71,6 +71,7 @@ strut_status strut_model_options_apply(const strut_command *command,
   if (bars >= 0) scene->bar_model = (strut_bar_model)bars;
   if (mass >= 0) scene->mass_model = (strut_mass_model)mass;
   if (friction >= 0) status = set_friction(scene, (strut_friction_law)friction);
-  if (status == STRUT_OK && damping >= 0) status = set_damping(scene, (strut_ground_damping)damping);
+  if (status == STRUT_OK && damping >= 0)
+    status = set_damping(scene, (strut_ground_damping)damping);
   return status;
 }

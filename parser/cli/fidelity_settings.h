@@ -9,19 +9,19 @@
 #include "parser/cli/options.h"
 
 /** Rows of a command's table of options. */
-#define STRUT_FIDELITY_OPTIONS                                                                  \
-  {STRUT_OPTION_BARS, "bars", "MODEL", "elastic or rigid, instead of the file's"},              \
-      {STRUT_OPTION_MASS_MODEL, "mass-model", "MODEL",                                          \
-       "consistent or lumped, instead of the file's"},                                          \
-      {STRUT_OPTION_FRICTION_LAW, "friction-law", "LAW",                                        \
-       "none, karnopp, coulomb or smooth, instead of the file's"},                              \
-  {                                                                                             \
-    STRUT_OPTION_DAMPING_LAW, "damping-law", "LAW",                                             \
-        "of the ground: printed or hunt_crossley, instead of the file's"                        \
+#define STRUT_FIDELITY_OPTIONS                                                                     \
+  {STRUT_OPTION_BARS, "bars", "MODEL", "elastic or rigid, instead of the file's"},                 \
+      {STRUT_OPTION_MASS_MODEL, "mass-model", "MODEL",                                             \
+       "consistent or lumped, instead of the file's"},                                             \
+      {STRUT_OPTION_FRICTION_LAW, "friction-law", "LAW",                                           \
+       "none, karnopp, coulomb or smooth, instead of the file's"},                                 \
+  {                                                                                                \
+    STRUT_OPTION_DAMPING_LAW, "damping-law", "LAW",                                                \
+        "of the ground: printed or hunt_crossley, instead of the file's"                           \
   }
 
 /** Puts the options into the scene. STRUT_USAGE with the reason on stderr. */
 strut_status strut_model_options_apply(const strut_command *command,
-                                           const strut_arguments *arguments, strut_scene *scene);
+                                       const strut_arguments *arguments, strut_scene *scene);
 
 #endif

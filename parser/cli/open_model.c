@@ -9,8 +9,8 @@
 #include "engine/output/results.h"
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/cli/streams.h"
-#include "parser/yaml/memory_estimate.h"
 #include "parser/read/read_scene.h"
+#include "parser/yaml/memory_estimate.h"
 
 enum { MOST_MESSAGES = 50 };
 
@@ -103,7 +103,8 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
   return STRUT_OK;
 }
 
-strut_status strut_check_output_writable(const strut_arguments *arguments, const char *const *names) {
+strut_status strut_check_output_writable(const strut_arguments *arguments,
+                                         const char *const *names) {
   strut_results results = {0};
   strut_error error = {0};
   if (!arguments->output) return STRUT_OK;

@@ -34,7 +34,8 @@ strut_status strut_warn_of_scene(const strut_scene *scene);
  * Finds out, before anything is computed, whether files of these names (NULL after the last) can go
  * where -o wants them; leaves no trace.
  */
-strut_status strut_check_output_writable(const strut_arguments *arguments, const char *const *names);
+strut_status strut_check_output_writable(const strut_arguments *arguments,
+                                         const char *const *names);
 /** The same for one file; a path of NULL is none. */
 strut_status strut_try_file(const char *path);
 

@@ -51,8 +51,7 @@ static strut_status check(const strut_command *command, const strut_override *va
   for (const char *c = value; *c && !dots; c++)
     good = good && !(*c == ',' && (c[1] == ',' || c[1] == '\0'));
   if (good && strlen(value) < MOST_TEXT / 3) return STRUT_OK;
-  fprintf(stderr,
-          "strut %s: --vary expects NAME=LOW..HIGH or NAME=WORD,WORD,... and not '%s=%s'\n",
+  fprintf(stderr, "strut %s: --vary expects NAME=LOW..HIGH or NAME=WORD,WORD,... and not '%s=%s'\n",
           command->name, varied->name, value);
   return STRUT_USAGE;
 }

@@ -11,7 +11,7 @@
 
 /** Scenes of one model. Zero-initialise. */
 typedef struct strut_operating_points {
-  strut_scene *scenes; /* (count) */
+  strut_scene *scenes;      /* (count) */
   const strut_scene **list; /* (count) them */
   size_t count;
 } strut_operating_points;

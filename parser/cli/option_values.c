@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/yaml/diagnostics.h"
 #include "parser/expression/expression.h"
+#include "parser/yaml/diagnostics.h"
 
 static const char *name_of(const strut_command *command, strut_option_id id) {
   const strut_option *option = command->options;

@@ -97,52 +97,23 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
     return STRUT_OK;
   }
   switch (id) {
-    case POSITIONAL:
-      return take_model(command, optarg, to);
+    case POSITIONAL: return take_model(command, optarg, to);
     case STRUT_OPTION_SET:
-    case STRUT_OPTION_VARY:
-      return take_override(command, id, optarg, to);
-    case STRUT_OPTION_OUTPUT:
-      to->output = optarg;
-      break;
-    case STRUT_OPTION_JSON:
-      to->json = true;
-      break;
-    case STRUT_OPTION_QUIET:
-      to->quiet = true;
-      break;
-    case STRUT_OPTION_FORCE:
-      to->force = true;
-      break;
-    case STRUT_OPTION_STUCK:
-      to->stuck = true;
-      break;
-    case STRUT_OPTION_OWN_MODEL:
-      to->own = true;
-      break;
-    case STRUT_OPTION_CSV:
-      to->csv = true;
-      break;
-    case STRUT_OPTION_NO_MOTION:
-      to->no_motion = true;
-      break;
-    case STRUT_OPTION_NO_STATES:
-      to->no_states = true;
-      break;
-    case STRUT_OPTION_COUNT_POINTS:
-      to->tally = true;
-      break;
-    case STRUT_OPTION_STATUS:
-      to->status = true;
-      break;
-    case STRUT_OPTION_RETRY:
-      to->retry = true;
-      break;
-    case STRUT_OPTION_HELP:
-      to->help = true;
-      break;
-    default:
-      break;
+    case STRUT_OPTION_VARY: return take_override(command, id, optarg, to);
+    case STRUT_OPTION_OUTPUT: to->output = optarg; break;
+    case STRUT_OPTION_JSON: to->json = true; break;
+    case STRUT_OPTION_QUIET: to->quiet = true; break;
+    case STRUT_OPTION_FORCE: to->force = true; break;
+    case STRUT_OPTION_STUCK: to->stuck = true; break;
+    case STRUT_OPTION_OWN_MODEL: to->own = true; break;
+    case STRUT_OPTION_CSV: to->csv = true; break;
+    case STRUT_OPTION_NO_MOTION: to->no_motion = true; break;
+    case STRUT_OPTION_NO_STATES: to->no_states = true; break;
+    case STRUT_OPTION_COUNT_POINTS: to->tally = true; break;
+    case STRUT_OPTION_STATUS: to->status = true; break;
+    case STRUT_OPTION_RETRY: to->retry = true; break;
+    case STRUT_OPTION_HELP: to->help = true; break;
+    default: break;
   }
   return STRUT_OK;
 }

@@ -31,8 +31,8 @@ typedef enum strut_option_id {
   STRUT_OPTION_NO_STATES,
   STRUT_OPTION_VARY,
   STRUT_OPTION_COUNT_POINTS, /* how many points a study has */
-  STRUT_OPTION_STATUS, /* how far a study is */
-  STRUT_OPTION_RETRY,  /* of a study's points that failed */
+  STRUT_OPTION_STATUS,       /* how far a study is */
+  STRUT_OPTION_RETRY,        /* of a study's points that failed */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -58,7 +58,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_SPEED,
   STRUT_OPTION_FPS,
   STRUT_OPTION_FORMAT,
-  STRUT_OPTION_KIND,    /* of a diagram from a table */
+  STRUT_OPTION_KIND, /* of a diagram from a table */
   STRUT_OPTION_X,
   STRUT_OPTION_Y,
   STRUT_OPTION_BY,
@@ -106,13 +106,13 @@ typedef struct strut_option {
 
 /** A command line as read. Texts belong to argv. Zero-initialise. */
 typedef struct strut_arguments {
-  const char *model; /* the first; NULL where the command takes none or none is given */
+  const char *model;   /* the first; NULL where the command takes none or none is given */
   const char **models; /* (model_count) all that are given: several where the command takes many */
   size_t model_count;
   const char *output;
   bool help, json, quiet, force, stuck, own, csv, no_motion, no_states, tally, status, retry;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
-  strut_override *overrides; /* (override_count) */
+  strut_override *overrides;                                      /* (override_count) */
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
@@ -121,7 +121,7 @@ typedef struct strut_arguments {
 /** A command: the whole of what the program knows about it. */
 typedef struct strut_command {
   const char *name;
-  const char *model; /* its one argument, such as "MODEL"; NULL: none */
+  const char *model;           /* its one argument, such as "MODEL"; NULL: none */
   bool model_optional, many;   /* many: one or more of them */
   const char *summary;         /* half a sentence for the list of commands */
   const char *details;         /* lines for its own help; may be NULL */

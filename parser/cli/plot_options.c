@@ -9,7 +9,7 @@
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 
-static const double POINTS = 72.0 / 0.0254; /* in a metre */
+static const double POINTS = 72.0 / 0.0254;                                      /* in a metre */
 static const double PAGE = 0.18, COLUMN = 0.088, NARROWEST = 0.04, WIDEST = 1.0; /* [m] */
 
 static strut_status read_width(const strut_command *command, const strut_arguments *arguments,

@@ -14,10 +14,12 @@ typedef struct strut_plot {
 } strut_plot;
 
 /** Rows for a command's table of options. */
-#define STRUT_PLOT_OPTIONS                                                                        \
-  {STRUT_OPTION_PLOT, "plot", "FILE", "draw it: FILE ends with .svg, .pdf or .png"},               \
-  {STRUT_OPTION_WIDTH, "width", "WIDTH", "of the drawing: page (180 mm), column (88 mm), or a "   \
-                                         "length such as 120 mm"}
+#define STRUT_PLOT_OPTIONS                                                                         \
+  {STRUT_OPTION_PLOT, "plot", "FILE", "draw it: FILE ends with .svg, .pdf or .png"}, {             \
+    STRUT_OPTION_WIDTH, "width", "WIDTH",                                                          \
+        "of the drawing: page (180 mm), column (88 mm), or a "                                     \
+        "length such as 120 mm"                                                                    \
+  }
 
 /**
  * Reads both before anything is computed, and finds out whether FILE can be written: STRUT_USAGE or

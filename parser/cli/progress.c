@@ -84,13 +84,14 @@ void strut_progress_show(void *context, double fraction) {
   char bar[BAR_ROOM], left[32], simulated[48], text[TEXT];
   double elapsed = now() - (progress->phase ? progress->phase_start : progress->start);
   if (now() - progress->start < PATIENCE) return;
-  strut_progress_time(left, sizeof left, fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
+  strut_progress_time(left, sizeof left,
+                      fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
   write_simulated(simulated, sizeof simulated, fraction, progress->span);
   double percent = floor(100.0 * fraction);
-  int length = progress->phase
-                   ? snprintf(text, sizeof text, " %3.0f %%, %s left: %s", percent, left,
-                              progress->phase)
-                   : snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
+  int length =
+      progress->phase
+          ? snprintf(text, sizeof text, " %3.0f %%, %s left: %s", percent, left, progress->phase)
+          : snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
   int room = progress->columns - 1 - length; /* the last column would break the line */
   if (room < LEAST) {
     length = snprintf(text, sizeof text, " %3.0f %%, %s left", percent, left);

@@ -10,15 +10,15 @@
 #include <stddef.h>
 
 typedef struct strut_progress {
-  bool wanted;  /* stderr is a terminal and nobody asked for quiet */
-  bool colour;  /* the terminal knows escape sequences and NO_COLOR is not set */
-  bool shown;   /* there is a bar to erase */
-  bool unicode; /* the locale writes UTF-8: the bar is made of blocks */
+  bool wanted;        /* stderr is a terminal and nobody asked for quiet */
+  bool colour;        /* the terminal knows escape sequences and NO_COLOR is not set */
+  bool shown;         /* there is a bar to erase */
+  bool unicode;       /* the locale writes UTF-8: the bar is made of blocks */
   const char *phase;  /* the part of the work that the bar is for, or NULL: there is one part */
   double phase_start; /* when that began [s] */
-  double start; /* [s] of the monotonic clock */
-  double span;  /* simulated time that the whole stands for [s]; 0: it is not told */
-  int columns;  /* of the terminal */
+  double start;       /* [s] of the monotonic clock */
+  double span;        /* simulated time that the whole stands for [s]; 0: it is not told */
+  int columns;        /* of the terminal */
 } strut_progress;
 
 strut_progress strut_progress_begin(bool quiet);

@@ -41,8 +41,8 @@ strut_status strut_run_film_read(const strut_command *command, const strut_argum
   strut_status status = read_number(command, arguments, STRUT_OPTION_SPEED, "speed", LEAST_SPEED,
                                     MOST_SPEED, &film->speed);
   if (status == STRUT_OK)
-    status = read_number(command, arguments, STRUT_OPTION_FPS, "fps", LEAST_FPS, MOST_FPS,
-                         &film->fps);
+    status =
+        read_number(command, arguments, STRUT_OPTION_FPS, "fps", LEAST_FPS, MOST_FPS, &film->fps);
   if (status != STRUT_OK) return status;
   status = strut_film_check(film->path, &error);
   if (status != STRUT_OK) strut_print_error(&error);
@@ -66,10 +66,11 @@ static void say(const strut_film *film, const strut_film_made *made) {
            strut_quantity_of(motion, DIGITS, "s").text, fmax(2, better_speed(motion)),
            strut_quantity_of(motion * fmax(2, better_speed(motion)), 2, "s").text);
   if (made->every > 1.5 * made->shown)
-    printf("  recorded every %s, shown every %s: straight lines between; a shorter output: every "
-           "shows more\n",
-           strut_quantity_of(made->every, DIGITS, "s").text,
-           strut_quantity_of(made->shown, DIGITS, "s").text);
+    printf(
+        "  recorded every %s, shown every %s: straight lines between; a shorter output: every "
+        "shows more\n",
+        strut_quantity_of(made->every, DIGITS, "s").text,
+        strut_quantity_of(made->shown, DIGITS, "s").text);
 }
 
 strut_status strut_run_film_make(strut_film *film, const strut_model *model,

@@ -9,10 +9,11 @@
 #include "parser/cli/options.h"
 
 /** Rows for the table of options. */
-#define STRUT_RUN_FILM_OPTIONS                                                                    \
-  {STRUT_OPTION_ANIMATE, "animate", "FILE", "make a film: FILE ends with .mp4, .webm or .gif"},   \
-      {STRUT_OPTION_SPEED, "speed", "SPEED", "of the film, such as 1/10 or 5; 1 is true"},        \
-      {STRUT_OPTION_FPS, "fps", "NUMBER", "its frames per second (30; gif: 25)"}
+#define STRUT_RUN_FILM_OPTIONS                                                                     \
+  {STRUT_OPTION_ANIMATE, "animate", "FILE", "make a film: FILE ends with .mp4, .webm or .gif"},    \
+      {STRUT_OPTION_SPEED, "speed", "SPEED", "of the film, such as 1/10 or 5; 1 is true"}, {       \
+    STRUT_OPTION_FPS, "fps", "NUMBER", "its frames per second (30; gif: 25)"                       \
+  }
 
 /**
  * Reads them before anything is computed, and finds out whether the film can be made: ffmpeg is

@@ -48,8 +48,8 @@ static strut_status read_times(const strut_command *command, const strut_argumen
   return STRUT_USAGE;
 }
 
-strut_status strut_run_pictures_read(const strut_command *command,
-                                     const strut_arguments *arguments, strut_run_pictures *p) {
+strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
+                                     strut_run_pictures *p) {
   int view = STRUT_RUN_OVERVIEW;
   const char *draw = strut_option_text(arguments, STRUT_OPTION_DRAW);
   strut_status status = strut_plot_read(command, arguments, 0, &p->plot);
@@ -71,8 +71,7 @@ strut_status strut_run_pictures_read(const strut_command *command,
 strut_status strut_run_pictures_check(const strut_run_pictures *p, const strut_model *model,
                                       strut_error *error) {
   strut_span span = strut_scene_span(model->scene);
-  strut_status status =
-      strut_film_check_length(&p->film, span.duration - span.record_start, error);
+  strut_status status = strut_film_check_length(&p->film, span.duration - span.record_start, error);
   if (status != STRUT_OK || !p->plot.path) return status;
   return strut_run_figure_check(&p->figure, model, error);
 }

@@ -23,17 +23,15 @@ typedef struct strut_run_pictures {
 } strut_run_pictures;
 
 /** Rows for the table of options. */
-#define STRUT_RUN_PICTURE_OPTIONS                                                                 \
-  STRUT_PLOT_OPTIONS,                                                                             \
-      {STRUT_OPTION_DRAW, "draw", "WHAT",                                                         \
-       "overview (if not given), period, snapshots or curves"},                                   \
-      {STRUT_OPTION_SCALE, "scale", "X,Y", "draw the motion of a period so many times"},          \
+#define STRUT_RUN_PICTURE_OPTIONS                                                                  \
+  STRUT_PLOT_OPTIONS,                                                                              \
+      {STRUT_OPTION_DRAW, "draw", "WHAT", "overview (if not given), period, snapshots or curves"}, \
+      {STRUT_OPTION_SCALE, "scale", "X,Y", "draw the motion of a period so many times"},           \
       {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},   \
       STRUT_RUN_FILM_OPTIONS
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
-strut_status strut_run_pictures_read(const strut_command *command,
-                                     const strut_arguments *arguments,
+strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *pictures);
 /** Whether the run will have what is to be drawn; STRUT_USAGE. Before anything is computed. */
 strut_status strut_run_pictures_check(const strut_run_pictures *pictures, const strut_model *model,

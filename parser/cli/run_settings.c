@@ -47,7 +47,8 @@ strut_status strut_run_settings_apply(const strut_command *command,
                                  numbers[i].value);
     bool given = strut_option_text(arguments, numbers[i].id);
     if (status == STRUT_OK && given && !(*numbers[i].value > 0.0))
-      return refuse("--accuracy, --budget, --step, --tolerance and --steady must be greater than 0");
+      return refuse(
+          "--accuracy, --budget, --step, --tolerance and --steady must be greater than 0");
   }
   if (status != STRUT_OK) return status;
   if (strut_option_text(arguments, STRUT_OPTION_STEADY)) {

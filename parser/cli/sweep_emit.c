@@ -9,8 +9,8 @@
 
 #include "engine/base/memory.h"
 #include "engine/study/cluster/parallel_script.h"
-#include "engine/study/results/shard.h"
 #include "engine/study/cluster/slurm_script.h"
+#include "engine/study/results/shard.h"
 #include "parser/cli/command_sweep.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"

@@ -7,9 +7,9 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
-#include "parser/yaml/diagnostics.h"
 #include "parser/expression/number.h"
 #include "parser/read/read_scene.h"
+#include "parser/yaml/diagnostics.h"
 
 enum { MOST_MESSAGES = 20, MOST_COLUMNS = 10000 };
 
@@ -195,7 +195,8 @@ static bool make_columns(reader *r) {
 }
 
 static strut_status read_text(reader *r) {
-  if (r->end - r->at >= 3 && memcmp(r->at, "\xEF\xBB\xBF", 3) == 0) r->at += 3; /* a byte order mark */
+  if (r->end - r->at >= 3 && memcmp(r->at, "\xEF\xBB\xBF", 3) == 0)
+    r->at += 3; /* a byte order mark */
   if (r->at == r->end) {
     strut_diagnose(&r->diagnostics, (strut_place){0, 0, 0}, "the file is empty, expected a table");
   } else {

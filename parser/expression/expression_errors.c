@@ -3,9 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/yaml/diagnostics.h"
 #include "parser/expression/expression_parts.h"
 #include "parser/expression/quantity.h"
+#include "parser/yaml/diagnostics.h"
 #include "parser/yaml/text.h"
 
 /* Longest stretch of the text that a message repeats. */

@@ -101,8 +101,7 @@ static bool raise(strut_quantity *a, strut_quantity b, strut_reason *reason) {
   if (b.varies && !dimensionless(*a))
     return refuse(reason, "the exponent varies in time, so %s cannot be raised to it",
                   strut_dimension_name(a->dimension, name, sizeof name));
-  if (!a->bare && !b.varies)
-    a->dimension = combine(STRUT_DIM_NONE, a->dimension, (float)b.value);
+  if (!a->bare && !b.varies) a->dimension = combine(STRUT_DIM_NONE, a->dimension, (float)b.value);
   if (!in_range(a->dimension)) return refuse(reason, "the power of a unit is too high");
   a->bare = a->bare && b.bare;
   a->value = pow(a->value, b.value);

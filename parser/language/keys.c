@@ -15,27 +15,41 @@ static const strut_key table[] = {
 };
 
 /* First key of each room, and one more that ends the last; a test compares it with the table. */
-static const int first[] = {STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSITION,
-                            STRUT_KEY_MEMBER_GROUP,          STRUT_KEY_GROUND_HEIGHT,
-                            STRUT_KEY_FRICTION_LAW,          STRUT_KEY_CONTACT_GROUP,
-                            STRUT_KEY_ACTUATOR_MEMBER,       STRUT_KEY_LOAD_NODE,
-                            STRUT_KEY_SIGNAL_CONSTANT,       STRUT_KEY_SINE_AMPLITUDE,
-                            STRUT_KEY_HALF_SINE_AMPLITUDE,   STRUT_KEY_SQUARE_AMPLITUDE,
-                            STRUT_KEY_RAMP_AMPLITUDE,        STRUT_KEY_CONFIGURATION_CONTACTS,
-                            STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,
-                            STRUT_KEY_EQUILIBRIA_SUPPORTS,   STRUT_KEY_SOLVER_INTEGRATOR,
-                            STRUT_KEY_RUN_DURATION,          STRUT_KEY_MEASURE_LAST,
-                            STRUT_KEY_QUANTITY_OF,           STRUT_KEY_STEADY_TOLERANCE,
-                            STRUT_KEY_OUTPUT_EVERY,          STRUT_KEY_STUDY_VERSION,
-                            STRUT_KEY_RANGE_FROM,            STRUT_KEY_VARIANT_SOLVER,
-                            STRUT_KEY_CHECK_HALF_STEP,       STRUT_KEY_FIGURE_KIND,
+static const int first[] = {STRUT_KEY_SCENE_VERSION,
+                            STRUT_KEY_NODE_POSITION,
+                            STRUT_KEY_MEMBER_GROUP,
+                            STRUT_KEY_GROUND_HEIGHT,
+                            STRUT_KEY_FRICTION_LAW,
+                            STRUT_KEY_CONTACT_GROUP,
+                            STRUT_KEY_ACTUATOR_MEMBER,
+                            STRUT_KEY_LOAD_NODE,
+                            STRUT_KEY_SIGNAL_CONSTANT,
+                            STRUT_KEY_SINE_AMPLITUDE,
+                            STRUT_KEY_HALF_SINE_AMPLITUDE,
+                            STRUT_KEY_SQUARE_AMPLITUDE,
+                            STRUT_KEY_RAMP_AMPLITUDE,
+                            STRUT_KEY_CONFIGURATION_CONTACTS,
+                            STRUT_KEY_INITIAL_CONFIGURATION,
+                            STRUT_KEY_SETTLE_SPEED,
+                            STRUT_KEY_EQUILIBRIA_SUPPORTS,
+                            STRUT_KEY_SOLVER_INTEGRATOR,
+                            STRUT_KEY_RUN_DURATION,
+                            STRUT_KEY_MEASURE_LAST,
+                            STRUT_KEY_QUANTITY_OF,
+                            STRUT_KEY_STEADY_TOLERANCE,
+                            STRUT_KEY_OUTPUT_EVERY,
+                            STRUT_KEY_STUDY_VERSION,
+                            STRUT_KEY_RANGE_FROM,
+                            STRUT_KEY_VARIANT_SOLVER,
+                            STRUT_KEY_CHECK_HALF_STEP,
+                            STRUT_KEY_FIGURE_KIND,
                             STRUT_KEY_COUNT};
 
 static const char *const room_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
-    "initial", "settle", "equilibria", "solver",    "run",      "measure", "quantity", "steady", "output",
-    "study",   "range",  "variant",    "check",      "figure"};
+    "initial", "settle", "equilibria", "solver",    "run",      "measure", "quantity",
+    "steady",  "output", "study",      "range",     "variant",  "check",   "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
 _Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");
@@ -57,30 +71,18 @@ int strut_key_find(strut_section room, const char *name) {
 
 strut_dimension strut_measure_dimension(strut_measure measure) {
   switch (measure) {
-    case STRUT_MEASURE_LENGTH:
-      return STRUT_DIM_LENGTH;
-    case STRUT_MEASURE_MASS:
-      return STRUT_DIM_MASS;
-    case STRUT_MEASURE_TIME:
-      return STRUT_DIM_TIME;
-    case STRUT_MEASURE_FREQUENCY:
-      return STRUT_DIM_FREQUENCY;
-    case STRUT_MEASURE_ANGLE:
-      return STRUT_DIM_ANGLE;
-    case STRUT_MEASURE_VELOCITY:
-      return STRUT_DIM_VELOCITY;
-    case STRUT_MEASURE_ACCELERATION:
-      return STRUT_DIM_ACCELERATION;
-    case STRUT_MEASURE_FORCE:
-      return STRUT_DIM_FORCE;
-    case STRUT_MEASURE_STIFFNESS:
-      return STRUT_DIM_STIFFNESS;
-    case STRUT_MEASURE_DAMPING:
-      return STRUT_DIM_DAMPING;
-    case STRUT_MEASURE_DISSIPATION:
-      return STRUT_DIM_DISSIPATION;
-    default:
-      return STRUT_DIM_NONE;
+    case STRUT_MEASURE_LENGTH: return STRUT_DIM_LENGTH;
+    case STRUT_MEASURE_MASS: return STRUT_DIM_MASS;
+    case STRUT_MEASURE_TIME: return STRUT_DIM_TIME;
+    case STRUT_MEASURE_FREQUENCY: return STRUT_DIM_FREQUENCY;
+    case STRUT_MEASURE_ANGLE: return STRUT_DIM_ANGLE;
+    case STRUT_MEASURE_VELOCITY: return STRUT_DIM_VELOCITY;
+    case STRUT_MEASURE_ACCELERATION: return STRUT_DIM_ACCELERATION;
+    case STRUT_MEASURE_FORCE: return STRUT_DIM_FORCE;
+    case STRUT_MEASURE_STIFFNESS: return STRUT_DIM_STIFFNESS;
+    case STRUT_MEASURE_DAMPING: return STRUT_DIM_DAMPING;
+    case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
+    default: return STRUT_DIM_NONE;
   }
 }
 
@@ -138,40 +140,24 @@ const char *strut_words_text(const char *words, char *buffer, size_t size) {
 /* The types whose values are no number and have no words of their own. */
 static const char *expected_shape(strut_key_type type) {
   switch (type) {
-    case STRUT_TYPE_VERSION:
-      return "the language version 1";
-    case STRUT_TYPE_TEXT:
-      return "a text";
-    case STRUT_TYPE_NAME:
-      return "a name";
-    case STRUT_TYPE_NODE_PAIR:
-      return "two nodes such as [n1, n2]";
-    case STRUT_TYPE_CONTACT_NODES:
-      return "all, or a list of nodes such as [n1, n2]";
-    case STRUT_TYPE_NODE_SETS:
-      return "nodes such as [n1, n2], or a list of such lists";
-    case STRUT_TYPE_GROUPS:
-      return "a group, or a list of groups";
+    case STRUT_TYPE_VERSION: return "the language version 1";
+    case STRUT_TYPE_TEXT: return "a text";
+    case STRUT_TYPE_NAME: return "a name";
+    case STRUT_TYPE_NODE_PAIR: return "two nodes such as [n1, n2]";
+    case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";
+    case STRUT_TYPE_NODE_SETS: return "nodes such as [n1, n2], or a list of such lists";
+    case STRUT_TYPE_GROUPS: return "a group, or a list of groups";
     case STRUT_TYPE_SIGNAL:
       return "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name";
-    case STRUT_TYPE_SIGNALS:
-      return "a list of signals";
-    case STRUT_TYPE_TABLE:
-      return "a list of points such as [[0 s, 0], [1 s, 2]]";
-    case STRUT_TYPE_SETTLE:
-      return "true, or a mapping such as {limit: 100 s}";
-    case STRUT_TYPE_STEADY:
-      return "true, or a mapping such as {tolerance: 0.5 %}";
-    case STRUT_TYPE_EXPRESSION:
-      return "an expression such as com.vy, n1.y - n2.y or m1.force";
-    case STRUT_TYPE_AXES:
-      return "a list of axes such as [{friction: [0.1, 0.2]}]";
-    case STRUT_TYPE_TIMES:
-      return "a list of times such as [0 s, 20 ms]";
-    case STRUT_TYPE_MAP:
-      return "a mapping {key: value, ...}";
-    default:
-      return "a mapping {name: ..., ...}";
+    case STRUT_TYPE_SIGNALS: return "a list of signals";
+    case STRUT_TYPE_TABLE: return "a list of points such as [[0 s, 0], [1 s, 2]]";
+    case STRUT_TYPE_SETTLE: return "true, or a mapping such as {limit: 100 s}";
+    case STRUT_TYPE_STEADY: return "true, or a mapping such as {tolerance: 0.5 %}";
+    case STRUT_TYPE_EXPRESSION: return "an expression such as com.vy, n1.y - n2.y or m1.force";
+    case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
+    case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
+    case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";
+    default: return "a mapping {name: ..., ...}";
   }
 }
 
@@ -190,9 +176,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       example = strut_dimension_example(strut_measure_dimension(k->measure));
       snprintf(buffer, size, "two numbers such as [%s, 0]", example ? example : "1");
       break;
-    case STRUT_TYPE_WORD:
-      strut_words_text(k->words, buffer, size);
-      break;
+    case STRUT_TYPE_WORD: strut_words_text(k->words, buffer, size); break;
     case STRUT_TYPE_WORDS:
       snprintf(buffer, size, "a list of %s", strut_words_text(k->words, text, sizeof text));
       break;
@@ -204,8 +188,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       snprintf(buffer, size, "%s, or a list of x and y",
                strut_words_text(k->words, text, sizeof text));
       break;
-    default:
-      snprintf(buffer, size, "%s", expected_shape(k->type));
+    default: snprintf(buffer, size, "%s", expected_shape(k->type));
   }
   return buffer;
 }

@@ -10,8 +10,8 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
-#include "parser/language/keys_table.h"
 #include "parser/expression/units.h"
+#include "parser/language/keys_table.h"
 
 /** The mappings of the language. */
 typedef enum strut_section {

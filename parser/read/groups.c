@@ -37,8 +37,8 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     if (found < 0) found = item.key[r];
   }
   if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {
-    strut_report_error(reader, key->place, "a group cannot have a group, found '%s' in %s", key->text,
-              strut_owner_text(reader, owner));
+    strut_report_error(reader, key->place, "a group cannot have a group, found '%s' in %s",
+                       key->text, strut_owner_text(reader, owner));
     group->broken = true;
     return;
   }
@@ -56,7 +56,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
   const strut_tree *other = rival(group, found);
   if (other) {
     strut_report_error(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
-              strut_owner_text(reader, owner), other->text, key->text);
+                       strut_owner_text(reader, owner), other->text, key->text);
     item.slot.state = STRUT_BROKEN;
   }
   if (item.slot.state == STRUT_GIVEN && strut_key_at(found)->type == STRUT_TYPE_MAP) {
@@ -74,8 +74,9 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
   *group = (strut_group){.name = key->text, .key = key};
   if (!strut_read_name(reader, key, "group")) group->broken = true;
   if (map->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, map->place, "expected keys of a member, a node or a contact for %s, found %s",
-              strut_owner_text(reader, owner), strut_found(reader, map));
+    strut_report_error(reader, map->place,
+                       "expected keys of a member, a node or a contact for %s, found %s",
+                       strut_owner_text(reader, owner), strut_found(reader, map));
     group->broken = true;
     return;
   }
@@ -87,7 +88,8 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
 void strut_read_groups(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
   if (!map) return;
-  reader->groups = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  reader->groups =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
   for (const strut_tree *key = map->first; key && reader->groups; key = key->next->next) {
     read_group(reader, key, &reader->groups[reader->group_count]);
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
@@ -114,7 +116,7 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
   if (value->kind == STRUT_TREE_LIST && value->count > STRUT_MOST_GROUPS) {
     strut_report_error(reader, value->place, "%s names %u groups, expected at most %d",
-              strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
+                       strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
     return false;
   }
   for (; item && known; item = value == item ? NULL : item->next)
@@ -149,9 +151,10 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
     } else if (!item->refused[room]) {
       item->refused[room] = true;
       if (item->slot.state == STRUT_BROKEN) continue;
-      strut_report_error(reader, item->slot.key->place, "group '%s' gives '%s' to %s, but a %s has no '%s'",
-                group->name, item->slot.key->text, strut_owner_text(reader, owner),
-                strut_section_name(fields->room), item->slot.key->text);
+      strut_report_error(reader, item->slot.key->place,
+                         "group '%s' gives '%s' to %s, but a %s has no '%s'", group->name,
+                         item->slot.key->text, strut_owner_text(reader, owner),
+                         strut_section_name(fields->room), item->slot.key->text);
     }
   }
   if (group->broken) fields->broken = true;

@@ -41,19 +41,20 @@ static void report_circle(strut_reader *reader, const strut_parameter_state *p) 
   size_t first = 0;
   bool given = p->set && !p->set->known && p->set->place.line;
   while (reader->parameter_stack[first] != p) first++;
-  strut_report_error(reader, given ? p->set->place : p->key->place, "parameter '%s' depends on itself: %s",
-            p->name, strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
+  strut_report_error(reader, given ? p->set->place : p->key->place,
+                     "parameter '%s' depends on itself: %s", p->name,
+                     strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
 }
 
 /* Reports about what was given from outside: where a study gives it, else where it is declared. */
 static void object(strut_reader *reader, const strut_setting *set, strut_place declared,
                    const char *message) {
   if (set->place.line)
-    strut_report_error(reader, set->place, "in '%s' of the study: %s", strut_sanitised_text(reader, set->name),
-              message);
+    strut_report_error(reader, set->place, "in '%s' of the study: %s",
+                       strut_sanitised_text(reader, set->name), message);
   else
     strut_report_error(reader, declared, "--set %s=%s: %s", strut_sanitised_text(reader, set->name),
-              strut_sanitised_text(reader, set->text), message);
+                       strut_sanitised_text(reader, set->text), message);
 }
 
 /* The expression of a parameter in the file. */
@@ -123,7 +124,7 @@ static void resolve(strut_reader *reader, strut_parameter_state *p) {
   if (p->state != STRUT_UNREAD) return;
   if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
     strut_report_error(reader, p->key->place, "parameters depend on each other more than %d deep",
-              STRUT_DEEPEST_PARAMETER);
+                       STRUT_DEEPEST_PARAMETER);
     p->state = STRUT_FAILED;
     return;
   }
@@ -151,8 +152,8 @@ static int look_up(void *context, const char *name, size_t length, strut_quantit
   if (!p) return 0;
   p->used = true;
   if (p->text) {
-    strut_report_error(reader, asking_place(reader), "parameter '%s' is a text and has no value here",
-              p->name);
+    strut_report_error(reader, asking_place(reader),
+                       "parameter '%s' is a text and has no value here", p->name);
     return -1;
   }
   resolve(reader, p);
@@ -176,16 +177,18 @@ static bool name_fits(strut_reader *reader, const strut_tree *key) {
   size_t length = strlen(c);
   if (!strut_read_name(reader, key, "parameter")) return false;
   if (strcmp(c, "pi") == 0 || strut_function_find(c, length)) {
-    strut_report_error(reader, key->place, "'%s' cannot be the name of a parameter: expressions use it", c);
+    strut_report_error(reader, key->place,
+                       "'%s' cannot be the name of a parameter: expressions use it", c);
     return false;
   }
   for (size_t i = 0; i < length; i++) {
     bool letter = (c[i] >= 'a' && c[i] <= 'z') || (c[i] >= 'A' && c[i] <= 'Z') || c[i] == '_';
     if (letter || (i && c[i] >= '0' && c[i] <= '9')) continue;
-    strut_report_error(reader, key->place,
-              "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
-              "and '_', so that it can stand in expressions",
-              c);
+    strut_report_error(
+        reader, key->place,
+        "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
+        "and '_', so that it can stand in expressions",
+        c);
     return false;
   }
   return true;
@@ -212,8 +215,8 @@ static void set(strut_reader *reader, const strut_setting *setting) {
         strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
     object(reader, setting, section_place(reader), message);
   } else if (p->set) {
-    strut_report_error(reader, setting->place.line ? setting->place : p->key->place, "%s%s is given twice",
-              setting->place.line ? "" : "--set ", p->name);
+    strut_report_error(reader, setting->place.line ? setting->place : p->key->place,
+                       "%s%s is given twice", setting->place.line ? "" : "--set ", p->name);
   } else {
     p->set = setting;
   }
@@ -223,8 +226,8 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   bool known = slot->state != STRUT_BROKEN;
   const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
-  reader->parameters =
-      strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0, sizeof *reader->parameters);
+  reader->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
+                                             sizeof *reader->parameters);
   if (!reader->parameters) return;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
     declare(reader, key, &reader->parameters[reader->parameter_count]);
@@ -237,8 +240,8 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
 void strut_keep_parameters(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   if (reader->failed) return; /* nobody will see the scene */
-  scene->parameters =
-      strut_reader_allocate(reader, &scene->arena, reader->parameter_count, sizeof *scene->parameters);
+  scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
+                                            sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
     const strut_parameter_state *p = &reader->parameters[i];
     if (p->value->kind != STRUT_TREE_SCALAR) return; /* reported */

@@ -51,10 +51,10 @@ static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner 
   for (const strut_tree *item = list->first; item; item = item->next)
     if (item->kind == STRUT_TREE_LIST) lists++;
   if (!list->count || (lists && lists != list->count)) {
-    strut_report_error(reader, list->place,
-              "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s",
-              key, strut_owner_text(reader, owner),
-              lists ? "a list of both" : strut_found(reader, list));
+    strut_report_error(
+        reader, list->place,
+        "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s", key,
+        strut_owner_text(reader, owner), lists ? "a list of both" : strut_found(reader, list));
     return false;
   }
   if (!nodes_known(reader)) return false;
@@ -89,10 +89,11 @@ static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner o
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     if (is_key(reader, key) || strut_name_map_find(&reader->node_names, key->text) < 0) continue;
-    strut_report_error(reader, key->place,
-              "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
-              strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
-              strut_sanitised_text(reader, key->text));
+    strut_report_error(
+        reader, key->place,
+        "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
+        strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
+        strut_sanitised_text(reader, key->text));
     fine = false;
   }
   return fine;
@@ -123,8 +124,9 @@ static bool read_configuration(strut_reader *reader, const strut_tree *key,
   const strut_tree *value = key->next;
   bool fine = strut_read_name(reader, key, "configuration"), keys = false;
   if (value->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, value->place, "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
-              strut_owner_text(reader, owner), strut_found(reader, value));
+    strut_report_error(reader, value->place,
+                       "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
+                       strut_owner_text(reader, owner), strut_found(reader, value));
     return false;
   }
   for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
@@ -138,21 +140,22 @@ void strut_read_configurations(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONFIGURATIONS);
   if (!map) return;
   if (map->count > MOST_POSITIONS / (scene->node_count + 1)) {
-    strut_report_error(reader, map->place, "%u configurations of %zu nodes are more than %d positions",
-              (unsigned)map->count, scene->node_count, (int)MOST_POSITIONS);
+    strut_report_error(reader, map->place,
+                       "%u configurations of %zu nodes are more than %d positions",
+                       (unsigned)map->count, scene->node_count, (int)MOST_POSITIONS);
     return;
   }
   scene->configurations =
       strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->configurations);
-  reader->configuration_source =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->configuration_source);
+  reader->configuration_source = strut_reader_allocate(reader, &reader->scratch, map->count,
+                                                       sizeof *reader->configuration_source);
   if (!scene->configurations || !reader->configuration_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     strut_configuration *configuration = &scene->configurations[scene->configuration_count];
     configuration->name = strut_keep_text(reader, key->text);
     if (!configuration->position)
-      configuration->position =
-          strut_reader_allocate(reader, &scene->arena, scene->node_count, sizeof *configuration->position);
+      configuration->position = strut_reader_allocate(reader, &scene->arena, scene->node_count,
+                                                      sizeof *configuration->position);
     if (!configuration->position) return;
     for (size_t i = 0; i < scene->node_count; i++)
       memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
@@ -181,7 +184,8 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
                                 &reader->configuration_names, configuration_name, count);
   if (direct >= 0) {
     strut_report_error(reader, slot->value->place,
-              "'%s' is both a configuration and a text parameter; rename one of them", p->name);
+                       "'%s' is both a configuration and a text parameter; rename one of them",
+                       p->name);
     return -1;
   }
   p->used = true;
@@ -192,8 +196,8 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
                                            : p->key->place;
   if (index < 0)
     strut_report_error(reader, place, "unknown configuration '%s' in parameter '%s'%s",
-              strut_sanitised_text(reader, text), p->name,
-              strut_hint(reader, text, configuration_name, reader, count));
+                       strut_sanitised_text(reader, text), p->name,
+                       strut_hint(reader, text, configuration_name, reader, count));
   return index;
 }
 
@@ -203,16 +207,17 @@ static double whole(strut_reader *reader, int key, double most, double fallback)
   if (slot->state != STRUT_GIVEN) return fallback;
   if (slot->number[0] == floor(slot->number[0]) && slot->number[0] <= most)
     return slot->number[0] + 0.0; /* -0 is 0 */
-  strut_report_error(reader, slot->value->place, "'%s' of %s must be a whole number up to %.0f, found %g",
-            strut_key_at(key)->name, search_owner.kind, most, slot->number[0]);
+  strut_report_error(reader, slot->value->place,
+                     "'%s' of %s must be a whole number up to %.0f, found %g",
+                     strut_key_at(key)->name, search_owner.kind, most, slot->number[0]);
   reader->search.broken = true;
   return fallback;
 }
 
 void strut_read_search(strut_reader *reader) {
   strut_search *search = &reader->scene->search;
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_ROOM_EQUILIBRIA, search_owner.kind,
-                     &reader->search))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_ROOM_EQUILIBRIA,
+                          search_owner.kind, &reader->search))
     return;
   search->starts = (int64_t)whole(reader, STRUT_KEY_EQUILIBRIA_STARTS, STRUT_MOST_STARTS, 0.0);
   search->seed = (uint64_t)whole(reader, STRUT_KEY_EQUILIBRIA_SEED, STRUT_MOST_SEED, 1.0);

@@ -27,7 +27,8 @@ static void read_actuators(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_ACTUATORS);
   if (!map) return;
-  scene->actuators = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->actuators);
+  scene->actuators =
+      strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->actuators);
   reader->actuator_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->actuator_source);
   if (!scene->actuators || !reader->actuator_source) return;

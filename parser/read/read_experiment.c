@@ -25,10 +25,11 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
     int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
     settle->wanted = wanted == 1;
     if (wanted >= 0) return;
-    strut_report_error(reader, slot->value->place,
-              "expected true, or a mapping such as {limit: 100 s}, for 'settle' of the initial "
-              "state, found %s",
-              strut_found(reader, slot->value));
+    strut_report_error(
+        reader, slot->value->place,
+        "expected true, or a mapping such as {limit: 100 s}, for 'settle' of the initial "
+        "state, found %s",
+        strut_found(reader, slot->value));
     return;
   }
   strut_read_fields(reader, STRUT_ROOM_SETTLE, slot->value, owner, &reader->settle);
@@ -61,8 +62,8 @@ static void read_state(strut_reader *reader, int32_t configuration) {
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
   if (velocities->state != STRUT_GIVEN) return;
-  reader->velocity_source =
-      strut_reader_allocate(reader, &reader->scratch, scene->node_count, sizeof *reader->velocity_source);
+  reader->velocity_source = strut_reader_allocate(reader, &reader->scratch, scene->node_count,
+                                                  sizeof *reader->velocity_source);
   strut_read_node_pairs(reader, velocities->value,
                         (strut_owner){"'velocities' of the initial state", NULL},
                         STRUT_DIM_VELOCITY, take_velocity);
@@ -78,8 +79,8 @@ static void read_equilibrium(strut_reader *reader) {
     const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
     if (!rival->key) continue;
     strut_report_error(reader, rival->key->place,
-              "the initial state gives both 'equilibrium' and '%s', expected one of them",
-              rival->key->text);
+                       "the initial state gives both 'equilibrium' and '%s', expected one of them",
+                       rival->key->text);
     return;
   }
   reader->scene->start_equilibrium = index;
@@ -87,7 +88,7 @@ static void read_equilibrium(strut_reader *reader) {
 
 void strut_read_initial(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
-                     &reader->initial))
+                          &reader->initial))
     return;
   read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
@@ -124,21 +125,23 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
     for (int i = 0; i < 3; i++)
       if (strut_slot_of(&reader->top, sections[i])->state == STRUT_BROKEN) return -1;
     size_t names = scene->actuator_count + scene->load_count + reader->named_count;
-    strut_report_error(reader, value->place, "unknown actuator, load or signal '%s' in 'of' of the run%s",
-              strut_sanitised_text(reader, value->text),
-              strut_hint(reader, value->text, driver_name, reader, names));
+    strut_report_error(reader, value->place,
+                       "unknown actuator, load or signal '%s' in 'of' of the run%s",
+                       strut_sanitised_text(reader, value->text),
+                       strut_hint(reader, value->text, driver_name, reader, names));
     return -1;
   }
   for (int32_t i = 1; i < count; i++)
     if (found[i] != found[0] && found[i] >= 0 && found[0] >= 0) {
       strut_report_error(reader, value->place,
-                "'%s' names several things with different signals; rename one of them",
-                strut_sanitised_text(reader, value->text));
+                         "'%s' names several things with different signals; rename one of them",
+                         strut_sanitised_text(reader, value->text));
       return -1;
     }
   if (found[0] < 0 && l >= 0 && a < 0 && !reader->load_source[l].broken) {
-    strut_report_error(reader, value->place, "load '%s' has no signal whose periods could be counted",
-              strut_sanitised_text(reader, value->text));
+    strut_report_error(reader, value->place,
+                       "load '%s' has no signal whose periods could be counted",
+                       strut_sanitised_text(reader, value->text));
     return -1;
   }
   *broken = found[0] < 0;
@@ -155,8 +158,9 @@ static void read_of(strut_reader *reader) {
     strut_report_error(reader, of->key->place, "the run gives 'of' without 'periods'");
     reader->run.broken = true;
   } else if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
-    strut_report_error(reader, top->key->place,
-              "the run lacks 'of', expected the actuator, load or signal whose periods count");
+    strut_report_error(
+        reader, top->key->place,
+        "the run lacks 'of', expected the actuator, load or signal whose periods count");
     reader->run.broken = true;
   } else if (of->state == STRUT_GIVEN) {
     e->period_signal = find_signal_of(reader, of->value, &broken);
@@ -175,8 +179,8 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
   if (!periods->key && !duration->key) {
     fields->broken = true;
     if (reader->purpose == STRUT_FOR_STATICS) /* else what is missing is about to be said */
-      strut_report_error(reader, slot->key->place, "'last' of %s needs a run with a duration or periods",
-                owner.kind);
+      strut_report_error(reader, slot->key->place,
+                         "'last' of %s needs a run with a duration or periods", owner.kind);
     return;
   }
   strut_dimension dimension = periods->key ? STRUT_DIM_NONE : STRUT_DIM_TIME;
@@ -193,10 +197,11 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
     int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
     steady->wanted = wanted == 1;
     if (wanted >= 0) return;
-    strut_report_error(reader, slot->value->place,
-              "expected true, or a mapping such as {tolerance: 0.5 %%}, for 'steady' of the "
-              "measurement, found %s",
-              strut_found(reader, slot->value));
+    strut_report_error(
+        reader, slot->value->place,
+        "expected true, or a mapping such as {tolerance: 0.5 %%}, for 'steady' of the "
+        "measurement, found %s",
+        strut_found(reader, slot->value));
     return;
   }
   strut_read_fields(reader, STRUT_ROOM_STEADY, slot->value, owner, &reader->steady);
@@ -211,15 +216,17 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
   if (whole)
     steady->successive = (int32_t)successive;
   else
-    strut_report_error(reader, strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE)->value->place,
-              "expected a whole number from 2 to 16 for 'successive' of the steady state");
+    strut_report_error(reader,
+                       strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE)->value->place,
+                       "expected a whole number from 2 to 16 for 'successive' of the steady state");
 }
 
 static void read_run(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   strut_owner owner = {"the measurement", NULL};
   reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run)) return;
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run))
+    return;
   read_of(reader);
   e->duration = strut_number_or(&reader->run, STRUT_KEY_RUN_DURATION, 0.0);
   e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
@@ -268,7 +275,7 @@ void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   read_run(reader);
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
-                    &reader->solver)) {
+                         &reader->solver)) {
     e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
     e->tolerance = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_TOLERANCE, e->tolerance);
     e->refine = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE, 0.0);
@@ -279,7 +286,7 @@ void strut_read_experiment(strut_reader *reader) {
   }
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
-                     &reader->output))
+                          &reader->output))
     return;
   e->output_every = strut_number_or(&reader->output, STRUT_KEY_OUTPUT_EVERY, 0.0);
   read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, (strut_owner){"the output", NULL},

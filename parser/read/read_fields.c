@@ -46,9 +46,9 @@ int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_s
   const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
                          ? NULL
                          : strut_did_you_mean(key->text, name_of_rooms, &context);
-  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s", strut_sanitised_text(reader, key->text),
-            strut_owner_text(reader, owner), near ? "; did you mean '" : "", near ? near : "",
-            near ? "'?" : "");
+  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s",
+                     strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
+                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
   for (int i = 0; near && key_of_rooms(&context, (size_t)i) >= 0; i++) {
     int meant = key_of_rooms(&context, (size_t)i);
     if (strcmp(strut_key_at(meant)->name, near) == 0) return meant;
@@ -82,9 +82,10 @@ static bool read_word(strut_reader *reader, const strut_key *key, const strut_tr
   while (words.count < 32 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected, key->name,
-            strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text),
-            strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found '%s'%s", expected,
+                     key->name, strut_owner_text(reader, owner),
+                     strut_sanitised_text(reader, value->text),
+                     strut_hint(reader, value->text, name_of_words, &words, (size_t)words.count));
   return false;
 }
 
@@ -98,8 +99,8 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
     if (!read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
-      strut_report_error(reader, item->place, "'%s' stands twice in '%s' of %s", item->text, key->name,
-                strut_owner_text(reader, owner));
+      strut_report_error(reader, item->place, "'%s' stands twice in '%s' of %s", item->text,
+                         key->name, strut_owner_text(reader, owner));
       fine = false;
     } else {
       *bits |= 1 << word;
@@ -120,8 +121,8 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
 static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
   char expected[300];
   strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-            strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-            strut_owner_text(reader, owner), strut_found(reader, value));
+                     strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
+                     strut_owner_text(reader, owner), strut_found(reader, value));
   return false;
 }
 
@@ -135,38 +136,31 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_AXES:
     case STRUT_TYPE_TIMES:
     case STRUT_TYPE_TABLE:
-    case STRUT_TYPE_NODE_SETS:
-      return value->kind == STRUT_TREE_LIST;
-    case STRUT_TYPE_NODE_PAIR:
-      return value->kind == STRUT_TREE_LIST && value->count == 2;
+    case STRUT_TYPE_NODE_SETS: return value->kind == STRUT_TREE_LIST;
+    case STRUT_TYPE_NODE_PAIR: return value->kind == STRUT_TREE_LIST && value->count == 2;
     case STRUT_TYPE_MAP:
-    case STRUT_TYPE_THINGS:
-      return value->kind == STRUT_TREE_MAP;
+    case STRUT_TYPE_THINGS: return value->kind == STRUT_TREE_MAP;
     case STRUT_TYPE_SIGNAL:
     case STRUT_TYPE_SETTLE:
-    case STRUT_TYPE_STEADY:
-      return scalar || value->kind == STRUT_TREE_MAP;
+    case STRUT_TYPE_STEADY: return scalar || value->kind == STRUT_TREE_MAP;
     case STRUT_TYPE_GROUPS:
-    case STRUT_TYPE_FIXED:
-      return scalar || value->kind == STRUT_TREE_LIST;
+    case STRUT_TYPE_FIXED: return scalar || value->kind == STRUT_TREE_LIST;
     case STRUT_TYPE_CONTACT_NODES:
       return value->kind == STRUT_TREE_LIST || (scalar && strcmp(value->text, "all") == 0);
     case STRUT_TYPE_VERSION:
     case STRUT_TYPE_TEXT:
     case STRUT_TYPE_NAME:
-    case STRUT_TYPE_EXPRESSION:
-      return scalar;
-    default:
-      return true; /* numbers and words say it themselves */
+    case STRUT_TYPE_EXPRESSION: return scalar;
+    default: return true; /* numbers and words say it themselves */
   }
 }
 
 static bool read_version(strut_reader *reader, const strut_tree *value) {
   if (strcmp(value->text, "1") == 0) return true;
   strut_report_error(reader, value->place,
-            "expected the language version 1 for 'strut', found '%s'; "
-            "this program knows version 1 only",
-            strut_sanitised_text(reader, value->text));
+                     "expected the language version 1 for 'strut', found '%s'; "
+                     "this program knows version 1 only",
+                     strut_sanitised_text(reader, value->text));
   return false;
 }
 
@@ -175,8 +169,7 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
                        strut_owner owner, strut_slot *slot) {
   strut_dimension dimension = strut_measure_dimension(key->measure);
   switch (key->type) {
-    case STRUT_TYPE_VERSION:
-      return read_version(reader, value);
+    case STRUT_TYPE_VERSION: return read_version(reader, value);
     case STRUT_TYPE_NUMBER:
       if (key->measure == STRUT_MEASURE_CONTEXT) return true;
       return strut_read_number(reader, value, key->name, owner, dimension, key->range,
@@ -184,14 +177,10 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
     case STRUT_TYPE_PAIR:
       if (key->room == STRUT_ROOM_SCENE) return true; /* its parameters are not read yet */
       return strut_read_pair(reader, value, key->name, owner, dimension, slot->number);
-    case STRUT_TYPE_WORD:
-      return read_word(reader, key, value, owner, &slot->word);
-    case STRUT_TYPE_WORDS:
-      return read_words(reader, key, value, owner, &slot->word);
-    case STRUT_TYPE_FIXED:
-      return read_fixed(reader, key, value, owner, &slot->word);
-    default:
-      return true;
+    case STRUT_TYPE_WORD: return read_word(reader, key, value, owner, &slot->word);
+    case STRUT_TYPE_WORDS: return read_words(reader, key, value, owner, &slot->word);
+    case STRUT_TYPE_FIXED: return read_fixed(reader, key, value, owner, &slot->word);
+    default: return true;
   }
 }
 
@@ -228,7 +217,7 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
   strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
   if (other) {
     strut_report_error(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
-              strut_owner_text(reader, owner), other->text, key_tree->text);
+                       strut_owner_text(reader, owner), other->text, key_tree->text);
     slot->state = STRUT_BROKEN;
   }
   if (slot->state == STRUT_BROKEN) fields->broken = true;
@@ -242,8 +231,8 @@ static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner
   const strut_slot *rival = statics->key ? statics : kinetics;
   if (!mu->key || !rival->key) return;
   strut_report_error(reader, mu->key->place,
-            "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
-            strut_owner_text(reader, owner), rival->key->text);
+                     "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
+                     strut_owner_text(reader, owner), rival->key->text);
   fields->broken = true;
 }
 
@@ -252,7 +241,7 @@ void strut_read_fields(strut_reader *reader, strut_section room, const strut_tre
   *fields = (strut_fields){.room = room, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
     strut_report_error(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
-              strut_owner_text(reader, owner), strut_found(reader, map));
+                       strut_owner_text(reader, owner), strut_found(reader, map));
     fields->broken = true;
     strut_suppress_missing(fields);
     return;
@@ -270,16 +259,16 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
     strut_slot *slot = &fields->slot[i];
     if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
     if (!reader->holes)
-      strut_report_error(reader, place, "%s lacks '%s', expected %s", strut_owner_text(reader, owner),
-                strut_key_at(first + i)->name,
-                strut_key_expected(first + i, expected, sizeof expected));
+      strut_report_error(reader, place, "%s lacks '%s', expected %s",
+                         strut_owner_text(reader, owner), strut_key_at(first + i)->name,
+                         strut_key_expected(first + i, expected, sizeof expected));
     slot->state = STRUT_BROKEN;
     fields->broken = true;
   }
 }
 
 bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
-                   strut_fields *fields) {
+                        strut_fields *fields) {
   const strut_slot *slot = strut_slot_of(&reader->top, key);
   *fields = (strut_fields){.room = room, .broken = slot->state == STRUT_BROKEN};
   if (fields->broken) strut_suppress_missing(fields);

@@ -47,8 +47,8 @@ static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owne
 static void lacks_speed(strut_reader *reader, const friction_layers *f, const char *key) {
   char expected[200];
   strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
-            strut_owner_text(reader, f->owner), key,
-            strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
+                     strut_owner_text(reader, f->owner), key,
+                     strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
 }
 
 /* Is what the friction law needs complete? Says at the top layer what is missing, once each. */
@@ -67,7 +67,7 @@ static bool finish_friction(strut_reader *reader, friction_layers *f, const stru
   *said = f->last;
   if (missing)
     strut_report_error(reader, f->last->place, "%s lacks '%s', expected a number such as 0.5",
-              strut_owner_text(reader, f->owner), missing);
+                       strut_owner_text(reader, f->owner), missing);
   if (!stick) lacks_speed(reader, f, "stick_velocity");
   if (!width) lacks_speed(reader, f, "width");
   return false;
@@ -140,7 +140,8 @@ static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' stands twice in 'nodes' of the ground", item->text);
+      strut_report_error(reader, item->place, "node '%s' stands twice in 'nodes' of the ground",
+                         item->text);
       fine = false;
     } else {
       touches[node] = 1;
@@ -165,8 +166,8 @@ static bool find_entries(strut_reader *reader, const unsigned char *touches, boo
     }
     fine = false;
     if (node >= 0 && complete)
-      strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of the ground lacks it",
-                key->text);
+      strut_report_error(reader, key->place,
+                         "node '%s' has a contact, but 'nodes' of the ground lacks it", key->text);
   }
   return fine;
 }
@@ -194,7 +195,8 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
 void strut_read_ground(strut_reader *reader) {
   strut_fields *fields = &reader->ground;
   strut_owner owner = {"the ground", NULL};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields)) return;
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields))
+    return;
   strut_require(reader, fields, owner,
                 strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place);
   strut_ground *ground = &reader->scene->ground;
@@ -204,11 +206,11 @@ void strut_read_ground(strut_reader *reader) {
   ground->belt_speed = strut_number_or(fields, STRUT_KEY_GROUND_BELT_SPEED, 0.0);
   const strut_slot *law = strut_slot_of(fields, STRUT_KEY_GROUND_DAMPING_LAW);
   if (law->state == STRUT_GIVEN) ground->damping_law = (strut_ground_damping)law->word;
-  ground_defaults defaults = {.stiffness = strut_number_or(fields, STRUT_KEY_GROUND_STIFFNESS, 1.0),
-                              .damping = strut_number_or(fields, STRUT_KEY_GROUND_DAMPING, 0.0),
-                              .dissipation =
-                                  strut_number_or(fields, STRUT_KEY_GROUND_DISSIPATION, 0.0),
-                              .broken = fields->broken};
+  ground_defaults defaults = {
+      .stiffness = strut_number_or(fields, STRUT_KEY_GROUND_STIFFNESS, 1.0),
+      .damping = strut_number_or(fields, STRUT_KEY_GROUND_DAMPING, 0.0),
+      .dissipation = strut_number_or(fields, STRUT_KEY_GROUND_DISSIPATION, 0.0),
+      .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
   if (friction->state == STRUT_GIVEN) {
     strut_fields nested;

@@ -272,17 +272,19 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   size_t most = strlen(value->text) + 1;
   strut_compiler compiler = {.column = find_column, .pair = find_pair, .context = reader};
   strut_quantity q;
-  compiler.program = strut_reader_allocate(reader, &reader->scratch, most, sizeof *compiler.program);
+  compiler.program =
+      strut_reader_allocate(reader, &reader->scratch, most, sizeof *compiler.program);
   if (!compiler.program) return false;
   if (!strut_read_program(reader, value, "of", owner, &compiler, &q)) {
     reader->failed = true;
     return false;
   }
   if (!q.varies) {
-    strut_report_error(reader, value->place,
-              "'of' of %s does not change in time, expected a column of the motion such as com.vy, "
-              "NODE.y or MEMBER.force",
-              strut_owner_text(reader, owner));
+    strut_report_error(
+        reader, value->place,
+        "'of' of %s does not change in time, expected a column of the motion such as com.vy, "
+        "NODE.y or MEMBER.force",
+        strut_owner_text(reader, owner));
     return false;
   }
   keep_program(reader, &compiler, d);
@@ -302,15 +304,15 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
   bool relative = q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE);
   bool plain = strut_dimension_equal(dimension, STRUT_DIM_NONE);
   if (!relative && known && !strut_dimension_equal(q.dimension, dimension))
-    strut_report_error(reader, slot->value->place,
-              "expected a number without unit such as '1 %%'%s%s for 'accuracy' of %s, found %s",
-              plain ? "" : " or ",
-              plain ? "" : strut_dimension_name(dimension, expected, sizeof expected),
-              strut_owner_text(reader, owner),
-              strut_dimension_name(q.dimension, found, sizeof found));
+    strut_report_error(
+        reader, slot->value->place,
+        "expected a number without unit such as '1 %%'%s%s for 'accuracy' of %s, found %s",
+        plain ? "" : " or ",
+        plain ? "" : strut_dimension_name(dimension, expected, sizeof expected),
+        strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
   else if (!(q.value > 0.0))
     strut_report_error(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
-              strut_owner_text(reader, owner), q.value);
+                       strut_owner_text(reader, owner), q.value);
   else
     *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
 }
@@ -362,9 +364,10 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
 static bool may_be_called(strut_reader *reader, const strut_tree *key) {
   if (!strut_read_name(reader, key, "quantity")) return false;
   if (strut_word_find(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, key->text) < 0) return true;
-  strut_report_error(reader, key->place,
-            "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
-            key->text);
+  strut_report_error(
+      reader, key->place,
+      "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
+      key->text);
   return false;
 }
 
@@ -372,7 +375,8 @@ void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
   strut_experiment *e = &reader->scene->experiment;
   if (slot->state != STRUT_GIVEN) return;
   const strut_tree *map = slot->value;
-  e->quantities = strut_reader_allocate(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
+  e->quantities =
+      strut_reader_allocate(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
   if (!e->quantities) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     strut_quantity_definition *d = &e->quantities[e->quantity_count++];

@@ -81,7 +81,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   strut_findings findings = {0};
   if (is_study(reader->document.root)) {
     strut_report_error(reader, strut_root_place(reader),
-              "this is a study, expected a model; 'strut sweep' runs studies");
+                       "this is a study, expected a model; 'strut sweep' runs studies");
     return;
   }
   strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);

@@ -7,9 +7,9 @@
 
 #include "engine/scene/check.h"
 #include "engine/scene/scene.h"
+#include "parser/expression/units.h"
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/document.h"
-#include "parser/expression/units.h"
 
 /** One --set name=value. */
 typedef struct strut_override {
@@ -18,11 +18,11 @@ typedef struct strut_override {
 
 /** A parameter given from outside of the scene's text: by --set, or by a study. */
 typedef struct strut_setting {
-  const char *name, *text;        /* an expression in the scene's own parameters, or a text */
-  bool known, bare;               /* known: what the text says is the value below */
-  double value;                   /* SI; with bare it takes the dimension that the scene declares */
+  const char *name, *text; /* an expression in the scene's own parameters, or a text */
+  bool known, bare;        /* known: what the text says is the value below */
+  double value;            /* SI; with bare it takes the dimension that the scene declares */
   strut_dimension dimension;
-  strut_place place;              /* where it is given; line 0: on the command line */
+  strut_place place; /* where it is given; line 0: on the command line */
 } strut_setting;
 
 /**

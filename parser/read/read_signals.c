@@ -91,8 +91,8 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
   for (const strut_tree *point = list->first; point; point = point->next) {
     if (point->kind != STRUT_TREE_LIST || point->count != 2) {
       strut_report_error(reader, point->place,
-                "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
-                strut_owner_text(reader, owner), strut_found(reader, point));
+                         "expected a point such as [0.1 s, 2] for 'table' of %s, found %s",
+                         strut_owner_text(reader, owner), strut_found(reader, point));
       fine = false;
       continue;
     }
@@ -135,13 +135,13 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
   static const strut_section rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
-                                     STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
+                                        STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
   strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, owner, &fields);
   if (map->count != 1 && !fields.broken)
     strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
-              strut_owner_text(reader, owner), (unsigned)map->count);
+                       strut_owner_text(reader, owner), (unsigned)map->count);
   if (map->count != 1 || fields.broken) return -1;
   int chosen = 0;
   while (fields.slot[chosen].state != STRUT_GIVEN) chosen++;
@@ -172,12 +172,12 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
     size_t first = 0;
     while (reader->signal_stack[first] != named) first++;
     strut_report_error(reader, named->key->place, "signal '%s' contains itself: %s", named->name,
-              strut_format_cycle(reader, stacked_name, first, reader->signal_depth));
+                       strut_format_cycle(reader, stacked_name, first, reader->signal_depth));
     return -1;
   }
   if (reader->signal_depth >= STRUT_DEEPEST_SIGNAL) {
     strut_report_error(reader, named->key->place, "signals contain each other more than %d deep",
-              STRUT_DEEPEST_SIGNAL);
+                       STRUT_DEEPEST_SIGNAL);
     return -1;
   }
   named->state = STRUT_SIGNAL_READING;
@@ -218,8 +218,8 @@ static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
   }
   if (strut_dimension_equal(state->dimension, *expected)) return true;
   strut_report_error(reader, value->place, "expected %s here, but signal '%s' is %s",
-            strut_expected_number(*expected, wanted, sizeof wanted), value->text,
-            strut_dimension_name(state->dimension, found, sizeof found));
+                     strut_expected_number(*expected, wanted, sizeof wanted), value->text,
+                     strut_dimension_name(state->dimension, found, sizeof found));
   return false;
 }
 
@@ -246,7 +246,8 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
 void strut_read_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
   if (!map) return;
-  reader->named = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->named);
+  reader->named =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->named);
   for (const strut_tree *key = map->first; key && reader->named; key = key->next->next) {
     strut_named_signal *named = &reader->named[reader->named_count];
     *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
@@ -257,7 +258,8 @@ void strut_read_signals(strut_reader *reader) {
 
 void strut_keep_signals(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  scene->signals = strut_reader_allocate(reader, &scene->arena, reader->signal_count, sizeof *scene->signals);
+  scene->signals =
+      strut_reader_allocate(reader, &scene->arena, reader->signal_count, sizeof *scene->signals);
   if (!scene->signals) return;
   if (reader->signal_count)
     memcpy(scene->signals, reader->signals, reader->signal_count * sizeof *scene->signals);

@@ -26,8 +26,8 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
            fine;
   if (value->kind == STRUT_TREE_SCALAR) {
     strut_report_error(reader, value->place,
-              "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
-              strut_owner_text(reader, owner), strut_found(reader, value));
+                       "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
+                       strut_owner_text(reader, owner), strut_found(reader, value));
     return false;
   }
   strut_fields fields;
@@ -138,9 +138,10 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
     double pair[2];
     int32_t node = strut_name_map_find(&reader->node_names, k->text);
     if (node < 0 && known)
-      strut_report_error(reader, k->place, "unknown node '%s' in %s%s", strut_sanitised_text(reader, k->text),
-                strut_owner_text(reader, owner),
-                strut_hint(reader, k->text, strut_node_name, reader, reader->scene->node_count));
+      strut_report_error(
+          reader, k->place, "unknown node '%s' in %s%s", strut_sanitised_text(reader, k->text),
+          strut_owner_text(reader, owner),
+          strut_hint(reader, k->text, strut_node_name, reader, reader->scene->node_count));
     if (!strut_read_pair(reader, k->next, k->text, owner, dimension, pair) || node < 0)
       fine = false;
     else if (take)

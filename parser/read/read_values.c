@@ -89,7 +89,7 @@ strut_place strut_root_place(const strut_reader *reader) {
 }
 
 const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
-                         size_t first, size_t depth) {
+                               size_t first, size_t depth) {
   const char *text = "";
   if (strut_diagnostics_full(reader->diagnostics)) return "";
   for (size_t i = first; i < depth; i++) {
@@ -127,7 +127,7 @@ bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char
                        strut_owner owner, const char *expected) {
   if (value->kind == STRUT_TREE_SCALAR && !strut_is_null(value)) return true;
   strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
-            strut_owner_text(reader, owner), strut_found(reader, value));
+                     strut_owner_text(reader, owner), strut_found(reader, value));
   return false;
 }
 
@@ -162,7 +162,7 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   if (!fine && scope.names) reader->suggestions += reader->parameter_count;
   if (!fine && error.message[0])
     strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s", key,
-              strut_owner_text(reader, owner), error.message);
+                       strut_owner_text(reader, owner), error.message);
   return fine;
 }
 
@@ -171,9 +171,9 @@ static bool in_range(strut_reader *reader, const strut_tree *value, const char *
   bool below = range == STRUT_RANGE_NOT_NEGATIVE ? number < 0.0
                                                  : range == STRUT_RANGE_ABOVE_ZERO && number <= 0.0;
   if (!below) return true;
-  strut_report_error(reader, value->place, "'%s' of %s must %s, found %g", key,
-            strut_owner_text(reader, owner),
-            range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
+  strut_report_error(
+      reader, value->place, "'%s' of %s must %s, found %g", key, strut_owner_text(reader, owner),
+      range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
   return false;
 }
 
@@ -189,9 +189,9 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
     strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-              strut_expected_number(dimension, expected, sizeof expected), key,
-              strut_owner_text(reader, owner),
-              strut_dimension_name(quantity.dimension, found, sizeof found));
+                       strut_expected_number(dimension, expected, sizeof expected), key,
+                       strut_owner_text(reader, owner),
+                       strut_dimension_name(quantity.dimension, found, sizeof found));
     return false;
   }
   *number = quantity.value;
@@ -206,9 +206,9 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
     return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
   }
   const char *example = strut_dimension_example(dimension);
-  strut_report_error(reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
-            example ? example : "1", key, strut_owner_text(reader, owner),
-            strut_found(reader, value));
+  strut_report_error(
+      reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
+      example ? example : "1", key, strut_owner_text(reader, owner), strut_found(reader, value));
   return false;
 }
 
@@ -221,8 +221,9 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
   int32_t index = strut_name_map_find(map, value->text);
   if (index < 0)
     strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
-              strut_sanitised_text(reader, value->text), key, strut_owner_text(reader, owner),
-              strut_hint(reader, value->text, names, reader, count));
+                       strut_sanitised_text(reader, value->text), key,
+                       strut_owner_text(reader, owner),
+                       strut_hint(reader, value->text, names, reader, count));
   return index;
 }
 
@@ -240,10 +241,11 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
   if (length && !*c && length <= LONGEST_NAME && !strut_is_null(&plain)) return true;
   if (length > LONGEST_NAME && !*c)
     strut_report_error(reader, key->place, "the name of a %s may have %d bytes, found %zu", kind,
-              (int)LONGEST_NAME, length);
+                       (int)LONGEST_NAME, length);
   else
-    strut_report_error(reader, key->place,
-              "'%s' cannot be the name of a %s, expected letters, digits, '_', '-' and '.'",
-              strut_sanitised_text(reader, key->text), kind);
+    strut_report_error(
+        reader, key->place,
+        "'%s' cannot be the name of a %s, expected letters, digits, '_', '-' and '.'",
+        strut_sanitised_text(reader, key->text), kind);
   return false;
 }

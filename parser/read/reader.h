@@ -13,11 +13,11 @@
 #include "engine/base/name_map.h"
 #include "engine/scene/check.h"
 #include "engine/scene/scene.h"
-#include "parser/yaml/diagnostics.h"
-#include "parser/yaml/document.h"
 #include "parser/expression/expression.h"
 #include "parser/language/keys.h"
 #include "parser/read/read_scene.h"
+#include "parser/yaml/diagnostics.h"
+#include "parser/yaml/document.h"
 
 /** Whom a message is about: "member 'm1'"; name may be NULL: "the solver". */
 typedef struct strut_owner {
@@ -152,7 +152,7 @@ const char *strut_found(strut_reader *reader, const strut_tree *value);
 strut_place strut_root_place(const strut_reader *reader);
 /** "a -> b -> a" from the names of a stack, shortened in the middle; lives in scratch. */
 const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
-                         size_t first, size_t depth);
+                               size_t first, size_t depth);
 /** True for a plain empty scalar, ~ and null. */
 bool strut_is_null(const strut_tree *value);
 /** Is it a scalar that is not null? If not, that is reported. */
@@ -213,7 +213,7 @@ double strut_number_or(strut_fields *fields, int key, double fallback);
 void strut_suppress_missing(strut_fields *fields);
 /** True where the mapping behind a key of the scene is there and could be read. */
 bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
-                   strut_fields *fields);
+                        strut_fields *fields);
 /** The mapping of things behind a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/yaml/document.h"
 #include "parser/read/read_scene.h"
+#include "parser/yaml/document.h"
 
 enum { FIRST_SIZE = 64 * 1024 };
 

@@ -4,17 +4,11 @@
 #include <string.h>
 
 /* Keys that a key laid over replaces besides its own name. */
-static const char *const rivals[][2] = {{"duration", "periods"},
-                                        {"duration", "of"},
-                                        {"periods", "duration"},
-                                        {"step", "accuracy"},
-                                        {"integrator", "accuracy"},
-                                        {"equilibrium", "configuration"},
-                                        {"equilibrium", "positions"},
-                                        {"equilibrium", "settle"},
-                                        {"configuration", "equilibrium"},
-                                        {"positions", "equilibrium"},
-                                        {"settle", "equilibrium"}};
+static const char *const rivals[][2] = {
+    {"duration", "periods"},      {"duration", "of"},         {"periods", "duration"},
+    {"step", "accuracy"},         {"integrator", "accuracy"}, {"equilibrium", "configuration"},
+    {"equilibrium", "positions"}, {"equilibrium", "settle"},  {"configuration", "equilibrium"},
+    {"positions", "equilibrium"}, {"settle", "equilibrium"}};
 
 strut_place strut_overlay_place(strut_place place) {
   place.line |= STRUT_OVERLAY_LINE;

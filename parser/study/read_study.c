@@ -24,8 +24,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_t
     if (strcmp(r->declared[at].name, key->text) == 0) found = &r->declared[at];
   if (!found) {
     strut_report_error(r->reader, key->place, "the model has no parameter '%s'%s",
-              strut_sanitised_text(r->reader, key->text),
-              strut_hint(r->reader, key->text, declared_name, r, r->declared_count));
+                       strut_sanitised_text(r->reader, key->text),
+                       strut_hint(r->reader, key->text, declared_name, r, r->declared_count));
     return NULL;
   }
   if (strut_name_map_find(&r->given, found->name) >= 0) {
@@ -66,12 +66,13 @@ static void check_overrides(strut_study_reader *r, size_t overrides) {
     const char *name = file->settings[i].name;
     for (size_t k = 0; k < file->column_count; k++)
       if (file->columns[k].name && strcmp(file->columns[k].name, name) == 0)
-        strut_report_error(r->reader, file->columns[k].place, "--set %s=%s: an axis gives '%s' its values",
-                  name, strut_sanitised_text(r->reader, file->settings[i].text), name);
+        strut_report_error(r->reader, file->columns[k].place,
+                           "--set %s=%s: an axis gives '%s' its values", name,
+                           strut_sanitised_text(r->reader, file->settings[i].text), name);
     for (size_t k = overrides; k < file->setting_count; k++)
       if (strcmp(file->settings[k].name, name) == 0)
         strut_report_error(r->reader, (strut_place){0}, "--set %s=%s: the study derives '%s'", name,
-                  strut_sanitised_text(r->reader, file->settings[i].text), name);
+                           strut_sanitised_text(r->reader, file->settings[i].text), name);
   }
 }
 
@@ -110,11 +111,12 @@ static void refuse_kept(strut_study_reader *r, const strut_tree *item, const cha
   strut_words_text(words, expected, sizeof expected);
   if (!strut_read_scalar(r->reader, item, "keep", study_owner, expected)) return;
   size_t count = names.word_count + (quantities ? quantities->count : 0);
-  strut_report_error(r->reader, item->place,
-            "expected %s, or a quantity that the model measures, for 'keep' of the study, found "
-            "'%s'%s",
-            expected, strut_sanitised_text(r->reader, item->text),
-            strut_hint(r->reader, item->text, kept_name, &names, count));
+  strut_report_error(
+      r->reader, item->place,
+      "expected %s, or a quantity that the model measures, for 'keep' of the study, found "
+      "'%s'%s",
+      expected, strut_sanitised_text(r->reader, item->text),
+      strut_hint(r->reader, item->text, kept_name, &names, count));
 }
 
 static bool is_twice(const strut_tree *list, const strut_tree *item) {
@@ -129,14 +131,15 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   const char *words = strut_key_at(STRUT_KEY_STUDY_KEEP)->words;
   if (slot->state != STRUT_GIVEN) return;
   const strut_tree *quantities = r->file->source_count ? quantities_of(r->file->sources[0]) : NULL;
-  study->quantities =
-      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1, sizeof *study->quantities);
+  study->quantities = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
+                                            sizeof *study->quantities);
   if (!study->quantities) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     bool scalar = item->kind == STRUT_TREE_SCALAR;
     int word = scalar ? strut_word_find(words, item->text) : -1;
     if (scalar && is_twice(slot->value, item))
-      strut_report_error(r->reader, item->place, "'%s' stands twice in 'keep' of the study", item->text);
+      strut_report_error(r->reader, item->place, "'%s' stands twice in 'keep' of the study",
+                         item->text);
     else if (word >= 0)
       study->keep |= 1u << word;
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
@@ -177,8 +180,8 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   const strut_slot *set = strut_slot_of(top, STRUT_KEY_STUDY_SET);
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
   const strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
-  file->settings = strut_reader_allocate(r->reader, &file->arena, count + size_of(set) + size_of(derive),
-                              sizeof *file->settings);
+  file->settings = strut_reader_allocate(
+      r->reader, &file->arena, count + size_of(set) + size_of(derive), sizeof *file->settings);
   if (!file->settings) return;
   for (size_t i = 0; i < count; i++)
     file->settings[file->setting_count++] =
@@ -207,7 +210,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   if (reader->holes) reader->failed = true;
   if (is_model(file->document.root)) {
     strut_report_error(reader, strut_root_place(reader),
-              "this is a model, expected a study, which names one");
+                       "this is a model, expected a study, which names one");
     return STRUT_BAD_SCENE;
   }
   strut_read_fields(reader, STRUT_ROOM_STUDY, file->document.root, study_owner, &top);

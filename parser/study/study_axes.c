@@ -33,9 +33,10 @@ static bool read_value(strut_study_reader *r, along *a, const strut_tree *value,
   }
   if (q.bare || (!s->bare && strut_dimension_equal(q.dimension, s->dimension))) return true;
   strut_report_error(reader, value->place, "expected %s for '%s' of axis '%s', found %s",
-            s->bare ? "a number without unit, as before,"
-                    : strut_expected_number(s->dimension, expected, sizeof expected),
-            key, a->parameter->name, strut_dimension_name(q.dimension, found, sizeof found));
+                     s->bare ? "a number without unit, as before,"
+                             : strut_expected_number(s->dimension, expected, sizeof expected),
+                     key, a->parameter->name,
+                     strut_dimension_name(q.dimension, found, sizeof found));
   return false;
 }
 
@@ -57,7 +58,7 @@ static bool read_list(strut_study_reader *r, along *a) {
       words[i] = item->text;
       if (strlen(item->text) < 24) continue;
       strut_report_error(r->reader, item->place, "texts of an axis may have 23 bytes, found %zu",
-                strlen(item->text));
+                         strlen(item->text));
       fine = false;
     } else {
       fine = false;
@@ -70,7 +71,8 @@ static bool read_list(strut_study_reader *r, along *a) {
 }
 
 static bool refuse_range(strut_study_reader *r, const along *a, const char *why) {
-  strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s", a->parameter->name, why);
+  strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s", a->parameter->name,
+                     why);
   return false;
 }
 
@@ -146,9 +148,10 @@ static bool read_along(strut_study_reader *r, along *a) {
   a->parameter = strut_study_parameter(r, a->key);
   if (!a->parameter) return false;
   if (is_reserved(r, a->parameter->name))
-    strut_report_error(r->reader, a->key->place,
-              "the table has a column '%s' of its own: give the model's parameter another name",
-              a->parameter->name);
+    strut_report_error(
+        r->reader, a->key->place,
+        "the table has a column '%s' of its own: give the model's parameter another name",
+        a->parameter->name);
   *a->column = (strut_study_column){.name = a->parameter->name, .word = a->parameter->text};
   *a->setting = (strut_setting){.name = a->parameter->name,
                                 .text = "",
@@ -162,10 +165,11 @@ static bool read_along(strut_study_reader *r, along *a) {
   else if (a->value->kind == STRUT_TREE_MAP)
     fine = read_range(r, a);
   else
-    strut_report_error(r->reader, a->value->place,
-              "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
-              "found %s",
-              a->parameter->name, strut_found(r->reader, a->value));
+    strut_report_error(
+        r->reader, a->value->place,
+        "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
+        "found %s",
+        a->parameter->name, strut_found(r->reader, a->value));
   a->column->unit =
       a->setting->bare || a->parameter->text ? "1" : strut_dimension_unit(a->setting->dimension);
   return fine;
@@ -174,22 +178,25 @@ static bool read_along(strut_study_reader *r, along *a) {
 /* The mapping whose keys are the axis' parameters: the item itself, or what is zipped in it. */
 static const strut_tree *parameters_of(strut_study_reader *r, const strut_tree *item) {
   if (item->kind != STRUT_TREE_MAP || item->count == 0) {
-    strut_report_error(r->reader, item->place, "expected an axis such as {friction: [0.1, 0.2]}, found %s",
-              strut_found(r->reader, item));
+    strut_report_error(r->reader, item->place,
+                       "expected an axis such as {friction: [0.1, 0.2]}, found %s",
+                       strut_found(r->reader, item));
     return NULL;
   }
   bool zip = strcmp(item->first->text, "zip") == 0;
   if (item->count > 1) {
-    strut_report_error(r->reader, item->first->next->next->place,
-              "an axis gives one parameter; several that go together stand in {zip: {...}}, and "
-              "axes that cross are items of their own");
+    strut_report_error(
+        r->reader, item->first->next->next->place,
+        "an axis gives one parameter; several that go together stand in {zip: {...}}, and "
+        "axes that cross are items of their own");
     return NULL;
   }
   if (!zip) return item;
   const strut_tree *map = item->first->next;
   if (map->kind == STRUT_TREE_MAP && map->count > 0) return map;
-  strut_report_error(r->reader, map->place, "expected {NAME: [...], NAME: [...]} for 'zip', found %s",
-            strut_found(r->reader, map));
+  strut_report_error(r->reader, map->place,
+                     "expected {NAME: [...], NAME: [...]} for 'zip', found %s",
+                     strut_found(r->reader, map));
   return NULL;
 }
 
@@ -207,8 +214,9 @@ static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study
     axis->column_count++;
     if (fine && axis->column_count > 1 && a.count != axis->count) {
       strut_report_error(r->reader, key->next->place,
-                "what is zipped has one length: '%s' has %lld values, '%s' %lld", columns[0].name,
-                (long long)axis->count, a.parameter->name, (long long)a.count);
+                         "what is zipped has one length: '%s' has %lld values, '%s' %lld",
+                         columns[0].name, (long long)axis->count, a.parameter->name,
+                         (long long)a.count);
       fine = false;
     }
     if (axis->column_count == 1) axis->count = a.count;
@@ -240,9 +248,10 @@ static void add_variants(strut_study_reader *r) {
 
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
   strut_study *study = &r->file->study;
-  study->axes = strut_reader_allocate(r->reader, &r->file->arena, list->count + 1, sizeof *study->axes);
-  r->file->columns =
-      strut_reader_allocate(r->reader, &r->file->arena, count_columns(list) + 1, sizeof *r->file->columns);
+  study->axes =
+      strut_reader_allocate(r->reader, &r->file->arena, list->count + 1, sizeof *study->axes);
+  r->file->columns = strut_reader_allocate(r->reader, &r->file->arena, count_columns(list) + 1,
+                                           sizeof *r->file->columns);
   if (!study->axes || !r->file->columns) return;
   if (r->variant_count > 0) add_variants(r);
   for (const strut_tree *item = list->first; item; item = item->next)
@@ -250,5 +259,6 @@ void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
   double points = 1.0;
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
   if (points > (double)STRUT_STUDY_MOST_POINTS)
-    strut_report_error(r->reader, list->place, "the axes make %.3g points; a study has 1e9 at most", points);
+    strut_report_error(r->reader, list->place, "the axes make %.3g points; a study has 1e9 at most",
+                       points);
 }

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "parser/study/read_study.h"
-#include "parser/yaml/text.h"
 #include "parser/write/writer.h"
+#include "parser/yaml/text.h"
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 

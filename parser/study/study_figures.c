@@ -17,8 +17,8 @@ const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int ke
 static bool wanted(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
                    const char *kind, const char *name, const char *text) {
   if (text || fields->broken) return true;
-  strut_report_error(r->reader, key->place, "%s '%s' lacks '%s', expected a column of the table", kind,
-            key->text, name);
+  strut_report_error(r->reader, key->place, "%s '%s' lacks '%s', expected a column of the table",
+                     kind, key->text, name);
   return false;
 }
 
@@ -36,7 +36,8 @@ static void require(strut_study_reader *r, const strut_fields *fields, const str
 static void read_times(strut_study_reader *r, const strut_slot *slot, strut_owner owner,
                        strut_study_figure *figure) {
   if (slot->state != STRUT_GIVEN) return;
-  double *times = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *times);
+  double *times =
+      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *times);
   for (const strut_tree *item = slot->value->first; item && times; item = item->next)
     if (strut_read_number(r->reader, item, "times", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
                           &times[figure->time_count]))

@@ -5,8 +5,8 @@
 #ifndef STRUT_PARSER_STUDY_STUDY_READER_H
 #define STRUT_PARSER_STUDY_STUDY_READER_H
 
-#include "parser/study/read_study.h"
 #include "parser/read/reader.h"
+#include "parser/study/read_study.h"
 
 typedef struct strut_study_reader {
   strut_reader *reader; /* of the study's text: its messages and its tree */
@@ -26,8 +26,7 @@ const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int ke
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.
  */
-strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
-                                      strut_error *error);
+strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, strut_error *error);
 /** Reads the figures into the study. */
 void strut_study_read_figures(strut_study_reader *r, const strut_slot *slot);
 /** Reads the axes into the study, and their columns. */

@@ -52,7 +52,8 @@ static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_
   if (status == STRUT_BAD_SCENE && is_study(file)) {
     strut_diagnostics_free(&file->model_diagnostics);
     strut_report_error(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
-              "'%s' is a study, expected a model", strut_sanitised_text(r->reader, file->study.model));
+                       "'%s' is a study, expected a model",
+                       strut_sanitised_text(r->reader, file->study.model));
   }
   if (status != STRUT_OK) return status;
   file->source_count++;
@@ -71,7 +72,7 @@ static void check_name(strut_study_reader *r, const strut_tree *key) {
   strut_read_name(r->reader, key, "variant");
   if (strlen(key->text) >= 24)
     strut_report_error(r->reader, key->place, "names of variants may have 23 bytes, found %zu",
-              strlen(key->text));
+                       strlen(key->text));
 }
 
 static strut_status open_variants(strut_study_reader *r, strut_fields *top,
@@ -99,7 +100,8 @@ strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
   if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
   file->study.model = model->value->text;
   if (!*file->study.model) {
-    strut_report_error(r->reader, model->value->place, "expected the path of a model for 'model', found ''");
+    strut_report_error(r->reader, model->value->place,
+                       "expected the path of a model for 'model', found ''");
     return STRUT_BAD_SCENE;
   }
   file->model_path = model_path(file->path, model->value->text);
@@ -108,7 +110,8 @@ strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
       strut_file_read(file->model_path, &file->model_text, &file->model_length, error);
   if (status != STRUT_OK) return status;
   file->sources = strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *file->sources);
-  r->variant_names = strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *r->variant_names);
+  r->variant_names =
+      strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *r->variant_names);
   if (!file->sources || !r->variant_names) return STRUT_NO_MEMORY;
   status = count ? open_variants(r, top, variants->value) : open_source(r, top, NULL);
   if (status == STRUT_OK)

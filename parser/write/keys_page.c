@@ -18,7 +18,8 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
     [STRUT_ROOM_GROUND] = "`ground: {...}`: the line that nodes may touch.",
     [STRUT_ROOM_FRICTION] =
         "`friction: {...}` of the ground, of a group, or of a contact; each key over the one "
-        "before. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`, and Karnopp's "
+        "before. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`, and "
+        "Karnopp's "
         "needs `stick_velocity`; the smooth law needs `mu` or `mu_kinetic`, and `width`.",
     [STRUT_ROOM_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: what is different for one node.",
     [STRUT_ROOM_ACTUATOR] = "`actuators: {NAME: {...}}`.",
@@ -47,7 +48,8 @@ static const char *const introductions[STRUT_ROOM_COUNT] = {
     [STRUT_ROOM_STUDY] =
         "A study is a file of its own: what `strut sweep` runs. Expressions may use the model's "
         "parameters in `set` and `derive`.",
-    [STRUT_ROOM_RANGE] = "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
+    [STRUT_ROOM_RANGE] =
+        "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
     [STRUT_ROOM_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_ROOM_CHECK] = "`check: {...}` of a study.",
     [STRUT_ROOM_FIGURE] = "`figures: {NAME: {...}}` of a study."};

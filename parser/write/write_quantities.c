@@ -22,19 +22,13 @@ enum { OF_SUM = 1, OF_PRODUCT, OF_SIGN, OF_POWER, OF_PRIMARY };
 static int binding(const strut_instruction *p) {
   switch (p->operation) {
     case STRUT_OPERATION_ADD:
-    case STRUT_OPERATION_SUBTRACT:
-      return OF_SUM;
+    case STRUT_OPERATION_SUBTRACT: return OF_SUM;
     case STRUT_OPERATION_MULTIPLY:
-    case STRUT_OPERATION_DIVIDE:
-      return OF_PRODUCT;
-    case STRUT_OPERATION_NEGATE:
-      return OF_SIGN;
-    case STRUT_OPERATION_POWER:
-      return OF_POWER;
-    case STRUT_OPERATION_NUMBER:
-      return p->unit || signbit(p->number) ? 0 : OF_PRIMARY;
-    default:
-      return OF_PRIMARY;
+    case STRUT_OPERATION_DIVIDE: return OF_PRODUCT;
+    case STRUT_OPERATION_NEGATE: return OF_SIGN;
+    case STRUT_OPERATION_POWER: return OF_POWER;
+    case STRUT_OPERATION_NUMBER: return p->unit || signbit(p->number) ? 0 : OF_PRIMARY;
+    default: return OF_PRIMARY;
   }
 }
 

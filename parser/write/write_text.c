@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "engine/base/number_text.h"
-#include "parser/yaml/text.h"
 #include "parser/write/writer.h"
+#include "parser/yaml/text.h"
 
 void strut_put_part(strut_writer *writer, const char *text, size_t length) {
   if (writer->failed) return;
@@ -26,7 +26,9 @@ void strut_put_part(strut_writer *writer, const char *text, size_t length) {
   writer->text[writer->length] = '\0';
 }
 
-void strut_put(strut_writer *writer, const char *text) { strut_put_part(writer, text, strlen(text)); }
+void strut_put(strut_writer *writer, const char *text) {
+  strut_put_part(writer, text, strlen(text));
+}
 
 void strut_put_number(strut_writer *writer, double value) {
   char text[STRUT_NUMBER_TEXT];

@@ -95,8 +95,8 @@ static void render_one(strut_text_builder *out, const strut_diagnostics *diagnos
     strut_text_append(out, "%s: %s: %s\n", file, kind, item->message);
     return;
   }
-  strut_text_append(out, "%s:%u:%u: %s: %s\n", file, item->place.line, item->place.column,
-                    kind, item->message);
+  strut_text_append(out, "%s:%u:%u: %s: %s\n", file, item->place.line, item->place.column, kind,
+                    item->message);
   strut_cursor_to_line(cursor, item->place.line);
   if (cursor->line == item->place.line) strut_source_line_show(out, cursor, item->place);
 }
@@ -108,7 +108,8 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   if (diagnostics->count)
     qsort(diagnostics->items, diagnostics->count, sizeof *diagnostics->items, compare);
   size_t shown = diagnostics->count < most ? diagnostics->count : most;
-  for (size_t i = 0; i < shown; i++) render_one(&out, diagnostics, "error", &diagnostics->items[i], &cursor);
+  for (size_t i = 0; i < shown; i++)
+    render_one(&out, diagnostics, "error", &diagnostics->items[i], &cursor);
   size_t left = diagnostics->count - shown + diagnostics->unstored;
   if (left) strut_text_append(&out, "... and %zu more\n", left);
   const char *text =

@@ -54,8 +54,8 @@ STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const ch
 STRUT_API void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format,
                               ...) __attribute__((format(printf, 3, 4)));
 /** Adds a note, which is no error: nothing fails by it. Lost where memory is out. */
-STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format,
+                          ...) __attribute__((format(printf, 3, 4)));
 /** All notes, in order, as strut_diagnostics_render shows messages. NULL: memory is out. */
 STRUT_API const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics);
 /**

@@ -297,21 +297,15 @@ static bool read_end(reader *r, const yaml_event_t *event) {
 
 static bool take_event(reader *r, const yaml_event_t *event) {
   switch (event->type) {
-    case YAML_SCALAR_EVENT:
-      return read_scalar(r, event);
-    case YAML_ALIAS_EVENT:
-      return read_alias(r, event);
+    case YAML_SCALAR_EVENT: return read_scalar(r, event);
+    case YAML_ALIAS_EVENT: return read_alias(r, event);
     case YAML_MAPPING_START_EVENT:
-    case YAML_SEQUENCE_START_EVENT:
-      return open_collection(r, event);
+    case YAML_SEQUENCE_START_EVENT: return open_collection(r, event);
     case YAML_MAPPING_END_EVENT:
-    case YAML_SEQUENCE_END_EVENT:
-      return close_collection(r, event);
+    case YAML_SEQUENCE_END_EVENT: return close_collection(r, event);
     case YAML_DOCUMENT_END_EVENT:
-    case YAML_STREAM_END_EVENT:
-      return read_end(r, event);
-    default:
-      return true;
+    case YAML_STREAM_END_EVENT: return read_end(r, event);
+    default: return true;
   }
 }
 

@@ -63,7 +63,7 @@ static const char *name_text(const char *name, char words[WORDS]) {
 }
 
 strut_status strut_memory_check_document(const char *name, const char *text, size_t length,
-                                       strut_error *error) {
+                                         strut_error *error) {
   char words[WORDS];
   const char *whose;
   if (length < SHORT || MOST_PER_BYTE * (double)length <= strut_memory_most(&whose))
@@ -72,7 +72,7 @@ strut_status strut_memory_check_document(const char *name, const char *text, siz
 }
 
 strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
-                                      strut_error *error) {
+                                        strut_error *error) {
   char words[WORDS];
   return strut_memory_fail(strut_document_needs(text, length), name_text(name, words), error);
 }

@@ -16,10 +16,10 @@
 STRUT_API double strut_document_needs(const char *text, size_t length);
 
 /** STRUT_NO_MEMORY with what is needed and what there is (memory_limit.h), or STRUT_OK. */
-STRUT_API strut_status strut_memory_check_document(const char *name, const char *text, size_t length,
-                                                 strut_error *error);
+STRUT_API strut_status strut_memory_check_document(const char *name, const char *text,
+                                                   size_t length, strut_error *error);
 /** STRUT_NO_MEMORY in the same words, where memory has run out all the same. */
 STRUT_API strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
-                                                strut_error *error);
+                                                  strut_error *error);
 
 #endif

@@ -99,7 +99,8 @@ static bool chain_make(chain *it, size_t members, strut_mass_model mass) {
   strut_status status = bench_chain_scene(&it->scene, members, mass);
   if (status == STRUT_OK) status = strut_model_compile(&it->scene, &it->model, &error);
   if (status == STRUT_OK) status = strut_state_create(it->model, &it->state, &error);
-  if (status == STRUT_OK) it->workspace = strut_integrator_find("rk4")->create(it->model, it->state);
+  if (status == STRUT_OK)
+    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state);
   if (it->workspace) {
     strut_state_reset(it->model, it->state);
     return true;

@@ -46,8 +46,7 @@ static angles advance(angles s, double h) {
 
 static double between(angles s, angles t) {
   double sum = 0;
-  for (int i = 0; i < 4; i++)
-    sum += (s.y[i] - t.y[i]) * (s.y[i] - t.y[i]) / (i < 2 ? 1 : G);
+  for (int i = 0; i < 4; i++) sum += (s.y[i] - t.y[i]) * (s.y[i] - t.y[i]) / (i < 2 ? 1 : G);
   return sqrt(sum);
 }
 

@@ -65,7 +65,8 @@ static void test_order_through_a_bounce(void **unused) {
     for (int k = 0; k < 4; k++)
       error[k] = fabs(bounce("rk4-events", zeta[i], ldexp(0.05, -k)) - restitution(zeta[i]));
     double order = observed_order(error, 4);
-    print_message("zeta %g: order %.2f, errors %.1e %.1e %.1e %.1e\n", zeta[i], order, error[0], error[1], error[2], error[3]);
+    print_message("zeta %g: order %.2f, errors %.1e %.1e %.1e %.1e\n", zeta[i], order, error[0],
+                  error[1], error[2], error[3]);
     assert_true(order >= 3.5);
   }
 }

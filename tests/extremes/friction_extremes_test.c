@@ -9,9 +9,14 @@
 #include "tests/support/structures.h"
 
 static const double G = 9.81;
-static const x_frame FRAME = {.side = 0.2, .cable_stiffness = 800, .bar_stiffness = 2e4,
-                              .force_density = 60, .cable_mass = 0.01, .bar_mass = 0.1,
-                              .cable_damping = 0.3, .bar_damping = 2};
+static const x_frame FRAME = {.side = 0.2,
+                              .cable_stiffness = 800,
+                              .bar_stiffness = 2e4,
+                              .force_density = 60,
+                              .cable_mass = 0.01,
+                              .bar_mass = 0.1,
+                              .cable_damping = 0.3,
+                              .bar_damping = 2};
 static double times = 1; /* how much longer the runs are in the long version */
 
 /* The frame above ground on which all its nodes may land. */
@@ -31,7 +36,8 @@ static void frame_on_ground(strut_scene *scene, double above, double mu, strut_f
 
 static double momentum(const motion *m) {
   double sum = 0;
-  for (int32_t i = 0; i < m->model->node_count; i++) sum += m->model->weight[i] * m->state->v[2 * i];
+  for (int32_t i = 0; i < m->model->node_count; i++)
+    sum += m->model->weight[i] * m->state->v[2 * i];
   return sum;
 }
 
@@ -139,7 +145,8 @@ static void test_slopes_beside_the_angle_of_friction(void **unused) {
     assert_near(way_down(methods[k % 4], below, mu, hold), 0, 1e-18); /* its depth is 1e-4 m */
     assert_near(way_down(methods[k % 4], -below, mu, hold), 0, 1e-18);
     double way = way_down(methods[k % 4], above, mu, seconds);
-    print_message("%s, mu %g: slid %.6e m, closed form %.6e m\n", methods[k % 4], mu, way, expected);
+    print_message("%s, mu %g: slid %.6e m, closed form %.6e m\n", methods[k % 4], mu, way,
+                  expected);
     assert_relative(way, expected, 2e-4); /* Euler's is first order: 1e-4 */
   }
 }

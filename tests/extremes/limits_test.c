@@ -109,8 +109,8 @@ static void check_growth(const explicit_method *method, double zeta, double part
     }
     worst = fmax(worst, fabs(growth(measured(s)) - expected));
   }
-  print_message("%s, damping ratio %g, %.2f of the limit: growth %.6f, off by %.1e\n",
-                method->name, zeta, part, expected, worst);
+  print_message("%s, damping ratio %g, %.2f of the limit: growth %.6f, off by %.1e\n", method->name,
+                zeta, part, expected, worst);
   assert_true(part < 1 ? expected < 1 + 1e-15 : expected > 1.001);
   assert_true(worst <= 1e-6);
   motion_end(&m);

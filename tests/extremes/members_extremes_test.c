@@ -91,9 +91,14 @@ static void test_bars_through_no_length_keep_their_balance(void **unused) {
 
 /* A frame of springs, so that nothing is discontinuous. */
 static void springs(strut_scene *scene, double damping) {
-  const x_frame frame = {.side = 0.2, .cable_stiffness = 800, .bar_stiffness = 2000,
-                         .force_density = 60, .cable_mass = 0.05, .bar_mass = 0.1,
-                         .cable_damping = damping, .bar_damping = damping};
+  const x_frame frame = {.side = 0.2,
+                         .cable_stiffness = 800,
+                         .bar_stiffness = 2000,
+                         .force_density = 60,
+                         .cable_mass = 0.05,
+                         .bar_mass = 0.1,
+                         .cable_damping = damping,
+                         .bar_damping = damping};
   strut_scene_init(scene);
   structure_x_frame(scene, &frame);
   for (size_t j = 0; j < scene->member_count; j++) scene->members[j].kind = STRUT_SPRING;
@@ -144,8 +149,10 @@ static void test_frames_turned_inside_out_keep_their_balance(void **unused) {
     inverted += least < 0;
   }
   double order = observed_order(sum, 4);
-  print_message("%d of 12 inside out, to %.1f of the area: residual %.1e %.1e %.1e %.1e of what "
-                "moved, order %.2f\n", inverted, deepest, sum[0], sum[1], sum[2], sum[3], order);
+  print_message(
+      "%d of 12 inside out, to %.1f of the area: residual %.1e %.1e %.1e %.1e of what "
+      "moved, order %.2f\n",
+      inverted, deepest, sum[0], sum[1], sum[2], sum[3], order);
   assert_true(inverted >= 8 && deepest < -2);
   assert_true(order >= 3.9);
 }
@@ -171,9 +178,11 @@ static void test_a_throw_of_a_million_sizes(void **unused) {
     drift += weight * scene.nodes[i].velocity[0], rise += weight * scene.nodes[i].velocity[1];
   }
   double expected = start / mass + seconds * (rise / mass - 0.5 * g * seconds);
-  print_message("thrown %g m high: centre off its parabola by %.1e and %.1e m, residual %.1e J of "
-                "%.1e J\n", way, x / mass - drift / mass * seconds, y / mass - expected,
-                s.energy.residual, s.energy.initial);
+  print_message(
+      "thrown %g m high: centre off its parabola by %.1e and %.1e m, residual %.1e J of "
+      "%.1e J\n",
+      way, x / mass - drift / mass * seconds, y / mass - expected, s.energy.residual,
+      s.energy.initial);
   assert_near(x / mass, drift / mass * seconds, 1e-11 * way);
   assert_near(y / mass, expected, 1e-11 * way);
   assert_true(fabs(s.energy.residual) <= 1e-10 * s.energy.initial);

@@ -14,9 +14,14 @@
 #include "tests/support/structures.h"
 
 static void shaken_frame(strut_scene *scene, double shift) {
-  const x_frame frame = {.side = 1, .cable_stiffness = 800, .bar_stiffness = 2000,
-                         .force_density = 60, .cable_mass = 0.05, .bar_mass = 0.1,
-                         .cable_damping = 0.3, .bar_damping = 0.3};
+  const x_frame frame = {.side = 1,
+                         .cable_stiffness = 800,
+                         .bar_stiffness = 2000,
+                         .force_density = 60,
+                         .cable_mass = 0.05,
+                         .bar_mass = 0.1,
+                         .cable_damping = 0.3,
+                         .bar_damping = 0.3};
   strut_scene_init(scene);
   structure_x_frame(scene, &frame);
   for (size_t j = 0; j < scene->member_count; j++) scene->members[j].kind = STRUT_SPRING;

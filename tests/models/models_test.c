@@ -74,8 +74,8 @@ static void x_frame_force(const model_run *run, int node, double load, double fo
   static const struct {
     const char *a, *b;
     double stiffness, rest;
-  } members[] = {{"n1", "n2", 100, 0.95}, {"n2", "n3", 100, 0.95},  {"n3", "n4", 100, 0.95},
-                 {"n4", "n1", 100, 0.95}, {"n2", "n4", 1000, 0},    {"n1", "n3", 1000, 0}};
+  } members[] = {{"n1", "n2", 100, 0.95}, {"n2", "n3", 100, 0.95}, {"n3", "n4", 100, 0.95},
+                 {"n4", "n1", 100, 0.95}, {"n2", "n4", 1000, 0},   {"n1", "n3", 1000, 0}};
   force[0] = 0, force[1] = -load;
   for (int i = 0; i < 6; i++) {
     int ends[] = {members[i].a[1] - '0', members[i].b[1] - '0'};
@@ -102,8 +102,7 @@ static void x_frame(void **unused) {
   assert_near(model_value(&run, last, STRUT_CHANNEL_FORCE, "top", 0), cable, 1e-7);
   assert_near(model_value(&run, last, STRUT_CHANNEL_FORCE, "left", 0), cable, 1e-7);
   assert_near(model_value(&run, last, STRUT_CHANNEL_FORCE, "rising", 0), bar, 1e-6);
-  assert_relative(run.summary.energy.elastic, 4 * cable * cable / 200 + 2 * bar * bar / 2000,
-                  1e-9);
+  assert_relative(run.summary.energy.elastic, 4 * cable * cable / 200 + 2 * bar * bar / 2000, 1e-9);
   model_run_free(&run);
 }
 
@@ -180,8 +179,11 @@ static void slope(void **unused) {
   static const struct {
     const char *set;
     double mu, tolerance;
-  } cases[] = {{"mu=0.37", 0.37, 0},   {"mu=0.36398", 0.36398, 0}, {"mu=0.36396", 0.36396, 1e-6},
-               {"mu=0.36", 0.36, 1e-9}, {"mu=0", 0, 1e-9}};
+  } cases[] = {{"mu=0.37", 0.37, 0},
+               {"mu=0.36398", 0.36398, 0},
+               {"mu=0.36396", 0.36396, 1e-6},
+               {"mu=0.36", 0.36, 1e-9},
+               {"mu=0", 0, 1e-9}};
   const double angle = 20 * PI / 180;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     double a = G * (sin(angle) - cases[i].mu * cos(angle));
@@ -233,9 +235,7 @@ static void belt_without_stick_slip(void **unused) {
 }
 
 /* The load that holds the arch's apex at y. */
-static double arch_load(double y) {
-  return 2 * 1000 * y * (hypot(1, 0.3) / hypot(1, y) - 1);
-}
+static double arch_load(double y) { return 2 * 1000 * y * (hypot(1, 0.3) / hypot(1, y) - 1); }
 
 static void von_mises_truss(void **unused) {
   (void)unused;
@@ -283,12 +283,18 @@ static void von_mises_truss_at_once(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(oscillator),      cmocka_unit_test(pendulum),
-      cmocka_unit_test(spinning_bar),    cmocka_unit_test(x_frame),
-      cmocka_unit_test(x_frame_loaded),  cmocka_unit_test(bouncing_node),
-      cmocka_unit_test(sliding_block),   cmocka_unit_test(slope),
-      cmocka_unit_test(belt),            cmocka_unit_test(belt_without_stick_slip),
-      cmocka_unit_test(von_mises_truss), cmocka_unit_test(von_mises_truss_at_once),
+      cmocka_unit_test(oscillator),
+      cmocka_unit_test(pendulum),
+      cmocka_unit_test(spinning_bar),
+      cmocka_unit_test(x_frame),
+      cmocka_unit_test(x_frame_loaded),
+      cmocka_unit_test(bouncing_node),
+      cmocka_unit_test(sliding_block),
+      cmocka_unit_test(slope),
+      cmocka_unit_test(belt),
+      cmocka_unit_test(belt_without_stick_slip),
+      cmocka_unit_test(von_mises_truss),
+      cmocka_unit_test(von_mises_truss_at_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

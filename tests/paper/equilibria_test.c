@@ -23,9 +23,13 @@ static const struct {
   double node[5][2], energy, a_y, b_y;
 } published[2] = {
     {{{0, 0}, {96.5109, 23.8714}, {52.6668, 28.3691}, {60.2933, 0}, {43.4758, 10.6875}},
-     22.706131, 0.262996, 1.110404},
+     22.706131,
+     0.262996,
+     1.110404},
     {{{0, 0}, {93.5388, 33.6848}, {33.9221, 28.2197}, {43.9094, 0}, {51.3170, 18.4979}},
-     22.712029, -0.074683, 1.448083},
+     22.712029,
+     -0.074683,
+     1.448083},
 };
 
 static model_run crawler;
@@ -69,8 +73,7 @@ static const strut_equilibrium *called(const char *name) {
 /* The solution on nodes 1 and 4 whose energy that is. */
 static const strut_equilibrium *on_1_and_4(double energy) {
   for (size_t i = 0; i < all.count; i++)
-    if (is_on(&all.list[i], 1, 4) && fabs(all.list[i].energy - energy) < 1e-6)
-      return &all.list[i];
+    if (is_on(&all.list[i], 1, 4) && fabs(all.list[i].energy - energy) < 1e-6) return &all.list[i];
   fail_msg("no solution on n1 and n4 has the energy %.9g", energy);
   return NULL;
 }
@@ -129,8 +132,7 @@ static void test_all_the_other_solutions(void **unused) {
     below += e->fate == STRUT_OUTCOME_BELOW_GROUND;
     bool known = false;
     for (int k = 0; k < count; k++)
-      if (fabs(e->energy - energy[k]) < 1e-7)
-        known = statics_congruent(e->point.q, found[k], 1e-7);
+      if (fabs(e->energy - energy[k]) < 1e-7) known = statics_congruent(e->point.q, found[k], 1e-7);
     assert_true(known);
     bool under = false;
     for (int n = 0; n < 5; n++) {
@@ -280,8 +282,8 @@ static const strut_barrier *barrier(const char *from, const char *to) {
     if (strcmp(all.list[b->from].name, from) || strcmp(all.list[b->to].name, to)) continue;
     const strut_equilibrium *saddle = &all.list[b->saddle];
     assert_true(!saddle->supports && saddle->point.negative == 1);
-    print_message("%s to %s: %.9f J over %s, straight %.9f J\n", from, to, b->height,
-                  saddle->name, b->direct);
+    print_message("%s to %s: %.9f J over %s, straight %.9f J\n", from, to, b->height, saddle->name,
+                  b->direct);
     return b;
   }
   fail_msg("no barrier from %s to %s", from, to);

@@ -118,8 +118,8 @@ static void newton(const statics *s, const double q[STATICS], bool level, double
     double along = 0, flat = 1e-3;
     for (int k = 0; k < STATICS; k++) along += g[k] * vector[i][k];
     if (fabs(value[i]) < flat) continue; /* along level ground nothing changes */
-    double x = level ? -along * value[i] / (value[i] * value[i] + damping)
-                     : -along / fabs(value[i]);
+    double x =
+        level ? -along * value[i] / (value[i] * value[i] + damping) : -along / fabs(value[i]);
     for (int k = 0; k < STATICS; k++) step[k] += x * vector[i][k];
   }
   double length = norm(step);

@@ -54,8 +54,9 @@ static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
       strut_summary s = run_by(&scene, "midpoint", period / (100 << k), 10.25 * period);
       error[k] = hypot(s.positions[2], s.positions[3] + 1.0);
       assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved + 1e-9);
-      print_message("stiffness %g, %d steps a period, %.0f times RK4's limit: %.2g m off after ten\n",
-                    stiffness, 100 << k, s.step / explicit_limit(&scene), error[k]);
+      print_message(
+          "stiffness %g, %d steps a period, %.0f times RK4's limit: %.2g m off after ten\n",
+          stiffness, 100 << k, s.step / explicit_limit(&scene), error[k]);
       strut_summary_free(&s);
       strut_scene_free(&scene);
     }
@@ -67,8 +68,12 @@ static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
 static void test_energy_of_a_stiff_frame(void **unused) {
   (void)unused;
   strut_scene scene;
-  const x_frame frame = {.side = 1, .cable_stiffness = 1e7, .bar_stiffness = 1e9,
-                         .force_density = 200, .cable_mass = 0.1, .bar_mass = 1};
+  const x_frame frame = {.side = 1,
+                         .cable_stiffness = 1e7,
+                         .bar_stiffness = 1e9,
+                         .force_density = 200,
+                         .cable_mass = 0.1,
+                         .bar_mass = 1};
   strut_scene_init(&scene);
   structure_x_frame(&scene, &frame);
   structure_throw(&scene, 1.0, -2.0, 0.5);
@@ -84,8 +89,10 @@ static void test_energy_of_a_stiff_frame(void **unused) {
     strut_energies now = strut_energy_evaluate(m.model, m.state, (double)m.state->step * step);
     most = fmax(most, fabs(now.kinetic + now.elastic - whole));
   }
-  print_message("1e5 steps at 100 times the limit: energy within %.2g of itself, %.1f evaluations a "
-                "step\n", most / whole, (double)m.state->evaluations / 1e5);
+  print_message(
+      "1e5 steps at 100 times the limit: energy within %.2g of itself, %.1f evaluations a "
+      "step\n",
+      most / whole, (double)m.state->evaluations / 1e5);
   /* rounding of the bars' forces, c L eps, times the way of a step, at random over all steps */
   double rounding = 1e9 * 1.4 * 0x1p-52 * step * 2.3 * sqrt(1e5);
   assert_near(most, 0.0, rounding);
@@ -146,7 +153,8 @@ static void test_random_scenes(void **unused) {
     random_scene(&scene, seed);
     scene.contact_count = 0;
     scene.ground.present = false;
-    for (size_t i = 0; i < scene.member_count; i++) /* a damper turns round where it has no length */
+    for (size_t i = 0; i < scene.member_count;
+         i++) /* a damper turns round where it has no length */
       if (scene.members[i].stiffness > 0.0 && scene.members[i].rest_value == 0.0)
         scene.members[i].damping = 0.0;
     double fine = fmin(5e-6, 0.2 * explicit_limit(&scene));
@@ -163,9 +171,10 @@ static void test_random_scenes(void **unused) {
     strut_summary_free(&s);
     strut_scene_free(&scene);
   }
-  print_message("%d scenes: %d better by 4 with 0.1 ms than with 1.6 ms; balance of all within %.2g; "
-                "%.1f evaluations a step of 1.6 ms\n",
-                SCENES, better, balance, (double)evaluations / (double)steps);
+  print_message(
+      "%d scenes: %d better by 4 with 0.1 ms than with 1.6 ms; balance of all within %.2g; "
+      "%.1f evaluations a step of 1.6 ms\n",
+      SCENES, better, balance, (double)evaluations / (double)steps);
   assert_true(better >= SCENES - 3); /* where forces jump it is 16, with chaos nothing */
   assert_true(balance < 1e-9);
 }

@@ -94,8 +94,7 @@ static void arm(strut_scene *scene) {
                                    {4, -1}, {4, 0},  {5, -1}, {6, 0},  {5, 1}, {4, 1},
                                    {3, 1},  {2, 1},  {1, 1},  {0, 1}};
   strut_scene_init(scene);
-  for (int i = 0; i < 16; i++)
-    build_mass(scene, at[i][0] * sqrt(0.5), at[i][1] * sqrt(0.5), 1.0);
+  for (int i = 0; i < 16; i++) build_mass(scene, at[i][0] * sqrt(0.5), at[i][1] * sqrt(0.5), 1.0);
   truss_members(scene, STRUT_BAR,
                 "1-3 3-5 5-4 5-6 6-8 8-7 8-9 9-10 10-11 11-8 8-12 8-13 13-5 5-14 5-15 15-1");
   truss_members(scene, STRUT_CABLE,
@@ -167,9 +166,9 @@ static void test_michell_wheels(void **unused) {
   (void)unused;
   static const struct {
     int sides, layers, parts, members, rank, s, inner;
-  } known[] = {{6, 4, 3, 66, 47, 19, 0},   {6, 4, 2, 54, 47, 7, 0},   {6, 4, 1, 36, 36, 0, 9},
-               {6, 3, 3, 48, 35, 13, 0},   {6, 3, 2, 42, 35, 7, 0},   {6, 3, 1, 24, 24, 0, 9},
-               {4, 3, 3, 32, 23, 9, 0},    {4, 3, 2, 28, 23, 5, 0},   {4, 3, 1, 16, 16, 0, 5},
+  } known[] = {{6, 4, 3, 66, 47, 19, 0},   {6, 4, 2, 54, 47, 7, 0},    {6, 4, 1, 36, 36, 0, 9},
+               {6, 3, 3, 48, 35, 13, 0},   {6, 3, 2, 42, 35, 7, 0},    {6, 3, 1, 24, 24, 0, 9},
+               {4, 3, 3, 32, 23, 9, 0},    {4, 3, 2, 28, 23, 5, 0},    {4, 3, 1, 16, 16, 0, 5},
                {12, 4, 3, 132, 95, 37, 0}, {12, 4, 2, 108, 95, 13, 0}, {12, 4, 1, 72, 72, 0, 21}};
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     strut_scene scene;
@@ -370,12 +369,18 @@ static void test_out_of_memory(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bistable_chain),   cmocka_unit_test(test_zeeman),
-      cmocka_unit_test(test_x_joint),          cmocka_unit_test(test_dual_triangle),
-      cmocka_unit_test(test_arm),              cmocka_unit_test(test_michell_wheels),
-      cmocka_unit_test(test_methods_agree),    cmocka_unit_test(test_large_grid),
-      cmocka_unit_test(test_sizes_do_not_matter), cmocka_unit_test(test_spine),
-      cmocka_unit_test(test_random_structures), cmocka_unit_test(test_out_of_memory),
+      cmocka_unit_test(test_bistable_chain),
+      cmocka_unit_test(test_zeeman),
+      cmocka_unit_test(test_x_joint),
+      cmocka_unit_test(test_dual_triangle),
+      cmocka_unit_test(test_arm),
+      cmocka_unit_test(test_michell_wheels),
+      cmocka_unit_test(test_methods_agree),
+      cmocka_unit_test(test_large_grid),
+      cmocka_unit_test(test_sizes_do_not_matter),
+      cmocka_unit_test(test_spine),
+      cmocka_unit_test(test_random_structures),
+      cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

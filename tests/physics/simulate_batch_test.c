@@ -210,7 +210,8 @@ static void compare(int32_t width, int count, const char *method, bool without_l
 
 static void test_every_width(void **unused) {
   (void)unused;
-  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2) compare(width, POINTS, "rk4", false);
+  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2)
+    compare(width, POINTS, "rk4", false);
 }
 
 static void test_without_ledger(void **unused) {
@@ -254,6 +255,7 @@ static void test_no_memory_for_lanes(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_width), cmocka_unit_test(test_without_ledger),
-      cmocka_unit_test(test_events), cmocka_unit_test(test_few_points), cmocka_unit_test(test_no_memory_for_lanes)};
+      cmocka_unit_test(test_events), cmocka_unit_test(test_few_points),
+      cmocka_unit_test(test_no_memory_for_lanes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

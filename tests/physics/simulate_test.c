@@ -294,11 +294,8 @@ static void test_settling_on_a_slope_needs_friction(void **unused) {
     scene.gravity[1] = -9.81;
     scene.ground.slope = 0.2;
     scene.experiment.step = 1e-4, scene.experiment.duration = 0.01;
-    scene.settle = (strut_settle){.wanted = true,
-                                  .friction = kept,
-                                  .speed = 1e-8,
-                                  .acceleration = 1e-6,
-                                  .limit = 3};
+    scene.settle = (strut_settle){
+        .wanted = true, .friction = kept, .speed = 1e-8, .acceleration = 1e-6, .limit = 3};
     strut_summary s;
     strut_error error = {0};
     strut_run_options options = {0};

@@ -21,9 +21,7 @@ static void waveform(const strut_signal *s, long double tau, long double *value,
   long double omega = 2 * acosl(-1) * s->frequency, cycles = tau * s->frequency + s->phase;
   long double angle = 2 * acosl(-1) * cycles;
   switch (s->kind) {
-    case STRUT_CONSTANT:
-      *value = s->amplitude;
-      break;
+    case STRUT_CONSTANT: *value = s->amplitude; break;
     case STRUT_SQUARE:
       *value = cycles - floorl(cycles) < 0.5L ? s->amplitude : -s->amplitude;
       break;
@@ -31,8 +29,7 @@ static void waveform(const strut_signal *s, long double tau, long double *value,
       if (cycles >= 0.5L) break;
       *value = s->amplitude * sinl(angle), *rate = s->amplitude * omega * cosl(angle);
       break;
-    default:
-      *value = s->amplitude * sinl(angle), *rate = s->amplitude * omega * cosl(angle);
+    default: *value = s->amplitude * sinl(angle), *rate = s->amplitude * omega * cosl(angle);
   }
 }
 

@@ -11,7 +11,8 @@
 
 /* Two signals stand around the work, so that only what lies between them is counted. */
 static void be_stepped(void (*work)(void *context), void *context) {
-  work(context); /* once before: lazily bound functions and first touches of memory are not counted */
+  work(
+      context); /* once before: lazily bound functions and first touches of memory are not counted */
   if (ptrace(PTRACE_TRACEME, 0, NULL, NULL) < 0) _exit(1);
   raise(SIGUSR1);
   work(context);

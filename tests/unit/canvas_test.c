@@ -112,8 +112,8 @@ static void test_nothing_left(void **state) {
   strut_error error = {0};
   char path[200];
   for (size_t k = 0; k < 3; k++) {
-    assert_int_equal(
-        strut_canvas_open(path_of("left", endings[k], path), 100, 80, "", &c, &error), STRUT_OK);
+    assert_int_equal(strut_canvas_open(path_of("left", endings[k], path), 100, 80, "", &c, &error),
+                     STRUT_OK);
     draw_something(c);
     strut_canvas_free(c);
     assert_int_not_equal(access(path, F_OK), 0);
@@ -194,9 +194,7 @@ static void test_far_away(void **state) {
 }
 
 /* Lightness as the eye sees it, about: luma of the sRGB values. */
-static double lightness(strut_colour c) {
-  return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue;
-}
+static double lightness(strut_colour c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue; }
 
 static void test_palettes(void **state) {
   (void)state;

@@ -58,16 +58,18 @@ static void test_prefixes(void **state) {
     double largest;
     const char *unit, *prefix;
     double factor;
-  } cases[] = {{0.0214, "m/s", "m", 1e-3}, {1, "m", "", 1},     {999, "N", "", 1},
-               {1000, "N", "k", 1e3},      {2e-7, "J", "n", 1e-9}, {0.02, "%", "", 1},
-               {0.02, "kg", "", 1},        {0.02, "", "", 1},   {0, "m", "", 1},
+  } cases[] = {{0.0214, "m/s", "m", 1e-3}, {1, "m", "", 1},          {999, "N", "", 1},
+               {1000, "N", "k", 1e3},      {2e-7, "J", "n", 1e-9},   {0.02, "%", "", 1},
+               {0.02, "kg", "", 1},        {0.02, "", "", 1},        {0, "m", "", 1},
                {1e40, "m", "", 1},         {(double)NAN, "m", "", 1}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     double factor;
     assert_string_equal(strut_prefix(cases[i].largest, cases[i].unit, &factor), cases[i].prefix);
     assert_true(fabs(factor / cases[i].factor - 1) < 1e-12);
   }
-  assert_string_equal(strut_drawn_quantity(-3.2e-6, 2, "J").text, "\xe2\x88\x92" "3.2 µJ");
+  assert_string_equal(strut_drawn_quantity(-3.2e-6, 2, "J").text,
+                      "\xe2\x88\x92"
+                      "3.2 µJ");
   assert_string_equal(strut_drawn_quantity(20e-3, 3, "m").text, "20 mm");
 }
 
@@ -82,7 +84,9 @@ static void test_tick_texts(void **state) {
   (void)state;
   strut_tick_set set = ticks_of("m/s", false, -0.011, 0.012);
   assert_string_equal(set.label, "error in mm/s");
-  assert_string_equal(set.text[0], "\xe2\x88\x92" "10");
+  assert_string_equal(set.text[0],
+                      "\xe2\x88\x92"
+                      "10");
   set = ticks_of("m", true, 1e-9, 1e-3);
   assert_string_equal(set.label, "error in m");
   assert_string_equal(set.text[0], "10⁻⁸");
@@ -91,11 +95,15 @@ static void test_tick_texts(void **state) {
   assert_string_equal(set.text[1], "10");
   set = ticks_of("m", false, 1e9 - 1.07e-3, 1e9 + 1.07e-3); /* of few digits, not the lower end */
   assert_string_equal(set.label, "error \xe2\x88\x92 1000000000 m in mm");
-  assert_string_equal(set.text[0], "\xe2\x88\x92" "1.0");
+  assert_string_equal(set.text[0],
+                      "\xe2\x88\x92"
+                      "1.0");
   set = ticks_of("m", false, 0, 9e-300);
   assert_string_equal(set.text[1], "2×10⁻³⁰⁰");
   set = ticks_of("", false, -9e299, 0);
-  assert_string_equal(set.text[0], "\xe2\x88\x92" "8×10²⁹⁹");
+  assert_string_equal(set.text[0],
+                      "\xe2\x88\x92"
+                      "8×10²⁹⁹");
   set = ticks_of("", true, 2, 8);
   assert_string_equal(set.text[0], "2");
   assert_string_equal(set.text[1], "5");
@@ -104,7 +112,7 @@ static void test_tick_texts(void **state) {
 /* Whatever the data, there is an axis that can be drawn. */
 static void test_settle(void **state) {
   (void)state;
-  static const double values[] = {0,     -0.0,  1,       -3,     1e300,     -1e300, 1e-300,
+  static const double values[] = {0,      -0.0,  1,        -3,          1e300,     -1e300, 1e-300,
                                   5e-324, 1e308, -1.7e308, (double)NAN, -HUGE_VAL, 42,     1e9};
   enum { COUNT = sizeof values / sizeof *values };
   for (size_t i = 0; i < COUNT; i++)
@@ -163,18 +171,17 @@ static void test_front(void **state) {
   for (int round = 0; round < 200; round++) {
     for (size_t i = 0; i < COUNT; i++)
       b[i] = (strut_saving){.cost = 1 + floor(10 * random_between(&seed, 0, 1)),
-                             .error = random_between(&seed, 0, 1) < 0.1
-                                          ? (double)NAN
-                                          : 1 + floor(10 * random_between(&seed, 0, 1)),
-                             .low = (double)NAN,
-                             .high = (double)NAN};
+                            .error = random_between(&seed, 0, 1) < 0.1
+                                         ? (double)NAN
+                                         : 1 + floor(10 * random_between(&seed, 0, 1)),
+                            .low = (double)NAN,
+                            .high = (double)NAN};
     strut_pareto_front(b, COUNT, front);
     for (size_t i = 0; i < COUNT; i++) {
       bool beaten = !isfinite(b[i].error);
       for (size_t k = 0; k < COUNT; k++)
-        if (isfinite(b[k].error) &&
-            ((b[k].cost < b[i].cost && b[k].error <= b[i].error) ||
-             (b[k].cost <= b[i].cost && b[k].error < b[i].error)))
+        if (isfinite(b[k].error) && ((b[k].cost < b[i].cost && b[k].error <= b[i].error) ||
+                                     (b[k].cost <= b[i].cost && b[k].error < b[i].error)))
           beaten = true;
       assert_int_equal(front[i], !beaten);
     }
@@ -195,8 +202,13 @@ static void test_map(void **state) {
   static const char *const names[] = {"I", "II"};
   const strut_map map = {.x = {"a", "", false, (double)NAN, (double)NAN},
                          .y = {"b", "", false, (double)NAN, (double)NAN},
-                         .columns = 2, .rows = 2, .xs = xs, .ys = ys, .category = category,
-                         .category_count = 2, .names = names};
+                         .columns = 2,
+                         .rows = 2,
+                         .xs = xs,
+                         .ys = ys,
+                         .category = category,
+                         .category_count = 2,
+                         .names = names};
   strut_canvas *canvas;
   strut_error error;
   assert_int_equal(strut_canvas_open_pixels(400, 300, 1, &canvas, &error), STRUT_OK);
@@ -219,9 +231,9 @@ static void test_map(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ticks),    cmocka_unit_test(test_prefixes),
+      cmocka_unit_test(test_ticks),      cmocka_unit_test(test_prefixes),
       cmocka_unit_test(test_tick_texts), cmocka_unit_test(test_settle),
-      cmocka_unit_test(test_thinning), cmocka_unit_test(test_front),
+      cmocka_unit_test(test_thinning),   cmocka_unit_test(test_front),
       cmocka_unit_test(test_map),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

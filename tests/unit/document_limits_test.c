@@ -15,8 +15,8 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "parser/yaml/document.h"
 #include "parser/read/read_scene.h"
+#include "parser/yaml/document.h"
 #include "tests/unit/document_support.h"
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -328,7 +328,8 @@ static void test_stages_of_dead_processes_go(void **unused) {
   assert_int_equal(mkdir(scratch_path("out/.strut-stage-8-0"), 0777), 0);
   assert_int_equal(strut_file_write_text(scratch_path("out/.strut-stage-8-0"), "x", "x", NULL), 0);
   assert_int_equal(strut_results_begin(&next, out, NULL), STRUT_OK);
-  assert_int_equal(scratch_count(out), 3); /* the living one, the next one, the one without a mark */
+  assert_int_equal(scratch_count(out),
+                   3); /* the living one, the next one, the one without a mark */
   assert_true(scratch_exists(scratch_path("out/.strut-stage-8-0/x")));
   assert_int_equal(strut_results_commit(&alive, NULL), STRUT_OK);
   assert_content(scratch_path("out/nodes.csv"), "mine");

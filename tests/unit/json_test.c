@@ -23,8 +23,7 @@ static strut_parameter parameters[] = {
     {"frequency", "10 Hz", 10.0}, {"amplitude", "0.1 mm", 1e-4}, {"start", "I", (double)NAN}};
 static const char *names[] = {"n1", "a \"b\"\\\n"};
 static double positions[] = {0.1 + 0.2, -1e-300, 5e-324, 1.7976931348623157e308};
-static strut_contact_summary contacts[] = {
-    {.node = "n1", .duty = 1.0 / 3.0, .max_height = 1.1e-3}};
+static strut_contact_summary contacts[] = {{.node = "n1", .duty = 1.0 / 3.0, .max_height = 1.1e-3}};
 
 static strut_scene make_scene(void) {
   strut_scene scene = {.name = "Cr\xc3\xa4wler", .description = "", .source = ""};

@@ -14,9 +14,9 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "parser/yaml/diagnostics.h"
 #include "parser/expression/expression.h"
 #include "parser/expression/number.h"
+#include "parser/yaml/diagnostics.h"
 
 static uint64_t random_state = 42;
 

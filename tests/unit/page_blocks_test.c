@@ -102,9 +102,9 @@ static void every_value_comes_back(void **state) {
 /* From one end of what a block can hold to the other, and back. */
 static void the_largest_numbers_fit(void **state) {
   (void)state;
-  static const double values[] = {STRUT_MOST_QUANTA,  -STRUT_MOST_QUANTA, STRUT_MOST_QUANTA,
-                                  -STRUT_MOST_QUANTA, 0,                  -1,
-                                  1,                  STRUT_MOST_QUANTA};
+  static const double values[] = {
+      STRUT_MOST_QUANTA, -STRUT_MOST_QUANTA, STRUT_MOST_QUANTA, -STRUT_MOST_QUANTA, 0, -1, 1,
+      STRUT_MOST_QUANTA};
   check(values, 8, 1, 1, 1);
   check(values, 4, 2, 1, 1);
   check(values, 1, 8, 1, 1);
@@ -319,7 +319,9 @@ static void no_name_becomes_markup(void **state) {
   assert_int_equal(count(html, "</script"), count(plain, "</script"));
   assert_int_equal(count(html, "<!--"), count(plain, "<!--"));
   assert_int_equal(count(html, "\xe2\x80\xa8"), count(plain, "\xe2\x80\xa8") + 1); /* the title */
-  has(html, "{\"name\":\"\\u003c/script\\u003e\\u003c!--\\u003cscript\\u003e\\u0026\\\"\\\\\\u2028\\n\",");
+  has(html,
+      "{\"name\":\"\\u003c/"
+      "script\\u003e\\u003c!--\\u003cscript\\u003e\\u0026\\\"\\\\\\u2028\\n\",");
   strut_release(plain);
   strut_release(html);
   strut_model_free(model);

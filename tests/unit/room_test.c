@@ -10,9 +10,9 @@
 #include "engine/base/memory.h"
 #include "engine/model/model.h"
 #include "engine/model/sparse.h"
+#include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
 #include "parser/yaml/memory_estimate.h"
-#include "parser/read/read_scene.h"
 #include "tests/support/check.h"
 
 /* Sanitizers take memory of their own, and stop the program where it is refused. */
@@ -126,8 +126,8 @@ static void test_a_text(void **unused) {
   (void)unused;
   static const char text[] = "a: {b: [1, 2], c: x, d: []}\n# e: f, [g, h]\ni: 'j: k, [l, m]'\n";
   size_t length = sizeof text - 1;
-  assert_near(strut_document_needs(text, length),
-              12 * (double)sizeof(strut_tree) + (double)length, 0);
+  assert_near(strut_document_needs(text, length), 12 * (double)sizeof(strut_tree) + (double)length,
+              0);
   static const char *const files[] = {"models/crawler/crawler.yaml", "models/basics/belt.yaml",
                                       "models/gallery/d-bar.yaml"};
   for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {

@@ -70,8 +70,7 @@ static void test_path(void **state) {
   strut_error error = {0};
   model_read(&run, "basics/von-mises-truss", set_to("load=12"));
   assert_int_equal(strut_model_compile(&run.scene, &run.model, &error), STRUT_OK);
-  assert_int_equal(strut_path_follow(run.model, &(strut_path_options){0}, &path, &error),
-                   STRUT_OK);
+  assert_int_equal(strut_path_follow(run.model, &(strut_path_options){0}, &path, &error), STRUT_OK);
   fails_cleanly(draw_path, run.model, &path);
   strut_path_free(&path);
   model_run_free(&run);

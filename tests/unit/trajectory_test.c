@@ -76,9 +76,9 @@ static void test_the_file_gives_back_what_the_run_had(void **unused) {
   assert_int_equal(taken.contact_count, 5);
   assert_int_equal(taken.contact_node[3], 3);
   assert_near(taken.time[100], 0.1, 1e-12);
-  assert_int_equal(strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read,
-                                         &error),
-                   STRUT_OK);
+  assert_int_equal(
+      strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read, &error),
+      STRUT_OK);
   assert_same_motion(&taken, &read);
   strut_trajectory_free(&read);
   strut_trajectory_free(&taken);

@@ -55,10 +55,17 @@ static void make(things *t) {
     t->contact[i][0] = i;
   }
   for (int k = 0; k < 3; k++) t->contact_node[k] = k;
-  t->motion = (strut_trajectory){.frames = FRAMES, .recorded = FRAMES, .every = 1, .node_count = 3,
-                                 .member_count = 2, .contact_count = 3, .time = t->time,
-                                 .position = t->position[0], .force = t->force[0],
-                                 .contact = t->contact[0], .contact_node = t->contact_node};
+  t->motion = (strut_trajectory){.frames = FRAMES,
+                                 .recorded = FRAMES,
+                                 .every = 1,
+                                 .node_count = 3,
+                                 .member_count = 2,
+                                 .contact_count = 3,
+                                 .time = t->time,
+                                 .position = t->position[0],
+                                 .force = t->force[0],
+                                 .contact = t->contact[0],
+                                 .contact_node = t->contact_node};
 }
 
 static void drop(things *t) {
@@ -176,8 +183,8 @@ static void test_film_of_what_is_a_number(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_sketch_without_memory), cmocka_unit_test(test_vtk_without_memory),
-      cmocka_unit_test(test_vtk_on_a_full_disk),    cmocka_unit_test(test_film_without_memory),
+      cmocka_unit_test(test_sketch_without_memory),    cmocka_unit_test(test_vtk_without_memory),
+      cmocka_unit_test(test_vtk_on_a_full_disk),       cmocka_unit_test(test_film_without_memory),
       cmocka_unit_test(test_film_of_what_is_a_number),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,8 +7,8 @@
  * against the fastest speed so far for velocities. A step within which a contact's gap or slip dips
  * below its mode's edge and comes back is rejected as well: its ends alone would not show that.
  */
-#include "engine/integrate/integrator.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/integrator.h"
 
 enum { PAIR = 7, V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
 
@@ -46,24 +46,12 @@ STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *
 STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
                            double *const *a, int k, double *restrict q) {
   switch (k) {
-    case 1:
-      stage(n, h, now, v, a, 1, q, v[1]);
-      break;
-    case 2:
-      stage(n, h, now, v, a, 2, q, v[2]);
-      break;
-    case 3:
-      stage(n, h, now, v, a, 3, q, v[3]);
-      break;
-    case 4:
-      stage(n, h, now, v, a, 4, q, v[4]);
-      break;
-    case 5:
-      stage(n, h, now, v, a, 5, q, v[5]);
-      break;
-    default:
-      stage(n, h, now, v, a, 6, q, v[6]);
-      break;
+    case 1: stage(n, h, now, v, a, 1, q, v[1]); break;
+    case 2: stage(n, h, now, v, a, 2, q, v[2]); break;
+    case 3: stage(n, h, now, v, a, 3, q, v[3]); break;
+    case 4: stage(n, h, now, v, a, 4, q, v[4]); break;
+    case 5: stage(n, h, now, v, a, 5, q, v[5]); break;
+    default: stage(n, h, now, v, a, 6, q, v[6]); break;
   }
 }
 
@@ -88,8 +76,8 @@ STRUT_INLINE double largest_of(largest x) {
 }
 
 /* Local error over what is allowed, by the difference of the pair. */
-STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, double h, double *const *v,
-                             double *const *a) {
+STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, double h,
+                             double *const *v, double *const *a) {
   largest position = {0}, velocity = {0}, speed = {0};
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     position = larger_of(position, h * weighted(v, difference, PAIR, i));
@@ -123,25 +111,23 @@ static const double STAGE_ERROR = 0.01;
  * Does contact i, as a stage has it, contradict its mode by more than a stage's own error? Where the ends
  * of the step do not, what began within it would have ended within it unseen.
  */
-static bool contradicts_at_stage(const strut_model *model, const strut_event_stepper *l, int32_t i) {
+static bool contradicts_at_stage(const strut_model *model, const strut_event_stepper *l,
+                                 int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
   double most = e->mu_static * o->normal, part = STAGE_ERROR;
   if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
-    case STRUT_MODE_STICK:
-      return fabs(o->friction) > most * (1.0 + part);
+    case STRUT_MODE_STICK: return fabs(o->friction) > most * (1.0 + part);
     case STRUT_MODE_BAND:
       return e->mu_static != e->mu_kinetic && fabs(o->applied) > most * (1.0 + part);
-    case STRUT_MODE_PUSH:
-      return fabs(o->applied) < most * (1.0 - part);
+    case STRUT_MODE_PUSH: return fabs(o->applied) < most * (1.0 - part);
     case STRUT_MODE_CREEP:
       return l->side[i] * o->friction < -e->mu_kinetic * o->normal * (1.0 + part);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */
-    case STRUT_MODE_YIELD:
-      break;
+    case STRUT_MODE_YIELD: break;
   }
   return false;
 }
@@ -201,8 +187,8 @@ static const double LEAST_SPLIT = 1e-4;
 /* The error that makes the next step end there. */
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                       double h, bool ledger) {
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, bool ledger) {
   double *v[PAIR], *a[PAIR];
   for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
   v[0] = l->now->v, a[0] = l->now->a;
@@ -233,8 +219,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
 }
 
 STRUT_CLONES
-static void adaptive_trial(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                           double h) {
+static void adaptive_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                           double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
   else

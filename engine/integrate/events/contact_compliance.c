@@ -83,7 +83,8 @@ static strut_status find_bodies(const strut_model *model, strut_event_stepper *l
   return STRUT_OK;
 }
 
-strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
+                                         strut_event_stepper *l) {
   const strut_contact_table *c = &model->contacts;
   double *x = l->next->q, *y = l->next->v;
   double fastest = 0.0;
@@ -113,7 +114,7 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
 }
 
 void strut_apply_contact_impulse(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                           double normal, double tangential, double *a) {
+                                 double normal, double tangential, double *a) {
   const strut_contact_table *c = &model->contacts;
   const strut_contact_compliance *r = &l->response[i];
   double fx = tangential * c->tangent[0] + normal * c->normal[0];
@@ -171,16 +172,16 @@ static void list_sliders(const strut_model *model, strut_event_stepper *l) {
     bool slips = l->mode[i] == STRUT_MODE_SLIP;
     l->plain = is_slider(l, e, i);
     l->slider[k] = (strut_sliding_contact){.at = model->contacts.at[i],
-                                  .index = i,
-                                  .nodes = r->count,
-                                  .stiffness = e->stiffness,
-                                  .damping = e->damping,
-                                  .answer = r->normal,
-                                  .friction = slips ? -l->side[i] * e->mu_kinetic : 0.0,
-                                  .side = slips ? l->side[i] : 0.0,
-                                  .edge = slips ? located_edge(e) : 0.0,
-                                  .place = r->at,
-                                  .xy = r->xy};
+                                           .index = i,
+                                           .nodes = r->count,
+                                           .stiffness = e->stiffness,
+                                           .damping = e->damping,
+                                           .answer = r->normal,
+                                           .friction = slips ? -l->side[i] * e->mu_kinetic : 0.0,
+                                           .side = slips ? l->side[i] : 0.0,
+                                           .edge = slips ? located_edge(e) : 0.0,
+                                           .place = r->at,
+                                           .xy = r->xy};
   }
 }
 
@@ -235,7 +236,7 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
 }
 
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                        strut_step_end *end) {
+                                   strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;

@@ -23,8 +23,8 @@ static void located_derive(const strut_model *model, strut_state *state, strut_e
   l->fresh = true;
 }
 
-void strut_evaluate_acceleration(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                          double t) {
+void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double t) {
   located_derive(model, state, l, t);
   strut_event_measure(model, state, l, l->now);
 }
@@ -93,8 +93,8 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
 }
 
 /* Derives, letting go of one overloaded stuck contact after the other. */
-static void derive_consistently(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                                double t) {
+static void derive_consistently(const strut_model *model, strut_state *state,
+                                strut_event_stepper *l, double t) {
   for (int32_t k = 0; k <= model->contacts.count; k++) {
     strut_update_active_set(model, l);
     strut_evaluate_acceleration(model, state, l, t);
@@ -106,7 +106,8 @@ static void derive_consistently(const strut_model *model, strut_state *state, st
 }
 
 /* Which cables pull, as positions, velocities and drives are. */
-static void start_cables(const strut_model *model, strut_state *state, strut_event_stepper *l, double t) {
+static void start_cables(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         double t) {
   bool changed = false;
   for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
   derive_consistently(model, state, l, t);
@@ -124,7 +125,8 @@ void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_
   start_cables(model, state, l, t);
 }
 
-void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l, double t) {
+void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t) {
   l->fresh = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
@@ -174,9 +176,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       close_contact(model, l, i);
       begin_refinement(l, i, t, &state->refined_until);
       break;
-    case STRUT_EVENT_OPEN:
-      l->mode[i] = STRUT_MODE_OPEN;
-      break;
+    case STRUT_EVENT_OPEN: l->mode[i] = STRUT_MODE_OPEN; break;
     case STRUT_EVENT_SLIP_ENDS:
       if (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP) {
         decide_at_edge(model, state, l, i, false, t);
@@ -193,12 +193,8 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
       l->mode[i] = STRUT_MODE_SLIP;
       break;
-    case STRUT_EVENT_CREEP_OUT:
-      l->mode[i] = STRUT_MODE_SLIP;
-      break;
-    case STRUT_EVENT_CREEP_IN:
-      l->mode[i] = STRUT_MODE_BAND;
-      break;
+    case STRUT_EVENT_CREEP_OUT: l->mode[i] = STRUT_MODE_SLIP; break;
+    case STRUT_EVENT_CREEP_IN: l->mode[i] = STRUT_MODE_BAND; break;
     case STRUT_EVENT_PUSH:
       /* back and forth without a step between: the threshold attracts from both sides */
       if (l->pushed == i && l->pushed_at == t)
@@ -215,14 +211,9 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       l->side[i] = o->applied < 0.0 ? -1 : 1;
       break;
     }
-    case STRUT_EVENT_DAMPER:
-      l->damper[i] = (int8_t)-l->damper[i];
-      break;
-    case STRUT_EVENT_CABLE:
-      cable_mode(state, l, i, !l->pulling[i]);
-      break;
-    default:
-      break;
+    case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
+    case STRUT_EVENT_CABLE: cable_mode(state, l, i, !l->pulling[i]); break;
+    default: break;
   }
   derive_consistently(model, state, l, t);
 }

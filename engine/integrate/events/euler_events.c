@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Semi-implicit Euler between events: the cheapest step there is, of first order. */
-#include "engine/integrate/integrator.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/integrator.h"
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                       double h, bool ledger) {
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, bool ledger) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     strut_lanes v = strut_lanes_load(l->now->v + i) + h * strut_lanes_load_pairs(l->now->a + i);
     strut_lanes_store(l->next->v + i, v);

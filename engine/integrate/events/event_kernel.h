@@ -77,8 +77,8 @@ STRUT_INLINE void located_ground(const strut_model *model, const strut_event_ste
     located_place(c, i, q, v, o);
     o->applied = force[at] * c->tangent[0] + force[at + 1] * c->tangent[1];
     o->normal = located_normal(&c->entry[i], l->damper[i], o->gap, o->into, damped);
-    o->friction = located_friction(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip,
-                                   o->applied);
+    o->friction =
+        located_friction(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
     force[at] += o->friction * c->tangent[0] + o->normal * c->normal[0];
     force[at + 1] += o->friction * c->tangent[1] + o->normal * c->normal[1];
   }
@@ -122,9 +122,10 @@ STRUT_INLINE void located_keep(const strut_model *model, const strut_state *stat
 }
 
 /* From the forces of the structure in state->force to the acceleration. */
-STRUT_INLINE void located_close(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                                const double *restrict q, const double *restrict v,
-                                double *restrict a, strut_step_end *end, bool ledger) {
+STRUT_INLINE void located_close(const strut_model *model, strut_state *state,
+                                strut_event_stepper *l, const double *restrict q,
+                                const double *restrict v, double *restrict a, strut_step_end *end,
+                                bool ledger) {
   if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
   mass_kernel(model, state->force, a, state->scratch);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
@@ -161,8 +162,9 @@ STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_even
 }
 
 /* The same at the end of a step, with all that belongs to that end. */
-STRUT_INLINE void located_finish(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                                 double t, strut_step_end *end, bool ledger) {
+STRUT_INLINE void located_finish(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double t, strut_step_end *end,
+                                 bool ledger) {
   forces_of_structure(model, state, t, end->q, end->v, ledger);
   located_keep(model, state, end, ledger);
   located_close(model, state, l, end->q, end->v, end->a, end, ledger);
@@ -189,17 +191,19 @@ STRUT_INLINE double located_yield_room(const strut_contact_entry *e, const strut
 }
 
 /* What a closed contact's state at the end of a step contradicts of its mode. */
-STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e, const strut_touch *o,
-                                      uint8_t mode, double s) {
+STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e,
+                                                    const strut_touch *o, uint8_t mode, double s) {
   switch (mode) {
     case STRUT_MODE_SLIP:
       return s * o->slip < located_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
       /* also where the gap is open by then: what holds a node lets go before that */
-      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_STICK_BREAKS : STRUT_EVENT_NONE;
+      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_STICK_BREAKS
+                                                          : STRUT_EVENT_NONE;
     case STRUT_MODE_CREEP:
       if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
-      return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN : STRUT_EVENT_NONE;
+      return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
+                                                                : STRUT_EVENT_NONE;
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
       if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
@@ -210,14 +214,13 @@ STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e
     case STRUT_MODE_YIELD:
       if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       return located_yield_room(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
-    default:
-      return STRUT_EVENT_NONE;
+    default: return STRUT_EVENT_NONE;
   }
 }
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
-STRUT_INLINE void located_accept(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                                 bool ledger) {
+STRUT_INLINE void located_accept(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, bool ledger) {
   strut_step_end *now = l->next, *next = l->now;
   double *restrict q = now->q, *restrict v = now->v;
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
@@ -246,7 +249,8 @@ STRUT_INLINE double located_moment(double t, double dt) {
 }
 
 /* Size of the next step within what is left to the grid point. */
-STRUT_INLINE double located_step_size(const strut_state *state, const strut_event_stepper *l, double dt) {
+STRUT_INLINE double located_step_size(const strut_state *state, const strut_event_stepper *l,
+                                      double dt) {
   double rest = dt - l->done, h = rest;
   if (l->stepper->adaptive) {
     h = l->h > 0.0 ? l->h : dt * 1e-3;
@@ -267,7 +271,8 @@ STRUT_INLINE double located_time(const strut_event_stepper *l, double t, double 
 }
 
 /* After a step of `gone`: on to the next grid point when this one is reached. */
-STRUT_INLINE void located_go_on(strut_state *state, strut_event_stepper *l, double gone, double dt) {
+STRUT_INLINE void located_go_on(strut_state *state, strut_event_stepper *l, double gone,
+                                double dt) {
   double rest = dt - l->done;
   l->done = gone == rest ? dt : l->done + gone;
   if (dt - l->done > 1e-12 * dt) return;

@@ -34,52 +34,33 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
   switch (kind) {
-    case STRUT_EVENT_TOUCH:
-      return gap_of(&model->contacts, i, end->q);
-    case STRUT_EVENT_OPEN:
-      return -gap_of(&model->contacts, i, end->q);
-    case STRUT_EVENT_SLIP_ENDS:
-      return s * o->slip - located_edge(e);
-    case STRUT_EVENT_LEAVES_STICK_BAND:
-      return located_edge(e) - way_out(l, o, i) * o->slip;
-    case STRUT_EVENT_STICK_BREAKS:
-      return e->mu_static * o->normal - fabs(o->friction);
-    case STRUT_EVENT_CREEP_OUT:
-      return s * o->friction + e->mu_kinetic * o->normal;
-    case STRUT_EVENT_CREEP_IN:
-      return s * (located_band_force(e, o) - o->friction);
+    case STRUT_EVENT_TOUCH: return gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_OPEN: return -gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_SLIP_ENDS: return s * o->slip - located_edge(e);
+    case STRUT_EVENT_LEAVES_STICK_BAND: return located_edge(e) - way_out(l, o, i) * o->slip;
+    case STRUT_EVENT_STICK_BREAKS: return e->mu_static * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->mu_kinetic * o->normal;
+    case STRUT_EVENT_CREEP_IN: return s * (located_band_force(e, o) - o->friction);
     case STRUT_EVENT_PUSH: {
       double room = e->mu_static * o->normal - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
     }
-    case STRUT_EVENT_YIELDED:
-      return located_yield_room(e, o);
-    case STRUT_EVENT_DAMPER:
-      return l->damper[i] > 0 ? -o->into : o->into;
-    default:
-      return 1.0;
+    case STRUT_EVENT_YIELDED: return located_yield_room(e, o);
+    case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
+    default: return 1.0;
   }
 }
 
-bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end, strut_event_kind kind,
-                      int32_t i, double *rate) {
+bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
+                      strut_event_kind kind, int32_t i, double *rate) {
   if (kind == STRUT_EVENT_CABLE) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
-    case STRUT_EVENT_OPEN:
-      *rate = -o->into;
-      return true;
-    case STRUT_EVENT_SLIP_ENDS:
-      *rate = l->side[i] * o->slip_rate;
-      return true;
-    case STRUT_EVENT_LEAVES_STICK_BAND:
-      *rate = -way_out(l, o, i) * o->slip_rate;
-      return true;
-    case STRUT_EVENT_DAMPER:
-      *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate;
-      return true;
-    default:
-      return false;
+    case STRUT_EVENT_OPEN: *rate = -o->into; return true;
+    case STRUT_EVENT_SLIP_ENDS: *rate = l->side[i] * o->slip_rate; return true;
+    case STRUT_EVENT_LEAVES_STICK_BAND: *rate = -way_out(l, o, i) * o->slip_rate; return true;
+    case STRUT_EVENT_DAMPER: *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate; return true;
+    default: return false;
   }
 }
 
@@ -116,8 +97,8 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
 }
 
 /* Where between now and next the event's value passes 0. */
-static double fraction_of(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
-                          int32_t i, double h) {
+static double fraction_of(const strut_model *model, const strut_event_stepper *l,
+                          strut_event_kind kind, int32_t i, double h) {
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
   if (kind == STRUT_EVENT_LEAVES_STICK_BAND) g0 = room_to_leave(model, l, i, g0);
@@ -135,8 +116,8 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   return g0 / (g0 - g1);
 }
 
-static void keep_first(const strut_model *model, const strut_event_stepper *l, strut_event_kind kind,
-                       int32_t i, double h, strut_event *first) {
+static void keep_first(const strut_model *model, const strut_event_stepper *l,
+                       strut_event_kind kind, int32_t i, double h, strut_event *first) {
   double fraction = fraction_of(model, l, kind, i, h);
   if (first->kind && fraction >= first->fraction) return;
   *first = (strut_event){kind, i, fraction};
@@ -159,8 +140,8 @@ static void measure_cables(const strut_model *model, const strut_state *state,
   }
 }
 
-void strut_event_measure(const strut_model *model, const strut_state *state, const strut_event_stepper *l,
-                         const strut_step_end *end) {
+void strut_event_measure(const strut_model *model, const strut_state *state,
+                         const strut_event_stepper *l, const strut_step_end *end) {
   if (l->cable_count) measure_cables(model, state, l, end);
 }
 
@@ -211,8 +192,8 @@ static double parabola_root(double gap, double speed, double bend) {
 }
 
 /* Where within the step contact i passes the ground, by the parabola that positions follow. */
-static double crossing(const strut_model *model, const strut_state *state, const strut_event_stepper *l,
-                       int32_t i, double sign, double h) {
+static double crossing(const strut_model *model, const strut_state *state,
+                       const strut_event_stepper *l, int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
   const double *v = state->v + c->at[i], *a = l->now->a + c->at[i], *n = c->normal;
   double speed = h * (v[0] * n[0] + v[1] * n[1]);

@@ -42,8 +42,8 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
   l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
   l->scatter = strut_arena_allocate(arena, length, sizeof(double));
   l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
-  bool ready = l->mode && l->side && l->damper && l->outward && l->body && l->closed && l->stuck && l->damped &&
-               l->response && l->settling_time && l->scatter && l->stage;
+  bool ready = l->mode && l->side && l->damper && l->outward && l->body && l->closed && l->stuck &&
+               l->damped && l->response && l->settling_time && l->scatter && l->stage;
   for (int k = 0; k < l->stepper->stages && ready; k++)
     ready = (l->stage[k] = strut_arena_allocate(arena, length, sizeof(double)));
   return ready;
@@ -70,7 +70,7 @@ static bool make_held(const strut_model *model, strut_state *state) {
 }
 
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
-                           const strut_step_formula *stepper) {
+                                 const strut_step_formula *stepper) {
   strut_event_stepper *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
   if (!l) return NULL;
   l->stepper = stepper;
@@ -86,7 +86,8 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
 }
 
 /* Contact forces as they are now, for recording and measuring. */
-static void show_contacts(const strut_model *model, strut_state *state, const strut_event_stepper *l) {
+static void show_contacts(const strut_model *model, strut_state *state,
+                          const strut_event_stepper *l) {
   double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     bool open = l->mode[i] == STRUT_MODE_OPEN;
@@ -96,7 +97,7 @@ static void show_contacts(const strut_model *model, strut_state *state, const st
 }
 
 void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
-                           double dt) {
+                                 double dt) {
   strut_event_stepper *l = workspace;
   double t = (double)state->step * dt;
   memcpy(l->next->q, state->q, (size_t)model->length * sizeof(double)); /* padding included */
@@ -119,7 +120,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
  * Where a drive or load jumps the right-hand side does: modes and accelerations are made anew. What
  * the jump of a rest length does to the elastic energy is work of the drive.
  */
-static void pass_break(const strut_model *model, strut_state *state, strut_event_stepper *l, double dt) {
+static void pass_break(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double dt) {
   double t = (double)state->step * dt + l->done;
   if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
   double moment = located_moment(t, dt), before = 0.0;
@@ -291,15 +293,16 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
   return wanted;
 }
 
-void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace, double dt) {
+void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace,
+                              double dt) {
   strut_event_stepper *l = workspace;
   double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
   located_go_on(state, l, step(model, state, l, located_time(l, t, dt), h, dt), dt);
   if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
 }
 
-void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
-                           int64_t count) {
+void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
+                                 double dt, int64_t count) {
   strut_event_stepper *l = workspace;
   if (!l->started) strut_event_stepper_restart(model, state, workspace, dt);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {

@@ -23,7 +23,7 @@ typedef enum strut_contact_mode {
   STRUT_MODE_YIELD, /* Karnopp with mu_0 > mu: |u| < delta, at the threshold mu_0 N, where holding lets
                        the other forces grow and pushing relieves them (Filippov's sliding mode):
                        friction between both, continuous over a thin layer of F_res */
-  STRUT_MODE_CREEP  /* Karnopp: u = s delta, held by a multiplier: inside the band inertia pushes
+  STRUT_MODE_CREEP /* Karnopp: u = s delta, held by a multiplier: inside the band inertia pushes
                        the node out, outside friction pushes it back (Filippov's sliding mode) */
 } strut_contact_mode;
 
@@ -31,17 +31,17 @@ typedef enum strut_contact_mode {
     is below 1e-18 of its largest entry. */
 typedef struct strut_contact_compliance {
   int32_t count;
-  const uint32_t *at;    /* (count) 2 * node */
-  const double *xy;      /* (count, 2) x per unit force in x, y per unit in y [1/kg] */
+  const uint32_t *at;     /* (count) 2 * node */
+  const double *xy;       /* (count, 2) x per unit force in x, y per unit in y [1/kg] */
   double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg] */
 } strut_contact_compliance;
 
 /** A contact at one end of a step. */
 typedef struct strut_touch {
-  double gap, into, slip;    /* height above ground [m], speeds along normal and tangent [m/s] */
+  double gap, into, slip;      /* height above ground [m], speeds along normal and tangent [m/s] */
   double into_rate, slip_rate; /* their time derivatives [m/s^2] */
-  double normal, friction;   /* on the node [N] */
-  double applied;            /* F_res: other forces along the ground [N] */
+  double normal, friction;     /* on the node [N] */
+  double applied;              /* F_res: other forces along the ground [N] */
 } strut_touch;
 
 /** One end of a step: positions, velocities, accelerations (length) and contacts. */
@@ -49,7 +49,7 @@ typedef struct strut_step_end {
   double *q, *v, *a;
   strut_touch *touch; /* (contacts) of those that are closed; of open ones the gap alone */
   double *tension, *stretch, *stretch_rate; /* (cables) not clamped [N], [m], [m/s] */
-  double power[STRUT_POWER_ROOM]; /* [W]; only with the ledger */
+  double power[STRUT_POWER_ROOM];           /* [W]; only with the ledger */
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
   double *structure, structure_power[STRUT_POWER_ROOM];
 } strut_step_end;
@@ -58,12 +58,12 @@ typedef struct strut_step_end {
     step asks of it in one place. */
 typedef struct strut_sliding_contact {
   uint32_t at;
-  int32_t index, nodes;        /* contact; nodes that answer to it */
-  double stiffness, damping;   /* [N/m], [N s/m] */
-  double answer, friction;     /* along the normal [1/kg]; friction force over normal force [1] */
-  double side, edge;           /* slips while side * u >= edge [m/s] */
-  const uint32_t *place;       /* (nodes) */
-  const double *xy;            /* (nodes, 2) */
+  int32_t index, nodes;      /* contact; nodes that answer to it */
+  double stiffness, damping; /* [N/m], [N s/m] */
+  double answer, friction;   /* along the normal [1/kg]; friction force over normal force [1] */
+  double side, edge;         /* slips while side * u >= edge [m/s] */
+  const uint32_t *place;     /* (nodes) */
+  const double *xy;          /* (nodes, 2) */
 } strut_sliding_contact;
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -71,9 +71,10 @@ typedef struct strut_event_stepper strut_event_stepper;
 /** What a method adds: how one step goes while nothing happens. */
 typedef struct strut_step_formula {
   /** From l->now at time t over h to l->next, with the works of it in l->gained. */
-  void (*trial)(const strut_model *model, strut_state *state, strut_event_stepper *l, double t, double h);
-  int stages;   /* (length) arrays it needs in l->stage */
-  bool exact;   /* iterate roots to rounding, and locate kinks as well as jumps */
+  void (*trial)(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
+                double h);
+  int stages; /* (length) arrays it needs in l->stage */
+  bool exact; /* iterate roots to rounding, and locate kinks as well as jumps */
   /** Fills l->next->q and what trial needs beside it, where positions are known before forces are:
       q + h v + h^2/2 a at any fraction of a step. trial expects it done. NULL: they are not. */
   void (*predict)(const strut_model *model, strut_event_stepper *l, double h);
@@ -90,86 +91,88 @@ typedef struct strut_step_formula {
 struct strut_event_stepper {
   const strut_step_formula *stepper;
   strut_step_end end[2], *now, *next; /* now->q and now->v are the state's own */
-  double **stage;           /* (stepper->stages) arrays (length) */
+  double **stage;                     /* (stepper->stages) arrays (length) */
   double gained[STRUT_POWER_ROOM];
   double work[STRUT_POWER_ROOM]; /* adaptive: at the begin of the grid step [J] */
-  uint8_t *mode;            /* (contacts) strut_contact_mode */
-  int8_t *side, *damper;    /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
-  int32_t *closed;          /* (closed_count) contacts that touch, ascending */
+  uint8_t *mode;                 /* (contacts) strut_contact_mode */
+  int8_t *side, *damper;         /* (contacts) s; ground damper: 1 on, -1 off, 0: by its sign */
+  int32_t *closed;               /* (closed_count) contacts that touch, ascending */
   int32_t closed_count;
-  double *outward;          /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
-  int32_t *body;            /* (contacts) equal where a force on one accelerates the other */
-  bool *body_seen;          /* (contacts) scratch */
-  strut_sliding_contact *slider;     /* (closed_count), where `plain` */
-  bool plain;               /* apart, and all closed contacts are sliders */
-  bool apart;               /* level ground, and no two closed contacts are of one body */
-  double *damped;           /* (contacts) damper force while it is being solved for [N] */
+  double *outward; /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
+  int32_t *body;   /* (contacts) equal where a force on one accelerates the other */
+  bool *body_seen; /* (contacts) scratch */
+  strut_sliding_contact *slider;      /* (closed_count), where `plain` */
+  bool plain;                         /* apart, and all closed contacts are sliders */
+  bool apart;                         /* level ground, and no two closed contacts are of one body */
+  double *damped;                     /* (contacts) damper force while it is being solved for [N] */
   strut_contact_compliance *response; /* (contacts) */
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
-  double *stuck_factor;     /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
-  double *stuck_work;       /* (stuck_room) */
+  double *stuck_factor;        /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
+  double *stuck_work;          /* (stuck_room) */
   int32_t *cable, cable_count; /* members with a slack test */
-  uint8_t *pulling;         /* (cables) */
-  double *scatter;          /* (length) scratch, zero between uses */
+  uint8_t *pulling;            /* (cables) */
+  double *scatter;             /* (length) scratch, zero between uses */
   double refine, refine_time, refine_memory; /* [1], [s], [1] */
-  double *settling_time;    /* (contacts) relaxation time of a closed contact [s] */
-  double longest;           /* adaptive: the longest step, a step of the grid [s] */
+  double *settling_time;               /* (contacts) relaxation time of a closed contact [s] */
+  double longest;                      /* adaptive: the longest step, a step of the grid [s] */
   double tolerance, h, error, fastest; /* adaptive: relative, [s], [1], [m/s] */
-  int passes;               /* sweeps over normal and tangent where they are coupled by M */
-  double next_break;        /* when a drive or load jumps next, with the state's time_offset
+  int passes;        /* sweeps over normal and tangent where they are coupled by M */
+  double next_break; /* when a drive or load jumps next, with the state's time_offset
                                [s]; INFINITY: never */
-  bool fresh;               /* now.structure holds for now */
+  bool fresh;        /* now.structure holds for now */
   bool started;
-  double done;              /* of the grid step under way [s] */
-  int at_once;              /* switches since the latest step */
-  int32_t pushed;           /* contact that passed its threshold last, or -1 */
-  double pushed_at;         /* when that was [s] */
-  int switches;             /* since the latest grid point */
-  bool tried;               /* next is the end of the step that is due */
+  double done;      /* of the grid step under way [s] */
+  int at_once;      /* switches since the latest step */
+  int32_t pushed;   /* contact that passed its threshold last, or -1 */
+  double pushed_at; /* when that was [s] */
+  int switches;     /* since the latest grid point */
+  bool tried;       /* next is the end of the step that is due */
 };
 
 /** Workspace for a method with `stepper`; NULL: out of memory. */
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
-                           const strut_step_formula *stepper);
+                                 const strut_step_formula *stepper);
 /** Makes the modes anew from q and v. */
 void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
-                           double dt);
+                                 double dt);
 /** One step within the grid's, and what happens in it. */
-void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace, double dt);
+void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace,
+                              double dt);
 /** `count` steps of dt. */
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
-                           double dt, int64_t count);
+                                 double dt, int64_t count);
 
 /* ---- parts of it, in located_*.c ---- */
 
 /** Responses, settling times, refinement. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state, strut_event_stepper *l);
+strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
+                                         strut_event_stepper *l);
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                        strut_step_end *end);
+                                   strut_step_end *end);
 /** a += response of contact i to the force (normal, tangential) on its node. */
 void strut_apply_contact_impulse(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                           double normal, double tangential, double *a);
+                                 double normal, double tangential, double *a);
 /** Acceleration, contact forces and powers of l->now at time t, in the present modes. */
-void strut_evaluate_acceleration(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                          double t);
+void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double t);
 
 /** Something that ends a mode. */
 typedef enum strut_event_kind {
   STRUT_EVENT_NONE,
-  STRUT_EVENT_TOUCH,    /* an open contact closes */
-  STRUT_EVENT_OPEN,     /* a closed one opens */
-  STRUT_EVENT_SLIP_ENDS,     /* slip ends: u reaches 0, or the band */
-  STRUT_EVENT_LEAVES_STICK_BAND,    /* |u| reaches the edge of the band from inside */
-  STRUT_EVENT_STICK_BREAKS,  /* a stuck node's multiplier leaves mu_0 N */
-  STRUT_EVENT_CREEP_OUT,/* creep's multiplier reaches mu N: slip */
-  STRUT_EVENT_CREEP_IN, /* it reaches the band's force: band */
-  STRUT_EVENT_PUSH,     /* |F_res| passes mu_0 N inside the band, either way */
-  STRUT_EVENT_YIELDED,  /* F_res leaves the layer about mu_0 N */
-  STRUT_EVENT_DAMPER,   /* the ground damper's sign changes */
-  STRUT_EVENT_CABLE     /* a cable begins or ceases to pull */
+  STRUT_EVENT_TOUCH,             /* an open contact closes */
+  STRUT_EVENT_OPEN,              /* a closed one opens */
+  STRUT_EVENT_SLIP_ENDS,         /* slip ends: u reaches 0, or the band */
+  STRUT_EVENT_LEAVES_STICK_BAND, /* |u| reaches the edge of the band from inside */
+  STRUT_EVENT_STICK_BREAKS,      /* a stuck node's multiplier leaves mu_0 N */
+  STRUT_EVENT_CREEP_OUT,         /* creep's multiplier reaches mu N: slip */
+  STRUT_EVENT_CREEP_IN,          /* it reaches the band's force: band */
+  STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
+  STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
+  STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
+  STRUT_EVENT_CABLE              /* a cable begins or ceases to pull */
 } strut_event_kind;
 
 typedef struct strut_event {
@@ -188,8 +191,8 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
 void strut_event_measure(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end);
 /** Time derivative of that value where it is known; false where a secant must do. */
-bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end, strut_event_kind kind,
-                      int32_t index, double *rate);
+bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
+                      strut_event_kind kind, int32_t index, double *rate);
 /** Before a step of a stepper that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *l, double h);
@@ -197,7 +200,8 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
 void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        strut_event event, double t);
 /** Modes from q and v alone. */
-void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l, double t);
+void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t);
 /** After a drive has jumped: cables anew; contacts keep their modes, since nothing has moved. */
 void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t);

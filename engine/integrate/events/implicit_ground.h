@@ -23,8 +23,8 @@ STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring,
 }
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */
-STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *l, int32_t i,
-                                double h, const double *a1) {
+STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *l,
+                                int32_t i, double h, const double *a1) {
   uint32_t at = c->at[i];
   const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
   return (v[0] + 0.5 * h * (a0[0] + a[0])) * c->normal[0] +
@@ -32,8 +32,8 @@ STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_
 }
 
 /* The damper of contact i among others of its body; returns the change of its force. */
-STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *l, int32_t i, double h,
-                                 const double *a1, const strut_touch *o) {
+STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *l, int32_t i,
+                                 double h, const double *a1, const strut_touch *o) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   double half = 0.5 * h * l->response[i].normal, now = l->damped[i];
   double free = final_speed(&model->contacts, l, i, h, a1) - half * now;
@@ -41,8 +41,8 @@ STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *
   return l->damped[i] - now;
 }
 
-STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l, double h, double *a1,
-                                strut_touch *restrict touch) {
+STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l, double h,
+                                double *a1, strut_touch *restrict touch) {
   for (int sweep = 0; sweep < 40; sweep++) {
     double changed = 0.0, largest = 0.0;
     for (int32_t k = 0; k < l->closed_count; k++) {
@@ -74,8 +74,9 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *
 }
 
 /* Coupled contacts: their dampers, then friction with the whole normal force; `a1`: in and out. */
-STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event_stepper *l, double h,
-                                           double *restrict a1, strut_touch *restrict touch) {
+STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event_stepper *l,
+                                           double h, double *restrict a1,
+                                           strut_touch *restrict touch) {
   for (int32_t k = 0; k < l->closed_count; k++) l->damped[l->closed[k]] = 0.0;
   for (int pass = 0; pass < l->passes; pass++) {
     solve_dampers(model, l, h, a1, touch);
@@ -94,7 +95,8 @@ STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */
-STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e, const strut_contact_compliance *r,
+STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e,
+                                        const strut_contact_compliance *r,
                                         const strut_touch *before, strut_touch *o, uint8_t mode,
                                         int8_t side, double h, double x, double y) {
   double spring = -e->stiffness * o->gap, half = 0.5 * h * r->normal;
@@ -110,9 +112,9 @@ STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e, const stru
  * Level ground, and contacts that do not answer to each other: one pass. force, a: of the structure
  * alone; v: predicted velocity, which only the smooth law of friction asks.
  */
-STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_event_stepper *l, double h,
-                                        const double *restrict v, const double *restrict force,
-                                        double *restrict a) {
+STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_event_stepper *l,
+                                        double h, const double *restrict v,
+                                        const double *restrict force, double *restrict a) {
   const strut_contact_table *c = &model->contacts;
   const strut_touch *restrict before = l->now->touch;
   const double *restrict q = l->next->q;
@@ -138,8 +140,8 @@ STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_ev
 }
 
 /* The same where all of them slip, or have no friction. */
-STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_event_stepper *l, double h,
-                                         double *restrict a) {
+STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_event_stepper *l,
+                                         double h, double *restrict a) {
   const strut_touch *restrict before = l->now->touch;
   const double *restrict q = l->next->q, height = model->contacts.height;
   strut_touch *restrict touch = l->next->touch;

@@ -3,8 +3,8 @@
  * The classical Runge-Kutta method between events: each step within one smooth set of modes, so
  * that the fourth order holds through contact, friction and slack cables.
  */
-#include "engine/integrate/integrator.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/integrator.h"
 
 /* Positions, then velocities and accelerations of the stages 2 to 4. */
 enum { Q, V, A = V + 3, STAGES = A + 3 };
@@ -33,8 +33,8 @@ STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double 
   for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->power[p];
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                       double h, bool ledger) {
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, bool ledger) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
   double **w = l->stage;
   const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
@@ -60,7 +60,8 @@ static void rk4_events_trial(const strut_model *model, strut_state *state, strut
     take(model, state, l, t, h, false);
 }
 
-static const strut_step_formula stepper = {.trial = rk4_events_trial, .stages = STAGES, .exact = true};
+static const strut_step_formula stepper = {
+    .trial = rk4_events_trial, .stages = STAGES, .exact = true};
 
 static void *create(const strut_model *model, strut_state *state) {
   strut_event_stepper *l = strut_event_stepper_create(model, state, &stepper);

@@ -26,8 +26,8 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
                                                                   strut_lanes_load_pairs(a1 + i)));
 }
 
-STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                       double h, bool ledger) {
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, bool ledger) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
   forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
@@ -59,8 +59,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
 }
 
 STRUT_CLONES
-static void verlet_events_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                                double t, double h) {
+static void verlet_events_trial(const strut_model *model, strut_state *state,
+                                strut_event_stepper *l, double t, double h) {
   if (state->ledger)
     take(model, state, l, t, h, true);
   else
@@ -122,8 +122,8 @@ STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut
 }
 
 STRUT_CLONES
-static void verlet_events_quiet(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                                double dt, int64_t end) {
+static void verlet_events_quiet(const strut_model *model, strut_state *state,
+                                strut_event_stepper *l, double dt, int64_t end) {
   if (state->ledger)
     go_quietly(model, state, l, dt, end, true);
   else
@@ -131,9 +131,9 @@ static void verlet_events_quiet(const strut_model *model, strut_state *state, st
 }
 
 static const strut_step_formula stepper = {.trial = verlet_events_trial,
-                                      .stages = STAGES,
-                                      .predict = predict,
-                                      .quiet = verlet_events_quiet};
+                                           .stages = STAGES,
+                                           .predict = predict,
+                                           .quiet = verlet_events_quiet};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_event_stepper_create(model, state, &stepper);

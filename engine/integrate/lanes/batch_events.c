@@ -6,8 +6,8 @@
  */
 #include <math.h>
 
-#include "engine/integrate/lanes/batch.h"
 #include "engine/integrate/events/implicit_ground.h"
+#include "engine/integrate/lanes/batch.h"
 
 static void get_column(const double *table, int32_t rows, int32_t width, int32_t lane, double *to) {
   for (int32_t i = 0; i < rows; i++) to[i] = table[i * width + lane];
@@ -108,7 +108,8 @@ void strut_batch_events_sample(const strut_batch *b, int32_t lane) {
 void strut_batch_events_get(strut_batch *b, int32_t lane) {
   strut_batch_events *e = b->events;
   if (e->joined[lane]) fetch(b, lane);
-  strut_event_stepper_advance(b->tables.model[lane], e->state[lane], e->located[lane], b->dt[lane], 0);
+  strut_event_stepper_advance(b->tables.model[lane], e->state[lane], e->located[lane], b->dt[lane],
+                              0);
 }
 
 /* ---- the ground of one lane; see implicit_ground.h ---- */

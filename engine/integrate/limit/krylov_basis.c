@@ -7,7 +7,7 @@
 #include "engine/forces/rigid.h"
 
 bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
-                                strut_arena *arena, strut_krylov_basis *space) {
+                               strut_arena *arena, strut_krylov_basis *space) {
   size_t n = (size_t)tangent->n, m = (size_t)most;
   *space = (strut_krylov_basis){.model = model, .tangent = tangent, .most = most};
   space->vector = strut_arena_allocate(arena, m * n, sizeof(double));

@@ -85,13 +85,9 @@ double strut_euler_limit(double k, double d) {
 double strut_region_limit(strut_region region, double re, double im, double k, double d) {
   if (re > 0.0) k = im * im, d = 0.0; /* grows by itself, whatever the step */
   switch (region) {
-    case STRUT_REGION_RK4:
-      return strut_rk4_limit(re, im);
-    case STRUT_REGION_VERLET:
-      return strut_verlet_limit(k, fmax(d, 0.0));
-    case STRUT_REGION_EULER:
-      return strut_euler_limit(k, fmax(d, 0.0));
-    default:
-      return HUGE_VAL;
+    case STRUT_REGION_RK4: return strut_rk4_limit(re, im);
+    case STRUT_REGION_VERLET: return strut_verlet_limit(k, fmax(d, 0.0));
+    case STRUT_REGION_EULER: return strut_euler_limit(k, fmax(d, 0.0));
+    default: return HUGE_VAL;
   }
 }

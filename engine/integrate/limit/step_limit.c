@@ -207,7 +207,7 @@ static bool ground_damps(const strut_model *model) {
 }
 
 strut_status strut_step_limit_with_bound(const strut_model *model, const strut_integrator *method,
-                                   double *limit, bool *bound, strut_error *error) {
+                                         double *limit, bool *bound, strut_error *error) {
   strut_arena arena = {0};
   strut_step_limit found;
   *limit = HUGE_VAL;
@@ -224,7 +224,7 @@ strut_status strut_step_limit_with_bound(const strut_model *model, const strut_i
 }
 
 strut_status strut_step_limit_for_method(const strut_model *model, const strut_integrator *method,
-                                  double *limit, strut_error *error) {
+                                         double *limit, strut_error *error) {
   bool bound;
   return strut_step_limit_with_bound(model, method, limit, &bound, error);
 }
@@ -266,8 +266,8 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   const strut_contact_table *c = &m->contacts;
   const size_t slots = (size_t)t->slots * sizeof(double), both = (size_t)m->length * sizeof(double);
   key[0] = 14695981039346656037u, key[1] = 1;
-  const double counts[] = {m->plan,  m->length,   t->slots,     t->count,
-                           c->count, m->scene->mass_model, m->scene->bar_model};
+  const double counts[] = {
+      m->plan, m->length, t->slots, t->count, c->count, m->scene->mass_model, m->scene->bar_model};
   digest(key, counts, sizeof counts);
   for (int32_t j = 0; j < t->count; j++) {
     digest_number(key, t->from[j]);
@@ -283,8 +283,12 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
     bool smooth = e->law == STRUT_FRICTION_SMOOTH; /* the other laws have no slope */
-    const double entry[] = {e->node,        e->stiffness,       e->damping,
-                            e->dissipation, smooth ? e->width : 0.0, smooth ? e->mu_kinetic : 0.0};
+    const double entry[] = {e->node,
+                            e->stiffness,
+                            e->damping,
+                            e->dissipation,
+                            smooth ? e->width : 0.0,
+                            smooth ? e->mu_kinetic : 0.0};
     digest(key, entry, sizeof entry);
   }
   const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed};
@@ -310,8 +314,9 @@ strut_status strut_step_limit_cached(const strut_model *model, const strut_integ
   return STRUT_OK;
 }
 
-strut_status strut_step_limit_at_shape(const strut_model *model, const double *q, const double *rest,
-                                 strut_closed closed, strut_step_limit *limit, strut_error *error) {
+strut_status strut_step_limit_at_shape(const strut_model *model, const double *q,
+                                       const double *rest, strut_closed closed,
+                                       strut_step_limit *limit, strut_error *error) {
   strut_arena arena = {0};
   strut_status status = limits(model, q, rest, closed, true, &arena, limit);
   for (int region = 0; region < STRUT_REGIONS; region++)

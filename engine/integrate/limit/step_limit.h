@@ -14,7 +14,8 @@ typedef struct strut_step_limit {
   double of[STRUT_REGIONS]; /* largest stable step of each region, RK4's being `limit` */
   double of_implicit[STRUT_REGIONS]; /* where the ground's dampers are implicit */
   bool exact; /* from all eigenvalues; else from those that bind, within 1 %, or bounds */
-  bool bound; /* some are bounds: all smaller steps are stable, the largest stable one is not known */
+  bool
+      bound; /* some are bounds: all smaller steps are stable, the largest stable one is not known */
 } strut_step_limit;
 
 /**
@@ -29,18 +30,18 @@ STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut
 
 /** The same at positions q and rest lengths `rest`, with those contacts; of_implicit is as `of`. */
 STRUT_API strut_status strut_step_limit_at_shape(const strut_model *model, const double *q,
-                                           const double *rest, strut_closed closed,
-                                           strut_step_limit *limit, strut_error *error);
+                                                 const double *rest, strut_closed closed,
+                                                 strut_step_limit *limit, strut_error *error);
 
 /** The largest stable step of one method alone [s], for less work than all of them are. */
 STRUT_API strut_status strut_step_limit_for_method(const strut_model *model,
-                                            const strut_integrator *method, double *limit,
-                                            strut_error *error);
+                                                   const strut_integrator *method, double *limit,
+                                                   strut_error *error);
 
 /** The same; *bound: it is a bound. */
 STRUT_API strut_status strut_step_limit_with_bound(const strut_model *model,
-                                             const strut_integrator *method, double *limit,
-                                             bool *bound, strut_error *error);
+                                                   const strut_integrator *method, double *limit,
+                                                   bool *bound, strut_error *error);
 
 /** Limits found lately. Zero-initialise it. */
 enum { STRUT_LIMITS_KEPT = 16 };
@@ -60,7 +61,8 @@ STRUT_API strut_status strut_step_limit_cached(const strut_model *model,
                                                strut_error *error);
 
 /** The largest stable step of a method [s]. */
-STRUT_API double strut_step_limit_of_method(const strut_step_limit *limit, const strut_integrator *method);
+STRUT_API double strut_step_limit_of_method(const strut_step_limit *limit,
+                                            const strut_integrator *method);
 
 enum { STRUT_EXACT_LIMIT = 60 };
 

@@ -11,8 +11,8 @@
 #ifndef STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
 #define STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
 
-#include "engine/integrate/limit/stability.h"
 #include "engine/integrate/limit/krylov_basis.h"
+#include "engine/integrate/limit/stability.h"
 
 enum { STRUT_CRITICAL_MODE_PAIRS = 4, STRUT_MOST_BINDING = 4 + 2 * STRUT_CRITICAL_MODE_PAIRS };
 

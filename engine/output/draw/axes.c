@@ -77,23 +77,22 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   strut_text_size(canvas, "0", (strut_font){.size = LABEL_SIZE}, &width, &label);
   if (title && *title) {
     strut_text_size(canvas, title,
-                    (strut_font){.size = TITLE_SIZE, .bold = true, .width = box.width},
-                    &width, &above);
+                    (strut_font){.size = TITLE_SIZE, .bold = true, .width = box.width}, &width,
+                    &above);
     above += GAP;
   }
   double below = TICK + GAP + line + label;
   double height = fmax(box.height - above - below, 10);
   double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   double right = 10; /* half of the last tick's text */
-  return (strut_axes){.x = x,
-                      .y = y,
-                      .frame = {box.x + left, box.y + above, fmax(box.width - left - right, 10),
-                                height}};
+  return (strut_axes){
+      .x = x,
+      .y = y,
+      .frame = {box.x + left, box.y + above, fmax(box.width - left - right, 10), height}};
 }
 
 static double place(const strut_axis *axis, double value) {
-  if (axis->logarithmic)
-    return log10(value / axis->low) / log10(axis->high / axis->low);
+  if (axis->logarithmic) return log10(value / axis->low) / log10(axis->high / axis->low);
   return (value - axis->low) / (axis->high - axis->low);
 }
 
@@ -166,7 +165,8 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *t
   draw_y(canvas, axes, &set);
   strut_draw_box(canvas, *f, NULL, &frame);
   if (title && *title)
-    strut_draw_text(canvas, f->x + 0.5 * f->width, f->y - GAP, title,
-                    (strut_font){.size = TITLE_SIZE, .bold = true, .across = 0.5, .down = 1,
-                                 .width = f->width});
+    strut_draw_text(
+        canvas, f->x + 0.5 * f->width, f->y - GAP, title,
+        (strut_font){
+            .size = TITLE_SIZE, .bold = true, .across = 0.5, .down = 1, .width = f->width});
 }

@@ -12,13 +12,13 @@
 typedef struct strut_axis {
   const char *name, *unit; /* the values' SI unit; "" for none. A prefix is chosen for the ticks */
   bool logarithmic;
-  double low, high;        /* the range; both NAN: from the data, with a little room */
+  double low, high; /* the range; both NAN: from the data, with a little room */
 } strut_axis;
 
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
-  strut_axis x, y;  /* ranges settled */
-  strut_box frame;  /* where data go [pt] */
+  strut_axis x, y; /* ranges settled */
+  strut_box frame; /* where data go [pt] */
 } strut_axes;
 
 /** Widens an axis whose range is from the data by a value; not finite ones do nothing. */
@@ -57,10 +57,11 @@ enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis as they are written. */
 typedef struct strut_tick_set {
   size_t count, minor_count;
-  double at[STRUT_MOST_TICKS];           /* [SI] */
-  double minor[STRUT_MOST_MINOR];        /* without text: logarithmic axes only */
-  char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" where none is to stand */
-  char label[200];                       /* "velocity in mm/s", with an offset where one was taken */
+  double at[STRUT_MOST_TICKS];    /* [SI] */
+  double minor[STRUT_MOST_MINOR]; /* without text: logarithmic axes only */
+  char text[STRUT_MOST_TICKS]
+           [STRUT_TICK_TEXT]; /* in the prefixed unit; "" where none is to stand */
+  char label[200];            /* "velocity in mm/s", with an offset where one was taken */
 } strut_tick_set;
 /** Fills `set` for an axis that has room for about `wanted` of them. */
 STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);

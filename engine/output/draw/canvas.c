@@ -143,13 +143,12 @@ strut_status strut_canvas_commit(strut_canvas *c, strut_error *error) {
     if (status == CAIRO_STATUS_SUCCESS && c->is_svg) status = write_svg(c);
   }
   if (status == CAIRO_STATUS_SUCCESS) return strut_file_commit(&c->file, error);
-  strut_status ours =
-      status == CAIRO_STATUS_NO_MEMORY
-          ? strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing")
-      : status == CAIRO_STATUS_WRITE_ERROR
-          ? strut_file_trouble(&c->file, error)
-          : strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s", c->file.path,
-                       cairo_status_to_string(status));
+  strut_status ours = status == CAIRO_STATUS_NO_MEMORY
+                          ? strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing")
+                      : status == CAIRO_STATUS_WRITE_ERROR
+                          ? strut_file_trouble(&c->file, error)
+                          : strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s",
+                                       c->file.path, cairo_status_to_string(status));
   strut_file_abandon(&c->file);
   return ours;
 }

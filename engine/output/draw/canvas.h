@@ -29,14 +29,14 @@ typedef struct strut_box {
 /** How a line is drawn. Zero dash lengths: solid. */
 typedef struct strut_pen {
   strut_colour colour;
-  double width;    /* [pt] */
-  double dash[4];  /* ink, gap, ink, gap [pt]; 0 from the first unused one on */
-  bool butt;       /* ends where its last point is; else ends are round */
+  double width;   /* [pt] */
+  double dash[4]; /* ink, gap, ink, gap [pt]; 0 from the first unused one on */
+  bool butt;      /* ends where its last point is; else ends are round */
 } strut_pen;
 
 typedef enum strut_hatch {
   STRUT_HATCH_NONE,
-  STRUT_HATCH_RISING,  /* from lower left to upper right */
+  STRUT_HATCH_RISING, /* from lower left to upper right */
   STRUT_HATCH_FALLING,
   STRUT_HATCH_CROSSED,
   STRUT_HATCH_LEVEL,

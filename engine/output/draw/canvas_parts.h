@@ -16,7 +16,7 @@ struct strut_canvas {
   struct _cairo *cairo;
   struct _PangoLayout *layout; /* used for every text in turn */
   strut_box box;
-  strut_file file; /* zero for pixels in memory */
+  strut_file file;  /* zero for pixels in memory */
   strut_buffer svg; /* gathered, for strut_canvas_renumber */
   bool is_svg, is_png;
 };

@@ -8,10 +8,10 @@
 #include "engine/output/draw/axes.h"
 
 typedef struct strut_series {
-  const char *label;  /* in the legend; NULL: not there */
+  const char *label; /* in the legend; NULL: not there */
   size_t count;
   const double *x, *y; /* (count) SI; where y is not finite the line is broken */
-  int look;           /* colour, dashes and marker: series of one look belong together; -1: own */
+  int look;            /* colour, dashes and marker: series of one look belong together; -1: own */
   bool points, steps, no_line; /* markers at the points; a staircase; no line between */
 } strut_series;
 
@@ -28,7 +28,7 @@ typedef struct strut_curves {
   size_t series_count, band_count;
   const strut_series *series;
   const strut_band *bands;
-  double cursor;     /* a vertical line at this x; NAN: none */
+  double cursor; /* a vertical line at this x; NAN: none */
 } strut_curves;
 
 /**

@@ -18,10 +18,10 @@ static strut_fill category_fill(size_t i) {
                                         STRUT_HATCH_LEVEL};
   size_t count = sizeof order / sizeof *order;
   unsigned rgb = order[i % count];
-  return (strut_fill){.colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0,
-                                 (rgb & 255) / 255.0, 1},
-                      .hatch = hatches[i / count % 4],
-                      .hatch_colour = strut_grey(0.3)};
+  return (strut_fill){
+      .colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
+      .hatch = hatches[i / count % 4],
+      .hatch_colour = strut_grey(0.3)};
 }
 
 /* Where cell i of (count) ascending places begins: half way to the one before. */
@@ -70,8 +70,8 @@ static strut_fill fill_of(const mapper *m, size_t k) {
   const strut_map *map = m->map;
   if (!has_answer(map, k)) return (strut_fill){.colour = strut_grey(1)};
   if (map->category) return category_fill((size_t)map->category[k]);
-  return (strut_fill){
-      .colour = strut_palette_sequence((map->value[k] - m->low) / (m->high - m->low))};
+  return (strut_fill){.colour =
+                          strut_palette_sequence((map->value[k] - m->low) / (m->high - m->low))};
 }
 
 /* The cell's box; a little too large, so that no viewer shows seams: the next one covers that. */
@@ -121,18 +121,18 @@ static void name_entries(mapper *m) {
     some_missing = some_missing || !has_answer(map, k);
   }
   for (size_t i = 0; map->category && i < map->category_count; i++)
-    m->entries[m->entry_count++] = (strut_legend_entry){
-        .label = map->names[i], .area = true, .fill = category_fill(i)};
+    m->entries[m->entry_count++] =
+        (strut_legend_entry){.label = map->names[i], .area = true, .fill = category_fill(i)};
   if (some_doubt)
-    m->entries[m->entry_count++] = (strut_legend_entry){
-        .label = map->doubt ? map->doubt : "doubtful",
-        .area = true,
-        .fill = {.colour = strut_grey(1),
-                 .hatch = STRUT_HATCH_RISING,
-                 .hatch_colour = strut_grey(0.05)}};
+    m->entries[m->entry_count++] =
+        (strut_legend_entry){.label = map->doubt ? map->doubt : "doubtful",
+                             .area = true,
+                             .fill = {.colour = strut_grey(1),
+                                      .hatch = STRUT_HATCH_RISING,
+                                      .hatch_colour = strut_grey(0.05)}};
   if (some_missing)
-    m->entries[m->entry_count++] = (strut_legend_entry){
-        .label = "no answer", .area = true, .fill = {.colour = strut_grey(1)}};
+    m->entries[m->entry_count++] =
+        (strut_legend_entry){.label = "no answer", .area = true, .fill = {.colour = strut_grey(1)}};
 }
 
 static void settle_axes(const strut_map *map, strut_axis *x, strut_axis *y) {

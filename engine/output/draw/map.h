@@ -11,15 +11,15 @@ typedef struct strut_map {
   const char *title; /* may be NULL */
   strut_axis x, y;
   size_t columns, rows;
-  const double *xs, *ys;     /* (columns), (rows) ascending; cells reach half way to the next */
-  const int *category;       /* (rows, columns) index into names, -1: no answer; or NULL */
+  const double *xs, *ys; /* (columns), (rows) ascending; cells reach half way to the next */
+  const int *category;   /* (rows, columns) index into names, -1: no answer; or NULL */
   size_t category_count;
-  const char *const *names;  /* (category_count) */
-  const double *value;       /* (rows, columns) where category is NULL; NAN: no answer */
+  const char *const *names;     /* (category_count) */
+  const double *value;          /* (rows, columns) where category is NULL; NAN: no answer */
   double value_low, value_high; /* of the scale of colours; equal: from the values */
   const char *value_name, *value_unit;
-  const bool *doubtful;      /* (rows, columns) drawn hatched; or NULL */
-  const char *doubt;         /* what the hatching means, for the legend */
+  const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
+  const char *doubt;    /* what the hatching means, for the legend */
 } strut_map;
 
 /** Draws it in a box with a legend or a scale of colours beside it. STRUT_NO_MEMORY. */

@@ -171,8 +171,7 @@ static void draw_members(strut_canvas *canvas, const look *l) {
 static void draw_nodes(strut_canvas *canvas, const look *l) {
   double thin = l->thin / (1.0 + l->style->thinness), point[2];
   const strut_fill white = {.colour = strut_faded(strut_grey(1), l->opacity)};
-  strut_colour edge =
-      l->style->colouring == STRUT_COLOUR_ONE ? l->style->colour : strut_grey(0.1);
+  strut_colour edge = l->style->colouring == STRUT_COLOUR_ONE ? l->style->colour : strut_grey(0.1);
   const strut_pen pen = {.colour = strut_faded(edge, l->opacity), .width = 0.8 * thin};
   if (l->thin < 0.3) return; /* a texture has none */
   for (int32_t i = 0; i < l->model->node_count; i++) {

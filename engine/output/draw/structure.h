@@ -10,9 +10,9 @@
 
 /** A window onto the plane: the same scale in x and y, centred in its box. */
 typedef struct strut_window {
-  strut_box box;         /* on the page [pt] */
-  double scale;          /* [pt/m] */
-  double left, top;      /* the plane's x and y at the box's upper left corner [m] */
+  strut_box box;    /* on the page [pt] */
+  double scale;     /* [pt/m] */
+  double left, top; /* the plane's x and y at the box's upper left corner [m] */
 } strut_window;
 
 /** Smallest and largest x and y [m]. Starts as strut_bounds_none(). */
@@ -40,10 +40,11 @@ typedef struct strut_structure_style {
   strut_colouring colouring;
   const double *values; /* (member_count) force [N] or strain; for STRUT_COLOUR_FORCE */
   double limit;         /* largest |value| of the colour scale */
-  const double *slack_forces; /* (member_count) [N]: a cable with 0 is drawn slack; NULL: by length */
-  strut_colour colour;  /* for STRUT_COLOUR_ONE */
-  double opacity;       /* 0 stands for 1 */
-  double thinness;      /* widths are divided by 1 + thinness */
+  const double
+      *slack_forces;   /* (member_count) [N]: a cable with 0 is drawn slack; NULL: by length */
+  strut_colour colour; /* for STRUT_COLOUR_ONE */
+  double opacity;      /* 0 stands for 1 */
+  double thinness;     /* widths are divided by 1 + thinness */
   bool node_names, member_names, no_nodes, no_supports;
 } strut_structure_style;
 
@@ -57,8 +58,8 @@ STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *wi
  * `other_count` other lines too: (other_count, 2) ends on the page [pt]; may be NULL.
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
-                                const strut_model *model, const double *q, bool nodes,
-                                bool members, const double (*others)[2], size_t other_count);
+                                const strut_model *model, const double *q, bool nodes, bool members,
+                                const double (*others)[2], size_t other_count);
 /** The ground's line and body across the window; nothing where the scene has none. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model);

@@ -74,9 +74,8 @@ void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_
     ends[2][d] = ends[1][d] + down[d];
     ends[3][d] = ends[0][d] + down[d];
   }
-  const strut_fill fill = {.colour = strut_grey(0.95),
-                           .hatch = STRUT_HATCH_RISING,
-                           .hatch_colour = strut_grey(0.72)};
+  const strut_fill fill = {
+      .colour = strut_grey(0.95), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.72)};
   strut_canvas_clip(canvas, w->box);
   strut_draw_polygon(canvas, (const double(*)[2])ends, 4, &fill, NULL);
   strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1],
@@ -85,18 +84,17 @@ void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_
     double sign = ground->belt_speed > 0 ? 1 : -1;
     const double from[2] = {0.5 * (ends[0][0] + ends[1][0]) + 1.9 * down[0],
                             0.5 * (ends[0][1] + ends[1][1]) + 1.9 * down[1]};
-    strut_draw_arrow(canvas, from[0] - sign * 12 * cos(ground->slope),
-                     from[1] + sign * 12 * sin(ground->slope),
-                     from[0] + sign * 12 * cos(ground->slope),
-                     from[1] - sign * 12 * sin(ground->slope), 5,
-                     (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
+    strut_draw_arrow(
+        canvas, from[0] - sign * 12 * cos(ground->slope), from[1] + sign * 12 * sin(ground->slope),
+        from[0] + sign * 12 * cos(ground->slope), from[1] - sign * 12 * sin(ground->slope), 5,
+        (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
   }
   strut_canvas_unclip(canvas);
 }
 
 void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
-                               const strut_model *model, const double *q,
-                               const double (*force)[2], double limit, double longest) {
+                               const strut_model *model, const double *q, const double (*force)[2],
+                               double limit, double longest) {
   const strut_contact_table *contacts = &model->contacts;
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
   for (int32_t i = 0; i < contacts->count && limit > 0; i++) {

@@ -16,9 +16,9 @@ static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 /* Everything that names should keep away from. */
 typedef struct obstacles {
   size_t member_count, label_count;
-  double (*ends)[2];   /* (2 member_count) [pt] */
-  strut_box *labels;   /* those placed so far */
-  strut_box inside;    /* names stay in here */
+  double (*ends)[2]; /* (2 member_count) [pt] */
+  strut_box *labels; /* those placed so far */
+  strut_box inside;  /* names stay in here */
 } obstacles;
 
 /* Distance of a point from a segment. */
@@ -52,15 +52,15 @@ static double freedom(const obstacles *o, strut_box box) {
 }
 
 static strut_font name_font(void) {
-  return (strut_font){
-      .size = SIZE, .italic = true, .halo = strut_faded(strut_grey(1), 0.85)};
+  return (strut_font){.size = SIZE, .italic = true, .halo = strut_faded(strut_grey(1), 0.85)};
 }
 
 /* The box of a name of this size around `at`, in one of the directions. */
 static strut_box beside(const double at[2], int direction, double gap, double width,
                         double height) {
   double angle = 2 * PI * direction / DIRECTIONS;
-  double x = at[0] + (gap + 0.5 * width) * cos(angle), y = at[1] - (gap + 0.5 * height) * sin(angle);
+  double x = at[0] + (gap + 0.5 * width) * cos(angle),
+         y = at[1] - (gap + 0.5 * height) * sin(angle);
   return (strut_box){x - 0.5 * width, y - 0.5 * height, width, height};
 }
 

@@ -13,7 +13,7 @@ void strut_member_ends(const strut_window *window, const strut_model *model, con
 /** Where the ground's line enters and leaves the window's neighbourhood [pt]. */
 void strut_ground_line(const strut_window *window, const strut_model *model, double ends[2][2]);
 /** Triangles under pinned nodes, rolling ones under nodes held in one direction. */
-void strut_draw_supports(strut_canvas *canvas, const strut_window *window,
-                         const strut_model *model, const double *q, double size, double opacity);
+void strut_draw_supports(strut_canvas *canvas, const strut_window *window, const strut_model *model,
+                         const double *q, double size, double opacity);
 
 #endif

@@ -36,8 +36,7 @@ static void draw_strip(strut_canvas *canvas, strut_box strip, bool upright,
   strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
 }
 
-void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
-                             const strut_colour_scale *scale) {
+void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
   bool upright = box.height > box.width;
   const strut_axis axis = {
       .name = scale->name, .unit = scale->unit, .low = scale->low, .high = scale->high};
@@ -47,9 +46,8 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
   double width, line;
   strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
   strut_text_size(canvas, "0", font, &width, &line);
-  strut_box strip = upright
-                        ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
-                        : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
+  strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
+                            : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
   draw_strip(canvas, strip, upright, scale);
   for (size_t i = 0; i < set.count; i++) {
     double part = (set.at[i] - scale->low) / (scale->high - scale->low);

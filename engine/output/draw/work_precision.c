@@ -196,8 +196,8 @@ static void draw(diagram *d, strut_box box) {
   bool some_diverged = false;
   settle_axes(w, &cost, &error);
   for (size_t g = 0; g < w->group_count; g++)
-    d->entries[g] = (strut_legend_entry){
-        .label = w->groups[g], .look = g, .line = true, .marker = true};
+    d->entries[g] =
+        (strut_legend_entry){.label = w->groups[g], .look = g, .line = true, .marker = true};
   strut_legend_size(d->canvas, d->entries, w->group_count, box.width - 40, legend);
   for (size_t i = 0; i < w->count; i++) some_diverged = some_diverged || diverged(&w->bargains[i]);
   double top = legend[1] + (some_diverged ? STRIP : 0);

@@ -19,8 +19,8 @@ typedef struct strut_work_precision {
   const char *title;
   strut_axis cost, error; /* logarithmic whatever they say */
   size_t group_count, count;
-  const char *const *groups;      /* (group_count) */
-  const strut_saving *bargains;  /* (count) */
+  const char *const *groups;    /* (group_count) */
+  const strut_saving *bargains; /* (count) */
 } strut_work_precision;
 
 /** Which bargains no other beats in both: (count) flags. Diverged ones never are. */

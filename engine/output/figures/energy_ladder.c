@@ -88,10 +88,8 @@ static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const stru
   for (size_t k = 0; k < count; k++) {
     double left[2], right[2], energy = strut_drawn_energy(all, chosen[k]) - zero;
     char fitted[STRUT_FITTED_TEXT];
-    strut_font font = {.size = count <= FEW ? 8 : 7,
-                       .bold = count <= FEW,
-                       .across = 0.5,
-                       .halo = strut_grey(1)};
+    strut_font font = {
+        .size = count <= FEW ? 8 : 7, .bold = count <= FEW, .across = 0.5, .halo = strut_grey(1)};
     strut_axes_point(axes, (double)k - LEVEL, energy, left);
     strut_axes_point(axes, (double)k + LEVEL, energy, right);
     strut_draw_segment(canvas, left[0], left[1], right[0], right[1],

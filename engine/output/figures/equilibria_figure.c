@@ -4,9 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-
-#include "engine/output/draw/legend.h"
 #include "engine/output/draw/axes.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/equilibria_parts.h"
 
@@ -22,8 +21,7 @@ typedef struct plan {
   size_t *standing, standing_count; /* those that stand, by energy */
   size_t *aside, aside_count;       /* further stable ones, by energy */
   size_t cards, columns, small, small_columns;
-  double width, size[2], cell[2], small_cell[2], force_limit, contact_limit,
-      largest_energy;
+  double width, size[2], cell[2], small_cell[2], force_limit, contact_limit, largest_energy;
   bool ladder;
   strut_arena arena;
 } plan;
@@ -126,8 +124,7 @@ static double height_of(const plan *p) {
 /* Forces of the ground as (contacts, 2), zero where it is not touched; NULL: no memory. */
 static double (*contact_forces(plan *p, const strut_equilibrium *e))[2] {
   const strut_contact_table *contacts = &p->model->contacts;
-  double(*force)[2] =
-      strut_arena_allocate(&p->arena, (size_t)contacts->count + 1, sizeof *force);
+  double(*force)[2] = strut_arena_allocate(&p->arena, (size_t)contacts->count + 1, sizeof *force);
   for (int32_t k = 0; force && k < e->contact_count && e->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
       if (contacts->entry[c].node == e->contacts[k]) force[c][0] = e->normal[k];
@@ -149,8 +146,7 @@ static bool draw_names(plan *p, strut_canvas *canvas, const strut_window *window
                        const double (*force)[2]) {
   const strut_contact_table *contacts = &p->model->contacts;
   size_t arrows = 0;
-  double(*ends)[2] =
-      strut_arena_allocate(&p->arena, 2 * (size_t)contacts->count + 2, sizeof *ends);
+  double(*ends)[2] = strut_arena_allocate(&p->arena, 2 * (size_t)contacts->count + 2, sizeof *ends);
   if (!ends) return false;
   for (int32_t c = 0; c < contacts->count && p->contact_limit > 0; c++) {
     double length = force[c][0] / p->contact_limit * ARROW, *tip = ends[2 * arrows];
@@ -201,10 +197,8 @@ static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) 
   strut_font note = {.size = 6.5, .colour = strut_grey(0.35), .width = cell.width - 6};
   strut_window window =
       window_for(p, i, (strut_box){cell.x, cell.y, cell.width, cell.height - 26}, 6);
-  const strut_structure_style style = {.colouring = STRUT_COLOUR_ONE,
-                                       .colour = strut_grey(0.45),
-                                       .thinness = 0.4,
-                                       .no_nodes = true};
+  const strut_structure_style style = {
+      .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.45), .thinness = 0.4, .no_nodes = true};
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);

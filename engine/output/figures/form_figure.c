@@ -20,9 +20,9 @@ static double find_forces(const strut_model *model, double *force) {
   for (size_t j = 0; j < model->scene->member_count; j++) {
     const strut_member *m = &model->scene->members[j];
     const double *a = model->start + 2 * m->node[0], *b = model->start + 2 * m->node[1];
-    force[j] = fmax(model->members.stiffness[j] *
-                        (hypot(b[0] - a[0], b[1] - a[1]) - model->members.rest[j]),
-                    model->members.slack[j]);
+    force[j] = fmax(
+        model->members.stiffness[j] * (hypot(b[0] - a[0], b[1] - a[1]) - model->members.rest[j]),
+        model->members.slack[j]);
     most = fmax(most, fabs(force[j]));
   }
   return most;
@@ -31,14 +31,13 @@ static double find_forces(const strut_model *model, double *force) {
 static double farthest(const strut_model *model, const double (*drawn)[2]) {
   double most = 0;
   for (int32_t i = 0; i < model->node_count; i++)
-    most = fmax(most, hypot(model->start[2 * i] - drawn[i][0],
-                            model->start[2 * i + 1] - drawn[i][1]));
+    most =
+        fmax(most, hypot(model->start[2 * i] - drawn[i][0], model->start[2 * i + 1] - drawn[i][1]));
   return most;
 }
 
 static void draw(strut_canvas *canvas, const strut_model *model, const double *before,
-                 const double (*drawn)[2], const double *force, double limit,
-                 strut_bounds bounds) {
+                 const double (*drawn)[2], const double *force, double limit, strut_bounds bounds) {
   strut_box page = strut_canvas_box(canvas);
   double inner = page.width - 2 * EDGE, moved = farthest(model, drawn);
   bool narrow = page.width < NARROW;
@@ -100,8 +99,8 @@ strut_status strut_form_figure(const char *path, double width, const strut_model
   double aspect = (bounds.high[1] - bounds.low[1]) / (bounds.high[0] - bounds.low[0]);
   double high = room * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * margin;
   high = fmax(0.25 * width, fmin(high, 0.9 * width)) + (narrow ? FOOT : 0);
-  strut_status status = strut_canvas_open(path, width, 2 * EDGE + TITLE + high,
-                                          model->scene->name, &canvas, error);
+  strut_status status =
+      strut_canvas_open(path, width, 2 * EDGE + TITLE + high, model->scene->name, &canvas, error);
   if (status == STRUT_OK) {
     draw(canvas, model, before, drawn, force, limit, bounds);
     status = strut_canvas_commit(canvas, error);

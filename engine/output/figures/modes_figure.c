@@ -7,8 +7,8 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/output/draw/legend.h"
 #include "engine/output/draw/axes.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 
@@ -16,12 +16,12 @@ enum { NAMED = 12, SWUNG = 40, LED = 200, TITLE = 200 }; /* of nodes, members, n
 
 static const double TURN = 6.283185307179586476925;
 static const double GAP = 12.0, EDGE = 4.0, MARGIN = 13.0; /* [pt] */
-static const double NARROWEST = 112.0;  /* panel, for its title [pt] */
-static const double TALLEST = 190.0;    /* drawing inside a panel [pt] */
-static const double COVERED = 0.12;     /* of a panel, by names */
-static const double NODE = 2.3;         /* radius of a node as drawn [pt] */
+static const double NARROWEST = 112.0;                     /* panel, for its title [pt] */
+static const double TALLEST = 190.0;                       /* drawing inside a panel [pt] */
+static const double COVERED = 0.12;                        /* of a panel, by names */
+static const double NODE = 2.3;                            /* radius of a node as drawn [pt] */
 static const double TITLE_LINE = 11.5, WORD_LINES = 19.0;
-static const double UNSTRAINED = 1e-9;  /* strain that is rounding, in units of motion over size */
+static const double UNSTRAINED = 1e-9; /* strain that is rounding, in units of motion over size */
 
 typedef struct figure {
   strut_canvas *canvas;
@@ -52,8 +52,7 @@ static bool take_memory(figure *f) {
 static void choose(figure *f, size_t panels) {
   size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
   if (most > STRUT_MODES_FIGURE_MOST) most = STRUT_MODES_FIGURE_MOST;
-  for (size_t i = 0; i < f->modes->count; i++)
-    others += f->modes->list[i].kind != STRUT_MODE_RIGID;
+  for (size_t i = 0; i < f->modes->count; i++) others += f->modes->list[i].kind != STRUT_MODE_RIGID;
   for (size_t i = 0; i < f->modes->count && f->count < most; i++)
     if (!others || f->modes->list[i].kind != STRUT_MODE_RIGID) f->shown[f->count++] = i;
 }
@@ -289,8 +288,7 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
 /* What is not drawn, in words; empty where all is. */
 static void say_rest(const figure *f, char text[TITLE]) {
   size_t rigid = 0, left = f->modes->count - f->count;
-  for (size_t i = 0; i < f->modes->count; i++)
-    rigid += f->modes->list[i].kind == STRUT_MODE_RIGID;
+  for (size_t i = 0; i < f->modes->count; i++) rigid += f->modes->list[i].kind == STRUT_MODE_RIGID;
   if (f->modes->list[f->shown[0]].kind == STRUT_MODE_RIGID) rigid -= f->count;
   left -= rigid;
   text[0] = '\0';
@@ -298,8 +296,8 @@ static void say_rest(const figure *f, char text[TITLE]) {
   if (rigid)
     used = snprintf(text, TITLE, "not drawn: %zu rigid-body motion%s", rigid, rigid > 1 ? "s" : "");
   if (left)
-    snprintf(text + used, TITLE - (size_t)used, "%s%zu higher mode%s", used ? ", " : "not drawn: ",
-             left, left > 1 ? "s" : "");
+    snprintf(text + used, TITLE - (size_t)used, "%s%zu higher mode%s",
+             used ? ", " : "not drawn: ", left, left > 1 ? "s" : "");
 }
 
 enum { ITEMS = 8 };
@@ -310,12 +308,11 @@ static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
   snprintf(at, TITLE, "at %.*s%s", strut_text_bytes(f->modes->at, 150), f->modes->at,
            f->modes->at_rest ? "" : " (no equilibrium)");
   say_rest(f, rest);
-  items[count++] = (strut_key_item){.sign = STRUT_KEY_LINE,
-                                    .pen = {.colour = strut_grey(0.8), .width = 1.8},
-                                    .text = at};
+  items[count++] = (strut_key_item){
+      .sign = STRUT_KEY_LINE, .pen = {.colour = strut_grey(0.8), .width = 1.8}, .text = at};
   if (f->modes->closed_count)
-    items[count++] = (strut_key_item){
-        .sign = STRUT_KEY_DOT, .pen = touch(), .text = "touches the ground"};
+    items[count++] =
+        (strut_key_item){.sign = STRUT_KEY_DOT, .pen = touch(), .text = "touches the ground"};
   if (f->model->node_count <= LED)
     items[count++] =
         (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = way(), .text = "way of a node"};

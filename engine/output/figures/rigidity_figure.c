@@ -190,8 +190,8 @@ static void draw(const plan *p, strut_canvas *canvas, const char *at) {
     strut_draw_structure(canvas, &window, p->model, p->q,
                          &(strut_structure_style){.node_names = true});
   }
-  strut_window foot = strut_window_fit(
-      (strut_box){EDGE, y, p->cell[0], p->cell[1] - LINE}, p->bounds, MARGIN);
+  strut_window foot =
+      strut_window_fit((strut_box){EDGE, y, p->cell[0], p->cell[1] - LINE}, p->bounds, MARGIN);
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
@@ -202,8 +202,8 @@ static void draw(const plan *p, strut_canvas *canvas, const char *at) {
 }
 
 strut_status strut_rigidity_figure(const char *path, double width, const strut_model *model,
-                                   const double *q, const char *at,
-                                   const strut_rigidity *rigidity, strut_error *error) {
+                                   const double *q, const char *at, const strut_rigidity *rigidity,
+                                   strut_error *error) {
   plan p = {.model = model, .q = q, .rigidity = rigidity, .width = width};
   strut_arena arena = {0};
   strut_canvas *canvas = NULL;

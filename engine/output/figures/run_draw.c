@@ -9,7 +9,7 @@
 
 enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, WAY_PIECES = 40, LINE = 600 };
 
-static const double DOT = 0.3; /* [pt] */
+static const double DOT = 0.3;       /* [pt] */
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it does not move */
 
 void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
@@ -75,7 +75,7 @@ static bool is_seen(const strut_window *window, const double (*way)[2], size_t c
 }
 
 void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                        const double (*way)[2], size_t count, double width) {
+                         const double (*way)[2], size_t count, double width) {
   double before[2], at[2];
   if (!is_seen(window, way, count)) return;
   strut_canvas_clip(canvas, window->box);
@@ -92,8 +92,8 @@ void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut
 void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                           const double *q) {
   if (run->model->node_count <= MOST_NAMES)
-    strut_draw_names(canvas, window, run->model, q, true, false,
-                     (const double(*)[2])run->avoid, run->avoid_count);
+    strut_draw_names(canvas, window, run->model, q, true, false, (const double(*)[2])run->avoid,
+                     run->avoid_count);
   run->avoid_count = 0;
 }
 

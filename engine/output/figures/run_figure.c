@@ -111,8 +111,7 @@ strut_status strut_run_figure_draw(const char *path, const strut_run_figure *fig
 
 double *strut_run_shape(strut_run_scene *run, size_t frame) {
   double *q = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *q);
-  if (q)
-    memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
+  if (q) memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
   return q;
 }
 

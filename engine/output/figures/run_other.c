@@ -31,7 +31,7 @@ void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
 }
 
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
-                              const strut_window *window, const double (*way)[2], size_t count) {
+                               const strut_window *window, const double (*way)[2], size_t count) {
   double(*points)[2] = strut_arena_allocate(&other->arena, count, sizeof *points);
   for (size_t i = 0; points && i < count; i++) strut_window_point(window, way[i], points[i]);
   if (points) strut_draw_line(canvas, (const double(*)[2])points, count, PEN);

@@ -10,7 +10,7 @@ enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_WAYS = 300 };
 static const double YARDSTICK = 14, KEY_LINE = 11; /* [pt] */
 static const double SCALE = 46, CHART = 118, MARGIN = 27, GAP = 6, WIDE = 380;
 static const double PERIODS = 5, PART = 0.1; /* of what was recorded, where nothing is periodic */
-static const double SEEN = 2e-3; /* of the drawing: less is no way */
+static const double SEEN = 2e-3;             /* of the drawing: less is no way */
 static const double REACH = 0.6; /* ways are shown so far around the shape, in its sizes */
 
 static size_t first_of_ways(const strut_run_scene *run) {
@@ -46,8 +46,8 @@ static double drawing_height(const strut_run_scene *run) {
 static bool beside(const strut_run_scene *run) { return run->figure->width >= WIDE; }
 
 static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
-  static const int order[] = {STRUT_RUN_WAY,     STRUT_RUN_NORMALS, STRUT_RUN_DRIVE,
-                              STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES};
+  static const int order[] = {STRUT_RUN_WAY, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE, STRUT_RUN_HEIGHTS,
+                              STRUT_RUN_FORCES};
   int count = 0, most = beside(run) ? MOST_PANELS : MOST_STACKED;
   for (size_t i = 0; run->frames > 1 && i < sizeof order / sizeof *order && count < most; i++)
     if (strut_run_panel_wanted(run, order[i])) panels[count++] = order[i];
@@ -146,9 +146,9 @@ strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
   strut_run_draw_title(run, canvas, what, true);
   strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width - SCALE, height};
   if (!draw_structure(run, canvas, box)) return STRUT_NO_MEMORY;
-  strut_run_draw_scale(run, canvas,
-                       (strut_box){STRUT_RUN_EDGE + width - SCALE + 6, box.y, SCALE - 6,
-                                   fmin(height, 130)});
+  strut_run_draw_scale(
+      run, canvas,
+      (strut_box){STRUT_RUN_EDGE + width - SCALE + 6, box.y, SCALE - 6, fmin(height, 130)});
   strut_box below = {STRUT_RUN_EDGE, box.y + height, width, 0};
   strut_draw_key(canvas,
                  (strut_box){below.x + key_indent(run), below.y + (YARDSTICK - KEY_LINE),

@@ -8,11 +8,11 @@
 
 enum { MOST_CURVES = 6, MOST_DRIVEN = 3, CURVES_HEIGHT = 122 };
 
-static const double LEVEL = 1e-3;     /* of a force or an energy: less is drawn as level */
-static const double STANDING = 1e-6;  /* of the model's size: less is no motion */
-static const double CLOSED = 1e-3;    /* of that: less above the ground is on it */
-static const double ROUNDING = 1e-9;  /* of an energy */
-static const double ROOM = 0.06;      /* above and below the curves */
+static const double LEVEL = 1e-3;    /* of a force or an energy: less is drawn as level */
+static const double STANDING = 1e-6; /* of the model's size: less is no motion */
+static const double CLOSED = 1e-3;   /* of that: less above the ground is on it */
+static const double ROUNDING = 1e-9; /* of an energy */
+static const double ROOM = 0.06;     /* above and below the curves */
 
 /* What a panel draws, and its curves; values are (frames) each. */
 typedef struct panel {
@@ -72,9 +72,7 @@ static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
 }
 
 /* Kinds whose curves start at zero: only how far things went is of interest. */
-static bool from_start(int kind) {
-  return kind == STRUT_RUN_WAY || kind == STRUT_RUN_ENERGIES;
-}
+static bool from_start(int kind) { return kind == STRUT_RUN_WAY || kind == STRUT_RUN_ENERGIES; }
 
 /* How far a curve moves; of a kind whose zero means something, from there. */
 static double liveliness(const strut_run_scene *run, int kind, size_t item, size_t first) {
@@ -193,8 +191,7 @@ static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
 }
 
 /* The range of all curves, widened to what is worth seeing. */
-static void find_range(const panel *p, size_t frames, int kind,
-                       strut_axis *axis) {
+static void find_range(const panel *p, size_t frames, int kind, strut_axis *axis) {
   for (size_t i = 0; i < p->count; i++)
     for (size_t f = 0; f < frames; f++) strut_axis_include(axis, p->values[i][f]);
   if (kind == STRUT_RUN_NORMALS) strut_axis_include(axis, 0);
@@ -219,9 +216,9 @@ static bool fit_labels(strut_run_scene *run, double width, panel *p) {
 strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
                                   int kind, size_t first) {
   static const char *const names[][2] = {
-      [STRUT_RUN_WAY] = {"displacement", "m"},     [STRUT_RUN_NORMALS] = {"contact force", "N"},
-      [STRUT_RUN_DRIVE] = {"change", "m"},         [STRUT_RUN_HEIGHTS] = {"height", "m"},
-      [STRUT_RUN_FORCES] = {"member force", "N"},  [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
+      [STRUT_RUN_WAY] = {"displacement", "m"},    [STRUT_RUN_NORMALS] = {"contact force", "N"},
+      [STRUT_RUN_DRIVE] = {"change", "m"},        [STRUT_RUN_HEIGHTS] = {"height", "m"},
+      [STRUT_RUN_FORCES] = {"member force", "N"}, [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
   panel p = {.name = names[kind][0], .unit = names[kind][1]};
   size_t frames = run->frames - first;
   if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill(run, kind, first, &p)))

@@ -70,7 +70,7 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
                               const strut_window *window, size_t frame);
 /** A way through (count) positions [m] inside the window's box. */
 void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                        const double (*way)[2], size_t count, double width);
+                         const double (*way)[2], size_t count, double width);
 /**
  * The figure's other motion as one being drawn, in an arena of its own, to be freed; false where there
  * is none.
@@ -81,7 +81,7 @@ void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
                           const strut_window *window, size_t frame);
 /** Its way through (count) positions [m], dashed; false: memory is out. */
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
-                              const strut_window *window, const double (*way)[2], size_t count);
+                               const strut_window *window, const double (*way)[2], size_t count);
 /** Appends ", black dashes: NAME" to a text where there is another motion. */
 void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size);
 /** Names of the nodes of a shape, off all that was drawn since the last names. */
@@ -96,8 +96,15 @@ void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, cons
 bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_item *item);
 
 /** Curves over time, a kind of quantity in each panel. */
-enum { STRUT_RUN_WAY, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE, STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES,
-       STRUT_RUN_ENERGIES, STRUT_RUN_PANELS };
+enum {
+  STRUT_RUN_WAY,
+  STRUT_RUN_NORMALS,
+  STRUT_RUN_DRIVE,
+  STRUT_RUN_HEIGHTS,
+  STRUT_RUN_FORCES,
+  STRUT_RUN_ENERGIES,
+  STRUT_RUN_PANELS
+};
 /** Whether there is anything to draw in a panel. */
 bool strut_run_panel_wanted(const strut_run_scene *run, int panel);
 /** Draws one from frame `first` on. */

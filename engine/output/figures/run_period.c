@@ -12,10 +12,10 @@ static const double CLOSED = 1e-3; /* of the model's size: less above the ground
 
 typedef struct ways {
   size_t first, count;
-  double *rest;      /* (length) where the ways are exaggerated from */
-  double *shape;     /* (length) that is drawn beneath: those places, or the last shape */
-  double (*way)[2];  /* (nodes, count) as drawn */
-  bool grounded;     /* some are exaggerated from the ground */
+  double *rest;     /* (length) where the ways are exaggerated from */
+  double *shape;    /* (length) that is drawn beneath: those places, or the last shape */
+  double (*way)[2]; /* (nodes, count) as drawn */
+  bool grounded;    /* some are exaggerated from the ground */
   strut_bounds bounds;
 } ways;
 
@@ -104,7 +104,7 @@ static bool draw_other(const strut_run_scene *run, strut_canvas *canvas, const w
   if (fine) add_other(w, &o, run->motion->node_count);
   for (size_t i = 0; i < run->motion->node_count && fine; i++)
     fine = strut_run_draw_other_path(&other, canvas, window,
-                                    (const double(*)[2])(o.way + i * o.count), o.count);
+                                     (const double(*)[2])(o.way + i * o.count), o.count);
   strut_arena_free(&other.arena);
   return fine;
 }
@@ -177,7 +177,7 @@ strut_status strut_run_period(strut_run_scene *run, strut_canvas *canvas) {
   strut_draw_structure(canvas, &window, run->model, w.shape, &pale);
   for (size_t i = 0; i < run->motion->node_count; i++)
     strut_run_draw_path(run, canvas, &window, (const double(*)[2])(w.way + i * w.count), w.count,
-                       1.5);
+                        1.5);
   if (!draw_other(run, canvas, &w, &window)) return STRUT_NO_MEMORY;
   strut_run_draw_names(run, canvas, &window, w.shape);
   window.box.y = page - STRUT_RUN_EDGE - box.height; /* at the foot, where no structure is */

@@ -9,12 +9,12 @@
 enum { USUAL = 6, MOST_NAMED = 10 };
 
 static const double LINE = 12, MARGIN = 15, ARROW = 18, GAP = 4, FOOT = 28; /* [pt] */
-static const double NARROWEST = 105, NAMED = 130;  /* cells, and those with names [pt] */
-static const double TALLEST = 0.95;  /* all cells together, of the page's width */
+static const double NARROWEST = 105, NAMED = 130; /* cells, and those with names [pt] */
+static const double TALLEST = 0.95;               /* all cells together, of the page's width */
 static const double LEAST = 12, WIDE = 380, KEY_LINE = 12; /* [pt] */
-static const double COMMON = 2.2;    /* shapes no further apart share a window, in their sizes */
+static const double COMMON = 2.2; /* shapes no further apart share a window, in their sizes */
 
-static const double SEEN = 2e-3;     /* of the drawing: the measured point moves so much at least */
+static const double SEEN = 2e-3; /* of the drawing: the measured point moves so much at least */
 
 /* How the cells stand, and what they show. */
 typedef struct grid {
@@ -231,9 +231,10 @@ strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   char what[200];
   bool marked = g.common[0] && g.moves;
   double top = STRUT_RUN_EDGE + STRUT_RUN_TITLE;
-  snprintf(what, sizeof what, "%zu instant%s at one scale%s%s%s", g.count,
-           g.count == 1 ? "" : "s",
-           marked ? "; dashed: where " : g.common[0] ? "" : "; each in the middle",
+  snprintf(what, sizeof what, "%zu instant%s at one scale%s%s%s", g.count, g.count == 1 ? "" : "s",
+           marked        ? "; dashed: where "
+           : g.common[0] ? ""
+                         : "; each in the middle",
            marked ? strut_run_measured_name(run) : "", marked ? " was at first" : "");
   strut_run_describe_other(run, what, sizeof what);
   strut_run_draw_title(run, canvas, what, false);

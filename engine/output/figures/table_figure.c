@@ -70,8 +70,7 @@ static const char *axis_name(const strut_table *table, int column) {
   return column == STRUT_NO_COLUMN ? "" : table->columns[column].name;
 }
 
-static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box box,
-                               size_t panel) {
+static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box box, size_t panel) {
   maker *m = context;
   const strut_table_figure *f = m->figure;
   size_t most = m->curves.count * (size_t)f->y_count, used = 0, bands = 0;
@@ -131,15 +130,16 @@ static size_t name_entries(maker *m, char (*text)[200]) {
         snprintf(text[used], sizeof *text, "%s%s%s %s", f->y_count > 1 ? column : "",
                  f->y_count > 1 ? ", " : "", axis_name(m->table, f->by), group);
       }
-      entries[used] = (strut_legend_entry){
-          .label = text[used], .look = c * (size_t)f->y_count + (size_t)k, .line = true,
-          .marker = true};
+      entries[used] = (strut_legend_entry){.label = text[used],
+                                           .look = c * (size_t)f->y_count + (size_t)k,
+                                           .line = true,
+                                           .marker = true};
       used++;
     }
   if (f->band != STRUT_NO_COLUMN) {
     snprintf(text[used], sizeof *text, "%s %s", axis_name(m->table, f->band), f->band_value);
-    entries[used] = (strut_legend_entry){
-        .label = text[used], .area = true, .fill = strut_band_fill(0)};
+    entries[used] =
+        (strut_legend_entry){.label = text[used], .area = true, .fill = strut_band_fill(0)};
     used++;
   }
   return used;
@@ -183,8 +183,8 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
     status = strut_table_groups_find(table, figure->panels, STRUT_MOST_PANELS, "panels", &m.panels,
                                      error);
   if (status == STRUT_OK)
-    status = strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "curves", &m.curves,
-                                     error);
+    status =
+        strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "curves", &m.curves, error);
   if (status == STRUT_OK) {
     settle_axes(&m);
     status = draw(&m, path, error);

@@ -27,9 +27,9 @@ typedef struct strut_table_figure {
   const char *title; /* may be NULL */
   double width;      /* [pt] */
   int x, y[STRUT_MOST_Y], y_count;
-  int by;            /* a curve for each of its texts */
-  int panels;        /* a panel for each of its texts */
-  int band;          /* grey where it has the text `band_value`: half way to the next points */
+  int by;     /* a curve for each of its texts */
+  int panels; /* a panel for each of its texts */
+  int band;   /* grey where it has the text `band_value`: half way to the next points */
   const char *band_value;
   bool log_x, log_y;
   strut_table_choice choice;

@@ -149,8 +149,8 @@ static strut_status prepare(mapper *m, strut_error *error) {
     status = strut_table_groups_find(m->table, f->panels, STRUT_MOST_PANELS, "panels", &m->panels,
                                      error);
   if (status == STRUT_OK && !m->table->columns[f->value].value)
-    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_GROUPS, "categories",
-                                     &m->names, error);
+    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_GROUPS, "categories", &m->names,
+                                     error);
   if (status != STRUT_OK) return status;
   qsort(m->names.name, m->names.count, sizeof *m->names.name, by_text);
   if (m->names.count && !*m->names.name[0]) { /* nothing written is no answer */
@@ -230,25 +230,25 @@ static void find_bargains(trader *t) {
     if (!(columns[f->x].value[i] > 0)) continue;
     for (size_t g = 0; g < t->methods.count; g++)
       if (strut_table_belongs(t->table, f->by, t->methods.name[g], i)) group = (int)g;
-    t->bargains[t->count++] = (strut_saving){
-        .group = group,
-        .label = f->label == STRUT_NO_COLUMN ? NULL : columns[f->label].text[i],
-        .cost = columns[f->x].value[i],
-        .error = columns[f->y].value[i],
-        .low = (double)NAN,
-        .high = (double)NAN};
+    t->bargains[t->count++] =
+        (strut_saving){.group = group,
+                       .label = f->label == STRUT_NO_COLUMN ? NULL : columns[f->label].text[i],
+                       .cost = columns[f->x].value[i],
+                       .error = columns[f->y].value[i],
+                       .low = (double)NAN,
+                       .high = (double)NAN};
   }
 }
 
 strut_status strut_table_savings(const char *path, const strut_table_savings_figure *figure,
-                                  const strut_table *table, strut_error *error) {
+                                 const strut_table *table, strut_error *error) {
   trader t = {.figure = figure, .table = table};
   strut_arena arena = {0};
   strut_status status = strut_table_numbers(table, figure->x, error);
   if (status == STRUT_OK) status = strut_table_numbers(table, figure->y, error);
   if (status == STRUT_OK)
-    status = strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "methods", &t.methods,
-                                     error);
+    status =
+        strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "methods", &t.methods, error);
   if (status == STRUT_OK) {
     t.bargains = strut_arena_allocate(&arena, table->row_count, sizeof *t.bargains);
     if (!t.bargains) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");

@@ -32,7 +32,7 @@ typedef struct strut_table_savings_figure {
 
 /** Draws a work-precision diagram. */
 STRUT_API strut_status strut_table_savings(const char *path,
-                                            const strut_table_savings_figure *figure,
-                                            const strut_table *table, strut_error *error);
+                                           const strut_table_savings_figure *figure,
+                                           const strut_table *table, strut_error *error);
 
 #endif

@@ -65,7 +65,8 @@ strut_status strut_panel_page_draw(const char *path, const char *title,
   strut_font font = {.size = 9, .bold = true};
   char fitted[STRUT_FITTED_TEXT];
   if (title)
-    strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, title, font, inner, 0, fitted), font);
+    strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, title, font, inner, 0, fitted),
+                    font);
   if (head) head(context, canvas, (strut_box){EDGE, top, inner, page->head});
   for (size_t k = 0; k < page->panels && status == STRUT_OK; k++)
     status = panel(context, canvas,

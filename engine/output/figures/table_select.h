@@ -14,7 +14,7 @@ typedef struct strut_table_pairing {
   int of;                            /* its two texts tell the sides apart: first, second */
   int keys[STRUT_MOST_KEYS_OF_ROWS]; /* equal in rows that belong together; may be none (-1) */
   size_t key_count;
-  bool between;      /* what the first side lacks at a value of the last key is taken from the straight
+  bool between; /* what the first side lacks at a value of the last key is taken from the straight
                         line between its neighbours there */
   const int *values; /* (value_count) what is compared */
   size_t value_count;

@@ -32,8 +32,8 @@ static strut_bounds union_of(const strut_bounds *bounds, size_t count, double *s
   return all;
 }
 
-bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t count,
-                       size_t reach, strut_arena *arena) {
+bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t count, size_t reach,
+                       strut_arena *arena) {
   double size;
   strut_bounds all = union_of(bounds, count, &size);
   *camera = (strut_camera){.count = count};
@@ -44,9 +44,8 @@ bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t 
   for (int k = 0; k < 2; k++) {
     camera->follows[k] = size > 0 && all.high[k] - all.low[k] > RANGE[k] * size;
     for (size_t i = 0; i < count; i++)
-      camera->middle[i][k] = camera->follows[k]
-                                 ? 0.5 * (bounds[i].low[k] + bounds[i].high[k])
-                                 : 0.5 * (all.low[k] + all.high[k]);
+      camera->middle[i][k] = camera->follows[k] ? 0.5 * (bounds[i].low[k] + bounds[i].high[k])
+                                                : 0.5 * (all.low[k] + all.high[k]);
     if (camera->follows[k]) { /* twice, so that its speed has no jumps either */
       smooth(once, (const double(*)[2])camera->middle, k, count, reach, sum);
       smooth(camera->middle, (const double(*)[2])once, k, count, reach, sum);

@@ -19,7 +19,7 @@ typedef struct strut_camera {
  * From the bounds of the structure in every frame (count >= 1). `reach`: how many frames before and
  * after count for where it looks. The middles are in the arena; false when there is no memory.
  */
-bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t count,
-                       size_t reach, strut_arena *arena);
+bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t count, size_t reach,
+                       strut_arena *arena);
 
 #endif

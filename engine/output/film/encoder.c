@@ -40,8 +40,7 @@ static const char *const words_of[][24] = {
  * own, which makes larger files. */
 enum { ONE_PALETTE = 300, GIF_OF_MANY = STRUT_FILM_GIF + 1 };
 
-strut_status strut_encoder_format(const char *path, strut_film_format *format,
-                                  strut_error *error) {
+strut_status strut_encoder_format(const char *path, strut_film_format *format, strut_error *error) {
   size_t length = strlen(path);
   for (int i = 0; i < 3; i++) {
     size_t end = strlen(endings[i]);
@@ -74,13 +73,14 @@ strut_status strut_encoder_find(strut_error *error) {
 }
 
 /* All words of the command line; texts of this film are kept in `texts`. */
-static void command_line(int row, int width, int height, double fps,
-                         const char *target, char texts[2][TEXT], const char *words[MOST_WORDS]) {
-  const char *const first[] = {"ffmpeg",   "-nostdin", "-hide_banner", "-v",       "error",
-                               "-f",       "rawvideo", "-pixel_format", "bgr0",    "-video_size",
-                               texts[0],   "-framerate", texts[1],     "-i",       "pipe:0"};
-  const char *const last[] = {"-an",      "-threads", "1",      "-map_metadata", "-1", "-fflags",
-                              "+bitexact", "-flags:v", "+bitexact", "-y",        target};
+static void command_line(int row, int width, int height, double fps, const char *target,
+                         char texts[2][TEXT], const char *words[MOST_WORDS]) {
+  const char *const first[] = {"ffmpeg", "-nostdin",   "-hide_banner",  "-v",   "error",
+                               "-f",     "rawvideo",   "-pixel_format", "bgr0", "-video_size",
+                               texts[0], "-framerate", texts[1],        "-i",   "pipe:0"};
+  const char *const last[] = {"-an",       "-threads", "1",         "-map_metadata",
+                              "-1",        "-fflags",  "+bitexact", "-flags:v",
+                              "+bitexact", "-y",       target};
   int count = 0;
   snprintf(texts[0], TEXT, "%dx%d", width, height);
   snprintf(texts[1], TEXT, "%.6f", fps);

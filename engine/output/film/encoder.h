@@ -19,8 +19,7 @@ typedef enum strut_film_format {
 } strut_film_format;
 
 /** The format that a file's name asks for by its ending; STRUT_USAGE with the endings there are. */
-strut_status strut_encoder_format(const char *path, strut_film_format *format,
-                                  strut_error *error);
+strut_status strut_encoder_format(const char *path, strut_film_format *format, strut_error *error);
 /** STRUT_FILE_TROUBLE with what to do where ffmpeg is not on the PATH. */
 strut_status strut_encoder_find(strut_error *error);
 

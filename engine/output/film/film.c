@@ -9,8 +9,8 @@
 
 enum { WIDTH = 1280, HEIGHT = 720, GIF_WIDTH = 640, GIF_HEIGHT = 360 };
 
-static const double PAGE_WIDTH = 512;  /* [pt], the same in all sizes */
-static const double LOOK_AHEAD = 0.6;  /* how far the camera looks around in time [s of film] */
+static const double PAGE_WIDTH = 512; /* [pt], the same in all sizes */
+static const double LOOK_AHEAD = 0.6; /* how far the camera looks around in time [s of film] */
 
 /* Everything that one film needs while it is made. */
 typedef struct making {
@@ -113,8 +113,7 @@ static void prepare(making *m) {
   m->moment.frame = 0;
   strut_moment_at(&m->moment, motion, m->shown, time[0]);
   s->travelled_from = strut_moment_travel(&m->moment, m->model);
-  if (time[last] > time[0])
-    s->mean_velocity = (end - s->travelled_from) / (time[last] - time[0]);
+  if (time[last] > time[0]) s->mean_velocity = (end - s->travelled_from) / (time[last] - time[0]);
   s->travels = true;
   for (size_t i = 0; i < m->model->scene->node_count; i++)
     if (m->model->scene->nodes[i].fixed[0]) s->travels = false;
@@ -142,8 +141,8 @@ static strut_status encode(making *m, strut_error *error) {
   strut_encoder encoder;
   strut_canvas *canvas = NULL;
   const strut_film_made *made = m->made;
-  strut_status status = strut_canvas_open_pixels(made->width, made->height,
-                                                 made->width / PAGE_WIDTH, &canvas, error);
+  strut_status status =
+      strut_canvas_open_pixels(made->width, made->height, made->width / PAGE_WIDTH, &canvas, error);
   if (status != STRUT_OK) return status;
   status = strut_encoder_begin(&encoder, m->film->path, made->width, made->height, made->fps,
                                made->frames, error);

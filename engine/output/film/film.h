@@ -31,9 +31,9 @@ typedef struct strut_film_made {
   size_t frames;
   int width, height; /* pixels */
   double fps;
-  double lasts;      /* the film [s] */
-  double every;      /* mean time between frames of the motion [s]; 0 for a single one */
-  double shown;      /* time of the motion between frames of the film [s] */
+  double lasts; /* the film [s] */
+  double every; /* mean time between frames of the motion [s]; 0 for a single one */
+  double shown; /* time of the motion between frames of the film [s] */
 } strut_film_made;
 
 /**

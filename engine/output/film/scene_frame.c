@@ -14,7 +14,7 @@ static const double AROUND = 34, CLOSE = 18;           /* the structure, with ar
 static const double ARROW = 26;                        /* of the largest force of the ground */
 static const double BETWEEN = 70;                      /* marks of the ground, about [pt] */
 static const double LEAST = 0.02; /* of the structure's size, or of 1 m: seen around a point */
-static const double NEAR = 0.5; /* a ground nearer than so many sizes is shown from the start */
+static const double NEAR = 0.5;   /* a ground nearer than so many sizes is shown from the start */
 
 static double round_step(double length) {
   double power = pow(10.0, floor(log10(length)));
@@ -25,9 +25,8 @@ static double round_step(double length) {
 static strut_bounds around(const strut_view_frame *s) {
   const strut_camera *camera = s->camera;
   const strut_ground *ground = &s->model->scene->ground;
-  double least = fmax(camera->half[0], camera->half[1]) < LEAST * s->model->size
-                     ? LEAST * s->model->size
-                     : 0;
+  double least =
+      fmax(camera->half[0], camera->half[1]) < LEAST * s->model->size ? LEAST * s->model->size : 0;
   strut_bounds bounds;
   for (int k = 0; k < 2; k++) {
     bounds.low[k] = -fmax(camera->half[k], least);
@@ -36,8 +35,7 @@ static strut_bounds around(const strut_view_frame *s) {
   if (ground->present && ground->slope == 0 && !camera->follows[1]) {
     double size = fmax(camera->half[0], camera->half[1]);
     double height = ground->height - camera->middle[0][1];
-    if (height < bounds.low[1] && bounds.low[1] - height <= 2 * NEAR * size)
-      bounds.low[1] = height;
+    if (height < bounds.low[1] && bounds.low[1] - height <= 2 * NEAR * size) bounds.low[1] = height;
   }
   return bounds;
 }
@@ -141,7 +139,8 @@ static void title_text(const char *name, char text[2 * TEXT]) {
   snprintf(text, 2 * TEXT, "%.*s%s", (int)length, name, name[length] ? "\xe2\x80\xa6" : "");
 }
 
-static void draw_words(const strut_view_frame *s, strut_canvas *canvas, const strut_moment *moment) {
+static void draw_words(const strut_view_frame *s, strut_canvas *canvas,
+                       const strut_moment *moment) {
   strut_box page = strut_canvas_box(canvas);
   const strut_colour grey = strut_grey(0.35);
   char text[2 * TEXT];
@@ -182,7 +181,7 @@ static void draw_progress(const strut_view_frame *s, strut_canvas *canvas, size_
 }
 
 void strut_view_frame_draw(const strut_view_frame *s, strut_canvas *canvas, size_t i,
-                        const strut_moment *moment) {
+                           const strut_moment *moment) {
   strut_window window = look(s, i);
   strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
   if (s->most_force > 0) {

@@ -26,8 +26,7 @@ static void add_elements(strut_buffer *to, const strut_embedded *files, const ch
 }
 
 /* What takes the place of <!--strut:NAME-->, of which name begins with NAME. */
-static void add_part(strut_buffer *to, const strut_page *page, const char *name,
-                     const char *data) {
+static void add_part(strut_buffer *to, const strut_page *page, const char *name, const char *data) {
   const char *title = page->model->scene->name;
   if (strncmp(name, "title", 5) == 0) {
     add_text(to, *title ? title : "strut");

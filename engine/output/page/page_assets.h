@@ -20,7 +20,7 @@ typedef struct strut_embedded {
  */
 extern const strut_embedded strut_page_template[];
 extern const strut_embedded strut_page_styles[];
-extern const strut_embedded strut_page_notice[];   /* of dygraphs: whose it is, and its licence */
-extern const strut_embedded strut_page_scripts[];  /* in the order in which they run */
+extern const strut_embedded strut_page_notice[];  /* of dygraphs: whose it is, and its licence */
+extern const strut_embedded strut_page_scripts[]; /* in the order in which they run */
 
 #endif

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/report/equilibria_report.h"
 #include "engine/output/page/page_parts.h"
+#include "engine/output/report/equilibria_report.h"
 
 struct cJSON;
 

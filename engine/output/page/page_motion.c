@@ -17,9 +17,16 @@ static const double FAR = 1e3;
 
 enum { TIME, POSITION, FORCE, CONTACT, ENERGY, BLOCKS };
 static const char *const keys[BLOCKS] = {"time", "position", "force", "contact", "energy"};
-static const char *const energy_names[STRUT_ENERGIES] = {
-    "kinetic",   "elastic",   "gravity",            "contact",            "drive_work",
-    "load_work", "belt_work", "dissipated_members", "dissipated_contact", "dissipated_friction"};
+static const char *const energy_names[STRUT_ENERGIES] = {"kinetic",
+                                                         "elastic",
+                                                         "gravity",
+                                                         "contact",
+                                                         "drive_work",
+                                                         "load_work",
+                                                         "belt_work",
+                                                         "dissipated_members",
+                                                         "dissipated_contact",
+                                                         "dissipated_friction"};
 
 typedef struct motion {
   const strut_page *page;

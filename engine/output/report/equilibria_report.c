@@ -9,16 +9,15 @@
 struct cJSON;
 
 const char *strut_outcome_name(strut_outcome fate) {
-  static const char *const names[] = {"stands", "tips", "below ground", "unstable", "floppy",
-                                      "no rest"};
+  static const char *const names[] = {"stands",   "tips",   "below ground",
+                                      "unstable", "floppy", "no rest"};
   return names[fate];
 }
 
 static void add_names(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                       const int32_t *node, size_t count) {
   struct cJSON *names = strut_json_array(json, to, key);
-  for (size_t i = 0; i < count; i++)
-    strut_json_text(json, names, NULL, scene->nodes[node[i]].name);
+  for (size_t i = 0; i < count; i++) strut_json_text(json, names, NULL, scene->nodes[node[i]].name);
 }
 
 static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
@@ -145,8 +144,7 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_settle(&json, json.root, &all->settle);
   if (all->settle.evaluations > 0)
     strut_json_text(&json, json.root, "start", all->start >= 0 ? all->list[all->start].name : NULL);
-  if (all->start_trouble[0])
-    strut_json_text(&json, json.root, "start_trouble", all->start_trouble);
+  if (all->start_trouble[0]) strut_json_text(&json, json.root, "start_trouble", all->start_trouble);
   strut_json_text(&json, json.root, "remark", all->remark[0] ? all->remark : NULL);
   struct cJSON *list = strut_json_array(&json, json.root, "equilibria");
   for (size_t i = 0; i < all->count; i++)

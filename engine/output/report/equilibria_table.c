@@ -7,8 +7,8 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
-#include "engine/output/report/equilibria_report.h"
 #include "engine/output/quantity_text.h"
+#include "engine/output/report/equilibria_report.h"
 
 enum { MOST_ROWS = 80, MOST_SHAPES = 6, MOST_SADDLES = 24, MOST_NODES = 12, NAMES = 64 };
 

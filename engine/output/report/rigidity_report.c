@@ -12,8 +12,7 @@ static void add_map(strut_json *json, struct cJSON *to, const char *key, const s
   struct cJSON *map = strut_json_object(json, to, key);
   for (size_t j = 0; j < scene->member_count; j++) {
     double divisor = !length ? 1.0 : length[j];
-    strut_json_number(json, map, scene->members[j].name,
-                      divisor > 0 ? force[j] / divisor : 0.0);
+    strut_json_number(json, map, scene->members[j].name, divisor > 0 ? force[j] / divisor : 0.0);
   }
 }
 
@@ -127,8 +126,7 @@ static void add_verdicts(strut_json *json, const strut_rigidity *r) {
   strut_json_text(json, root, "super_stability", strut_super_stability_words(r, words));
   if (r->stress.tested) {
     struct cJSON *stress = strut_json_object(json, root, "stress_matrix");
-    strut_json_numbers(json, stress, "eigenvalues", r->stress.eigenvalues,
-                       (size_t)r->stress.count);
+    strut_json_numbers(json, stress, "eigenvalues", r->stress.eigenvalues, (size_t)r->stress.count);
     strut_json_integer(json, stress, "nullity", r->stress.nullity);
     strut_json_text(json, stress, "of", strut_stress_source_words(r->source));
     strut_json_text(json, stress, "on", r->stress.supported ? "free coordinates" : "nodes");

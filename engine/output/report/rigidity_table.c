@@ -42,8 +42,7 @@ static void add_counts(strut_buffer *table, const strut_rigidity *r) {
                      strut_motion_kind_name((strut_motion_kind)i));
     before = ", ";
   }
-  strut_buffer_add(table,
-                   "\n  Maxwell-Calladine  %d members - %d free coordinates = %d = s - f\n",
+  strut_buffer_add(table, "\n  Maxwell-Calladine  %d members - %d free coordinates = %d = s - f\n",
                    r->matrix.columns, r->matrix.rows, r->matrix.columns - r->matrix.rows);
 }
 
@@ -51,9 +50,9 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
   char words[STRUT_RIGIDITY_WORDS];
   const strut_tensegrity *t = &r->tensegrity;
   if (r->bars_at_node > 0)
-    strut_buffer_add(table, "  class              %d: %s\n", r->bars_at_node,
-                     r->bars_at_node == 1 ? "no two bars meet"
-                                          : "bars that meet at a node, at most");
+    strut_buffer_add(
+        table, "  class              %d: %s\n", r->bars_at_node,
+        r->bars_at_node == 1 ? "no two bars meet" : "bars that meet at a node, at most");
   strut_buffer_add(table, "  super stable       %s\n", strut_super_stability_words(r, words));
   if (r->has_cables && r->states.force && r->states.count > 0)
     strut_buffer_add(table, "  cables             %s\n",

@@ -34,8 +34,8 @@ const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mecha
     snprintf(words, STRUT_RIGIDITY_WORDS, "a state of self-stress stiffens it%s",
              all->stiffener_pulls ? "" : ", but none is known that does so and presses no cable");
   } else if (followed) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "lengths stay within %.0e of themselves after %s", motion->strain,
-             strut_quantity_text(motion->moved, DIGITS, "m", moved));
+    snprintf(words, STRUT_RIGIDITY_WORDS, "lengths stay within %.0e of themselves after %s",
+             motion->strain, strut_quantity_text(motion->moved, DIGITS, "m", moved));
   } else if (motion->kind == STRUT_MOTION_FINITE) {
     snprintf(words, STRUT_RIGIDITY_WORDS, "without self-stress no length depends on the others");
   } else {
@@ -57,8 +57,7 @@ static const char *why_not(const strut_rigidity *r) {
   return "a cable is pressed";
 }
 
-const char *strut_super_stability_words(const strut_rigidity *r,
-                                        char words[STRUT_RIGIDITY_WORDS]) {
+const char *strut_super_stability_words(const strut_rigidity *r, char words[STRUT_RIGIDITY_WORDS]) {
   const char *source = strut_stress_source_words(r->source);
   if (r->states.count == 0)
     snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);

@@ -144,9 +144,7 @@ static void count_nodes(const view *v, const strut_sketch_grid *grid, int32_t *t
 
 /* Where there are more nodes than a sixth of the cells, marks and names would hide the lines: only
  * nodes with no other around have them. */
-static bool crowded(const view *v) {
-  return v->model->node_count > v->columns * v->rows / CROWD;
-}
+static bool crowded(const view *v) { return v->model->node_count > v->columns * v->rows / CROWD; }
 
 static bool stands_out(const view *v, const strut_sketch_grid *grid, const int32_t *there,
                        int column, int row) {
@@ -202,8 +200,7 @@ static void write_mark(strut_buffer *buffer, uint32_t mark, const char *meaning,
 static void write_extent(const view *v, bool ground_seen, bool unicode, strut_buffer *buffer) {
   const strut_scene *scene = v->model->scene;
   bool held[4] = {false};
-  strut_buffer_add(buffer, "  %s x %s",
-                   strut_quantity_of(v->high[0] - v->low[0], DIGITS, "m").text,
+  strut_buffer_add(buffer, "  %s x %s", strut_quantity_of(v->high[0] - v->low[0], DIGITS, "m").text,
                    strut_quantity_of(v->high[1] - v->low[1], DIGITS, "m").text);
   for (size_t i = 0; i < scene->node_count; i++)
     held[(scene->nodes[i].fixed[0] ? 1 : 0) + (scene->nodes[i].fixed[1] ? 2 : 0)] = true;
@@ -219,8 +216,7 @@ static int within(int value, int least) {
   return value < least ? least : value > STRUT_SKETCH_MOST ? STRUT_SKETCH_MOST : value;
 }
 
-char *strut_sketch(const strut_model *model, const double *q, int columns, int rows,
-                   bool unicode) {
+char *strut_sketch(const strut_model *model, const double *q, int columns, int rows, bool unicode) {
   strut_buffer buffer = {0};
   strut_sketch_grid grid = {0};
   view v = {.model = model, .q = q};
@@ -228,7 +224,7 @@ char *strut_sketch(const strut_model *model, const double *q, int columns, int r
   rows = within(rows, STRUT_SKETCH_LEAST_ROWS);
   measure(&v);
   if (!isfinite(v.high[0] - v.low[0]) || !isfinite(v.high[1] - v.low[1]))
-    return strut_allocate(1, 1); /* no nodes, or the plane is too small for them */
+    return strut_allocate(1, 1);               /* no nodes, or the plane is too small for them */
   lay_out(&v, columns - 2, rows - 1, unicode); /* without the indent and the extent */
   bool taken = strut_sketch_grid_create(&grid, v.columns, v.rows);
   int32_t *there = strut_allocate((size_t)v.columns * (size_t)v.rows, sizeof *there);

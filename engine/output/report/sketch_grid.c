@@ -73,8 +73,8 @@ void strut_sketch_put(strut_buffer *buffer, uint32_t code, bool unicode) {
   } else if (code < 0x800) {
     strut_buffer_add(buffer, "%c%c", (int)(0xc0 | code >> 6), (int)(0x80 | (code & 0x3f)));
   } else if (code < 0x10000) {
-    strut_buffer_add(buffer, "%c%c%c", (int)(0xe0 | code >> 12),
-                     (int)(0x80 | (code >> 6 & 0x3f)), (int)(0x80 | (code & 0x3f)));
+    strut_buffer_add(buffer, "%c%c%c", (int)(0xe0 | code >> 12), (int)(0x80 | (code >> 6 & 0x3f)),
+                     (int)(0x80 | (code & 0x3f)));
   } else {
     strut_buffer_add(buffer, "%c%c%c%c", (int)(0xf0 | code >> 18),
                      (int)(0x80 | (code >> 12 & 0x3f)), (int)(0x80 | (code >> 6 & 0x3f)),

@@ -13,12 +13,12 @@ static const struct {
   uint32_t first, last;
   uint8_t width;
 } plain[] = {
-    {0x20, 0x7e, 1},       {0xa1, 0xac, 1},       {0xae, 0x2ff, 1},      {0x370, 0x377, 1},
-    {0x37a, 0x37f, 1},     {0x384, 0x38a, 1},     {0x38c, 0x38c, 1},     {0x38e, 0x3a1, 1},
-    {0x3a3, 0x482, 1},     {0x48a, 0x52f, 1},     {0x1e00, 0x1eff, 1},   {0x2010, 0x2015, 1},
-    {0x2018, 0x2022, 1},   {0x2032, 0x2034, 1},   {0x2070, 0x2071, 1},   {0x2074, 0x208e, 1},
-    {0x2190, 0x2193, 1},   {0x3041, 0x3096, 2},   {0x30a1, 0x30ff, 2},   {0x3400, 0x4dbf, 2},
-    {0x4e00, 0x9fff, 2},   {0xac00, 0xd7a3, 2},   {0xff01, 0xff60, 2},
+    {0x20, 0x7e, 1},     {0xa1, 0xac, 1},     {0xae, 0x2ff, 1},    {0x370, 0x377, 1},
+    {0x37a, 0x37f, 1},   {0x384, 0x38a, 1},   {0x38c, 0x38c, 1},   {0x38e, 0x3a1, 1},
+    {0x3a3, 0x482, 1},   {0x48a, 0x52f, 1},   {0x1e00, 0x1eff, 1}, {0x2010, 0x2015, 1},
+    {0x2018, 0x2022, 1}, {0x2032, 0x2034, 1}, {0x2070, 0x2071, 1}, {0x2074, 0x208e, 1},
+    {0x2190, 0x2193, 1}, {0x3041, 0x3096, 2}, {0x30a1, 0x30ff, 2}, {0x3400, 0x4dbf, 2},
+    {0x4e00, 0x9fff, 2}, {0xac00, 0xd7a3, 2}, {0xff01, 0xff60, 2},
 };
 
 static int width_of(uint32_t code, bool unicode) {
@@ -115,10 +115,14 @@ static int hidden(const strut_sketch_grid *grid, int column, int row,
 void strut_sketch_name_place(strut_sketch_grid *grid, int column, int row,
                              const strut_sketch_name *name) {
   int width = name->columns, best = MOST_HIDDEN + 1, at = 0, line = 0;
-  const int places[][2] = {{column + 1, row},         {column - width, row},
-                           {column - width / 2, row - 1}, {column - width / 2, row + 1},
-                           {column + 1, row - 1},     {column - width, row - 1},
-                           {column + 1, row + 1},     {column - width, row + 1}};
+  const int places[][2] = {{column + 1, row},
+                           {column - width, row},
+                           {column - width / 2, row - 1},
+                           {column - width / 2, row + 1},
+                           {column + 1, row - 1},
+                           {column - width, row - 1},
+                           {column + 1, row + 1},
+                           {column - width, row + 1}};
   for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
     int count = hidden(grid, places[i][0], places[i][1], name);
     if (count >= best) continue;

@@ -71,7 +71,8 @@ static strut_status choose_cheap(strut_accuracy *a) {
     e->accuracy = 0.0;
     a->halving = model->plan & STRUT_TERM_RIGID; /* which one method keeps */
     e->integrator = a->halving ? "rk4" : "verlet-events";
-    status = strut_step_limit_for_method(model, strut_integrator_find(e->integrator), &limit, a->error);
+    status =
+        strut_step_limit_for_method(model, strut_integrator_find(e->integrator), &limit, a->error);
     e->step = fmin(OF_LIMIT * limit, unit / LEAST_STEPS);
     e->refine = e->refine_time = 0.0;
     double fine = FINE_EVALUATIONS * FINE_STEPS * span.duration / e->step;

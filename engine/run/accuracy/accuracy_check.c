@@ -50,8 +50,8 @@ strut_status strut_orbit_solve_accurate(strut_orbit_solve *w, bool from_orbit, d
     w->accurate.tolerance = fmax(1e-12, w->accurate.tolerance / 25.0);
     w->tightened = true;
   }
-  strut_status status =
-      strut_orbit_solve_run(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4, periods, from_orbit, &more);
+  strut_status status = strut_orbit_solve_run(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
+                                              periods, from_orbit, &more);
   if (!status) strut_summary_append(&w->last, &more);
   strut_summary_free(&more);
   if (!status && w->last.steady.kind == STRUT_MOTION_PERIODIC) take_last(w);

@@ -38,7 +38,8 @@ static double scatter(const strut_orbit_solve *w, double interval, double period
 /* The cheap method by more periods; what came out is added to way->run. */
 static strut_status go_on(strut_orbit_solve *w, double periods) {
   strut_summary more = {0};
-  strut_status status = strut_orbit_solve_run(w, w->a->cheap, w->a->wanted, 5, periods, true, &more);
+  strut_status status =
+      strut_orbit_solve_run(w, w->a->cheap, w->a->wanted, 5, periods, true, &more);
   if (!status) strut_summary_append(&w->run, &more);
   strut_summary_free(&more);
   return status;
@@ -76,8 +77,9 @@ strut_status strut_orbit_solve_stuck(strut_orbit_solve *w) {
   strut_accuracy *a = w->a;
   strut_summary half = {0};
   w->found = STRUT_WAY_NONE;
-  strut_status status = strut_orbit_solve_run(w, with_half_the_step(w), fmin(0.001, 0.2 * a->wanted), 4,
-                                      fmax(20.0, strut_accuracy_periods(a)), false, &half);
+  strut_status status =
+      strut_orbit_solve_run(w, with_half_the_step(w), fmin(0.001, 0.2 * a->wanted), 4,
+                            fmax(20.0, strut_accuracy_periods(a)), false, &half);
   if (status) {
     strut_summary_free(&half);
     return status;

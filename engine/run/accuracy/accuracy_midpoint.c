@@ -208,8 +208,8 @@ static double dearer(const strut_model *model) {
 static strut_status halve_until_kept(halving *h, bool *done) {
   strut_status status = STRUT_OK;
   strut_span span = strut_scene_span(h->a->scene);
-  double mostly = span.period > 0.0 ? fmin(span.duration, MOST_PERIODS * span.period)
-                                    : span.duration;
+  double mostly =
+      span.period > 0.0 ? fmin(span.duration, MOST_PERIODS * span.period) : span.duration;
   double explicit_evaluations = mostly / h->a->cheap.step;
   double next = PER_STEP * span.duration / h->e.step, time = dearer(h->watch.model);
   strut_accuracy_begin_phase(h->a, "midpoint with ever smaller steps");

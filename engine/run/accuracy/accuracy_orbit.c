@@ -57,11 +57,12 @@ static strut_status run_cheap(strut_orbit_solve *w, bool *steady) {
   strut_model_free(model);
   if (status) return status;
   strut_accuracy_begin_phase(a, "waiting for steady motion");
-  status = strut_orbit_solve_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
+  status =
+      strut_orbit_solve_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
   if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow && periods > first) {
     strut_summary more = {0};
-    status =
-        strut_orbit_solve_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first, true, &more);
+    status = strut_orbit_solve_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first,
+                                   true, &more);
     if (!status) strut_summary_append(&w->run, &more);
     strut_summary_free(&more);
   }
@@ -171,7 +172,8 @@ static strut_status settle_cheap(strut_orbit_solve *w, bool *steady) {
   *steady = true;
   if (!found) {
     strut_summary more = {0};
-    status = strut_orbit_solve_run(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, CHANCE, true, &more);
+    status =
+        strut_orbit_solve_run(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, CHANCE, true, &more);
     *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC &&
               more.steady.repeats == w->cheap.repeats;
     if (!status) strut_summary_append(&w->run, &more);
@@ -187,7 +189,8 @@ static strut_status settle_cheap(strut_orbit_solve *w, bool *steady) {
 /* The cheap method's orbit corrected, or what else has the answer near it. */
 static strut_status finish(strut_orbit_solve *w) {
   strut_accuracy *a = w->a;
-  double size = strut_accuracy_scale(a, w->run.velocity), all = fmax(20.0, strut_accuracy_periods(a));
+  double size = strut_accuracy_scale(a, w->run.velocity),
+         all = fmax(20.0, strut_accuracy_periods(a));
   strut_status status = STRUT_OK;
   w->error = HUGE_VAL;
   if (strut_orbit_solve_is_stuck(w)) {

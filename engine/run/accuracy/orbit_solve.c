@@ -28,8 +28,9 @@ void strut_summary_append(strut_summary *whole, strut_summary *part) {
   whole->steady.periods = periods;
 }
 
-strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, double tolerance, int32_t successive,
-                           double periods, bool from_end, strut_summary *summary) {
+strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, double tolerance,
+                                   int32_t successive, double periods, bool from_end,
+                                   strut_summary *summary) {
   strut_accuracy *a = w->a;
   strut_snapshot from = w->end;
   e.steady.wanted = true;

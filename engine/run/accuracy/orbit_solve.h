@@ -55,9 +55,9 @@ void strut_summary_append(strut_summary *whole, strut_summary *part);
  * A run of `experiment` by at most `periods`, from way->end or the scene's start, until it is steady to
  * `tolerance` [1] over `successive` periods; its end is way->end.
  */
-strut_status strut_orbit_solve_run(strut_orbit_solve *way, strut_experiment experiment, double tolerance,
-                           int32_t successive, double periods, bool from_end,
-                           strut_summary *summary);
+strut_status strut_orbit_solve_run(strut_orbit_solve *way, strut_experiment experiment,
+                                   double tolerance, int32_t successive, double periods,
+                                   bool from_end, strut_summary *summary);
 /** The end of the run so far becomes the orbit to go on from. */
 void strut_orbit_solve_keep_end(strut_orbit_solve *way);
 

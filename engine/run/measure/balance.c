@@ -42,7 +42,7 @@ void strut_balance_begin(const strut_state *state, const strut_energies *begin, 
 }
 
 void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
-                        double t, strut_balance_monitor *watch, strut_energy *e) {
+                          double t, strut_balance_monitor *watch, strut_energy *e) {
   strut_balance_fill(model, state, begin, t, e);
   watch->swing = fmax(watch->swing, e->kinetic);
   e->moved = fmax(e->moved, watch->swing); /* what swings may end as it began */

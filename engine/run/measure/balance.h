@@ -29,7 +29,7 @@ void strut_balance_begin(const strut_state *state, const strut_energies *begin, 
                          int evaluations, strut_balance_monitor *watch);
 /** Now, at time t [s]. Fills the energy as well, whose `moved` is no less than the largest kinetic. */
 void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
-                        double t, strut_balance_monitor *watch, strut_energy *energy);
+                          double t, strut_balance_monitor *watch, strut_energy *energy);
 
 /** Open where more than 1 % of the energy moved is missing, and more than rounding explains. */
 strut_balance strut_balance_judge(const strut_energy *energy, int64_t steps);

@@ -34,28 +34,19 @@ static void note_needs(strut_columns *c, strut_column_kind kind) {
   bool rigid = c->model->plan & STRUT_TERM_RIGID;
   switch (kind) {
     case STRUT_COLUMN_NORMAL:
-    case STRUT_COLUMN_FRICTION:
-      c->forces = true;
-      break;
-    case STRUT_COLUMN_FORCE:
-      c->forces = c->forces || rigid;
-      break;
+    case STRUT_COLUMN_FRICTION: c->forces = true; break;
+    case STRUT_COLUMN_FORCE: c->forces = c->forces || rigid; break;
     case STRUT_COLUMN_KINETIC:
     case STRUT_COLUMN_ELASTIC:
     case STRUT_COLUMN_GRAVITY:
     case STRUT_COLUMN_GROUND:
-    case STRUT_COLUMN_TOTAL:
-      c->energies = true;
-      break;
+    case STRUT_COLUMN_TOTAL: c->energies = true; break;
     case STRUT_COLUMN_NODE_VX:
     case STRUT_COLUMN_NODE_VY:
     case STRUT_COLUMN_CENTRE_VX:
     case STRUT_COLUMN_CENTRE_VY:
-    case STRUT_COLUMN_RATE:
-      c->speeds = true;
-      break;
-    default:
-      break;
+    case STRUT_COLUMN_RATE: c->speeds = true; break;
+    default: break;
   }
 }
 
@@ -93,14 +84,10 @@ static double height_of(const strut_columns *c, const double q[2]) {
 static double of_member(const strut_columns *c, const strut_state *state, strut_column column) {
   strut_member_values m = strut_member_measure(c->model, state, column.item);
   switch (column.kind) {
-    case STRUT_COLUMN_LENGTH:
-      return m.length;
-    case STRUT_COLUMN_STRETCH:
-      return m.length - state->rest[column.item];
-    case STRUT_COLUMN_RATE:
-      return m.rate;
-    default:
-      return m.force;
+    case STRUT_COLUMN_LENGTH: return m.length;
+    case STRUT_COLUMN_STRETCH: return m.length - state->rest[column.item];
+    case STRUT_COLUMN_RATE: return m.rate;
+    default: return m.force;
   }
 }
 
@@ -119,22 +106,14 @@ static double of_ledger(const strut_columns *c, const strut_state *state, strut_
   const double *w = state->work;
   double sum = w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
   switch (kind) {
-    case STRUT_COLUMN_DRIVES:
-      return w[STRUT_POWER_DRIVE];
-    case STRUT_COLUMN_LOADS:
-      return w[STRUT_POWER_LOAD] + strut_energy_load_work(c->model, state);
-    case STRUT_COLUMN_BELT:
-      return w[STRUT_POWER_BELT];
-    case STRUT_COLUMN_LOST_MEMBERS:
-      return w[STRUT_POWER_MEMBERS];
-    case STRUT_COLUMN_LOST_CONTACT:
-      return w[STRUT_POWER_CONTACT];
-    case STRUT_COLUMN_LOST_FRICTION:
-      return w[STRUT_POWER_FRICTION];
-    case STRUT_COLUMN_LOST:
-      return sum;
-    default:
-      break;
+    case STRUT_COLUMN_DRIVES: return w[STRUT_POWER_DRIVE];
+    case STRUT_COLUMN_LOADS: return w[STRUT_POWER_LOAD] + strut_energy_load_work(c->model, state);
+    case STRUT_COLUMN_BELT: return w[STRUT_POWER_BELT];
+    case STRUT_COLUMN_LOST_MEMBERS: return w[STRUT_POWER_MEMBERS];
+    case STRUT_COLUMN_LOST_CONTACT: return w[STRUT_POWER_CONTACT];
+    case STRUT_COLUMN_LOST_FRICTION: return w[STRUT_POWER_FRICTION];
+    case STRUT_COLUMN_LOST: return sum;
+    default: break;
   }
   const strut_energies *s = &c->stored;
   *size = fabs(s->kinetic) + fabs(s->elastic) + fabs(s->gravity) + fabs(s->contact);
@@ -147,52 +126,30 @@ static double value_of(const strut_columns *c, const strut_state *state, strut_c
   size_t at = 2 * (size_t)(column.item < 0 ? 0 : column.item);
   double d[2];
   switch (column.kind) {
-    case STRUT_COLUMN_TIME:
-      return (double)state->step * c->step + c->shorter + state->time_offset;
-    case STRUT_COLUMN_NODE_X:
-      return state->q[at];
-    case STRUT_COLUMN_NODE_Y:
-      return state->q[at + 1];
-    case STRUT_COLUMN_NODE_VX:
-      return state->v[at];
-    case STRUT_COLUMN_NODE_VY:
-      return state->v[at + 1];
-    case STRUT_COLUMN_HEIGHT:
-      return height_of(c, state->q + at);
-    case STRUT_COLUMN_NORMAL:
-      return column.item < 0 ? 0.0 : state->normal[column.item];
-    case STRUT_COLUMN_FRICTION:
-      return column.item < 0 ? 0.0 : state->friction[column.item];
+    case STRUT_COLUMN_TIME: return (double)state->step * c->step + c->shorter + state->time_offset;
+    case STRUT_COLUMN_NODE_X: return state->q[at];
+    case STRUT_COLUMN_NODE_Y: return state->q[at + 1];
+    case STRUT_COLUMN_NODE_VX: return state->v[at];
+    case STRUT_COLUMN_NODE_VY: return state->v[at + 1];
+    case STRUT_COLUMN_HEIGHT: return height_of(c, state->q + at);
+    case STRUT_COLUMN_NORMAL: return column.item < 0 ? 0.0 : state->normal[column.item];
+    case STRUT_COLUMN_FRICTION: return column.item < 0 ? 0.0 : state->friction[column.item];
     case STRUT_COLUMN_LENGTH:
     case STRUT_COLUMN_STRETCH:
     case STRUT_COLUMN_RATE:
-    case STRUT_COLUMN_FORCE:
-      return of_member(c, state, column);
+    case STRUT_COLUMN_FORCE: return of_member(c, state, column);
     case STRUT_COLUMN_TILT:
-    case STRUT_COLUMN_ANGLE:
-      span(c, state, column, d);
-      return atan2(d[1], d[0]);
-    case STRUT_COLUMN_DISTANCE:
-      span(c, state, column, d);
-      return hypot(d[0], d[1]);
-    case STRUT_COLUMN_CENTRE_X:
-      return centre(c->model, state->q, size);
-    case STRUT_COLUMN_CENTRE_Y:
-      return centre(c->model, state->q + 1, size);
-    case STRUT_COLUMN_CENTRE_VX:
-      return centre(c->model, state->v, size);
-    case STRUT_COLUMN_CENTRE_VY:
-      return centre(c->model, state->v + 1, size);
-    case STRUT_COLUMN_KINETIC:
-      return c->stored.kinetic;
-    case STRUT_COLUMN_ELASTIC:
-      return c->stored.elastic;
-    case STRUT_COLUMN_GRAVITY:
-      return c->stored.gravity;
-    case STRUT_COLUMN_GROUND:
-      return c->stored.contact;
-    default:
-      return of_ledger(c, state, column.kind, size);
+    case STRUT_COLUMN_ANGLE: span(c, state, column, d); return atan2(d[1], d[0]);
+    case STRUT_COLUMN_DISTANCE: span(c, state, column, d); return hypot(d[0], d[1]);
+    case STRUT_COLUMN_CENTRE_X: return centre(c->model, state->q, size);
+    case STRUT_COLUMN_CENTRE_Y: return centre(c->model, state->q + 1, size);
+    case STRUT_COLUMN_CENTRE_VX: return centre(c->model, state->v, size);
+    case STRUT_COLUMN_CENTRE_VY: return centre(c->model, state->v + 1, size);
+    case STRUT_COLUMN_KINETIC: return c->stored.kinetic;
+    case STRUT_COLUMN_ELASTIC: return c->stored.elastic;
+    case STRUT_COLUMN_GRAVITY: return c->stored.gravity;
+    case STRUT_COLUMN_GROUND: return c->stored.contact;
+    default: return of_ledger(c, state, column.kind, size);
   }
 }
 
@@ -257,22 +214,16 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
     case STRUT_COLUMN_STRETCH:
     case STRUT_COLUMN_DISTANCE:
     case STRUT_COLUMN_CENTRE_X:
-    case STRUT_COLUMN_CENTRE_Y:
-      return length;
+    case STRUT_COLUMN_CENTRE_Y: return length;
     case STRUT_COLUMN_TILT:
-    case STRUT_COLUMN_ANGLE:
-      return FINE;
+    case STRUT_COLUMN_ANGLE: return FINE;
     case STRUT_COLUMN_NODE_VX:
     case STRUT_COLUMN_NODE_VY:
     case STRUT_COLUMN_CENTRE_VX:
     case STRUT_COLUMN_CENTRE_VY:
-    case STRUT_COLUMN_RATE:
-      return COARSE * c->fastest;
-    case STRUT_COLUMN_FORCE:
-      return length * m->members.stiffness[item];
-    case STRUT_COLUMN_NORMAL:
-      return item < 0 ? 0.0 : length * m->contacts.entry[item].stiffness;
-    default:
-      return 0.0;
+    case STRUT_COLUMN_RATE: return COARSE * c->fastest;
+    case STRUT_COLUMN_FORCE: return length * m->members.stiffness[item];
+    case STRUT_COLUMN_NORMAL: return item < 0 ? 0.0 : length * m->contacts.entry[item].stiffness;
+    default: return 0.0;
   }
 }

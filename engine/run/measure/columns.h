@@ -11,8 +11,9 @@
 /** Different columns, each once, and their values now and over the window. */
 typedef struct strut_columns {
   const strut_model *model;
-  double step;      /* dt [s] */
-  double shorter; /* by how much the latest step was longer than dt: below 0 where the run ends [s] */
+  double step; /* dt [s] */
+  double
+      shorter; /* by how much the latest step was longer than dt: below 0 where the run ends [s] */
   double normal[2]; /* of the ground */
   size_t count;
   strut_column *column; /* (count) `item` of CONTACT indexes the model's contacts; -1: no contact */
@@ -24,7 +25,7 @@ typedef struct strut_columns {
   bool forces;          /* some column needs the forces at the state */
   bool energies;        /* or the stored energies */
   bool speeds;          /* some column is a velocity, whose rounding is that of the nodes' speeds */
-  strut_energies stored;  /* [J]; with `energies` */
+  strut_energies stored; /* [J]; with `energies` */
 } strut_columns;
 
 /** Room for `most` columns in the arena. False: out of memory. */

@@ -11,8 +11,8 @@ static const double MARK_TOLERANCE = 1e-6;
 /* A mean velocity of so little beside the nodes' own is what rounding leaves of a symmetric motion. */
 static const double CANCELLED = 1e-10;
 
-void strut_measure_track(const strut_model *model, const strut_state *state,
-                         const strut_measure *m, double *x, double *v) {
+void strut_measure_track(const strut_model *model, const strut_state *state, const strut_measure *m,
+                         double *x, double *v) {
   if (m->node >= 0) {
     *x = state->q[2 * m->node];
     *v = state->v[2 * m->node];
@@ -34,8 +34,8 @@ static void place_marks(const strut_span *span, double begin, strut_measure *m) 
   m->time[m->marks - 1] = begin + span->duration;
 }
 
-void strut_measure_window(const strut_model *model, strut_state *state, double begin,
-                          double period, size_t periods, strut_measure *m) {
+void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
+                          size_t periods, strut_measure *m) {
   size_t contacts = (size_t)model->contacts.count;
   m->marks = periods + 1 < m->room ? periods + 1 : m->room;
   for (size_t i = 0; i < m->marks; i++) m->time[i] = begin + (double)i * period;
@@ -82,8 +82,7 @@ static double fastest_node(const strut_model *model, const strut_state *state) {
 }
 
 static strut_marks marks_of(const strut_measure *m, double length) {
-  return (strut_marks){
-      .step = m->grid.step, .length = length, .count = m->marks, .time = m->time};
+  return (strut_marks){.step = m->grid.step, .length = length, .count = m->marks, .time = m->time};
 }
 
 void strut_measure_begin(const strut_model *model, strut_state *state, strut_measure *m) {
@@ -122,16 +121,14 @@ static double length_of(const strut_measure *m, int64_t n) {
 }
 
 /* Apart from strut_measure_step, which most steps leave without it. */
-static __attribute__((noinline)) void pass_marks(const strut_model *model,
-                                                 const strut_state *state, strut_measure *m,
-                                                 double x, double v) {
+static __attribute__((noinline)) void pass_marks(const strut_model *model, const strut_state *state,
+                                                 strut_measure *m, double x, double v) {
   double n = (double)state->step, step = m->grid.step, length = length_of(m, state->step);
   m->fastest = fmax(m->fastest, fastest_node(model, state));
   while (mark_reached(m, n)) {
     double s = (m->time[m->next] / step - (n - 1.0)) * (step / length);
-    m->x[m->next++] = s > 1.0 - MARK_TOLERANCE
-                          ? x
-                          : strut_hermite(m->last_x, m->last_v, x, v, length, s);
+    m->x[m->next++] =
+        s > 1.0 - MARK_TOLERANCE ? x : strut_hermite(m->last_x, m->last_v, x, v, length, s);
   }
 }
 
@@ -144,8 +141,7 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
   m->last_v = v;
 }
 
-void strut_measure_step_quantities(const strut_model *model, strut_state *state,
-                                   strut_measure *m) {
+void strut_measure_step_quantities(const strut_model *model, strut_state *state, strut_measure *m) {
   strut_marks marks = marks_of(m, length_of(m, state->step));
   strut_measure_step(model, state, m);
   strut_quantities_step(m->quantities, &marks, state);

@@ -17,12 +17,12 @@
  */
 typedef struct strut_measure {
   strut_time_grid grid;
-  int32_t node;       /* tracked node, or -1: centre of mass */
-  double total_mass;  /* [kg] */
-  size_t marks, next; /* number of marks; the next one to pass */
-  size_t room;        /* marks that there is memory for */
-  double *time;       /* (marks) [s] */
-  double *x;          /* (marks) tracked x there [m] */
+  int32_t node;          /* tracked node, or -1: centre of mass */
+  double total_mass;     /* [kg] */
+  size_t marks, next;    /* number of marks; the next one to pass */
+  size_t room;           /* marks that there is memory for */
+  double *time;          /* (marks) [s] */
+  double *x;             /* (marks) tracked x there [m] */
   double last_x, last_v; /* tracked point after the latest step */
   int64_t window_steps;
   int64_t *contact_steps; /* (contacts) steps of the window that ended in contact */
@@ -42,15 +42,14 @@ strut_status strut_measure_create(const strut_model *model, const strut_time_gri
 void strut_measure_track(const strut_model *model, const strut_state *state,
                          const strut_measure *measure, double *x, double *v);
 /** Another window from now on, `begin` [s]: so many periods, within the room for marks. */
-void strut_measure_window(const strut_model *model, strut_state *state, double begin,
-                          double period, size_t periods, strut_measure *measure);
+void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
+                          size_t periods, strut_measure *measure);
 /** First step number n after which strut_measure_step must be called for every step. */
 int64_t strut_measure_first_step(const strut_measure *measure);
 /** Before the first measured step: takes the point's x and v, and the quantities' values. */
 void strut_measure_begin(const strut_model *model, strut_state *state, strut_measure *measure);
 /** After each step from then on. Allocates nothing. */
-void strut_measure_step(const strut_model *model, const strut_state *state,
-                        strut_measure *measure);
+void strut_measure_step(const strut_model *model, const strut_state *state, strut_measure *measure);
 /** The same with the quantities, which must be there. */
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
                                    strut_measure *measure);

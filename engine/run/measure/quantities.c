@@ -60,23 +60,12 @@ static const size_t NONE = (size_t)-1;
 static bool primitive_of(strut_column column, strut_column *primitive) {
   *primitive = column;
   switch (column.kind) {
-    case STRUT_COLUMN_NODE_VX:
-      primitive->kind = STRUT_COLUMN_NODE_X;
-      return true;
-    case STRUT_COLUMN_NODE_VY:
-      primitive->kind = STRUT_COLUMN_NODE_Y;
-      return true;
-    case STRUT_COLUMN_CENTRE_VX:
-      primitive->kind = STRUT_COLUMN_CENTRE_X;
-      return true;
-    case STRUT_COLUMN_CENTRE_VY:
-      primitive->kind = STRUT_COLUMN_CENTRE_Y;
-      return true;
-    case STRUT_COLUMN_RATE:
-      primitive->kind = STRUT_COLUMN_LENGTH;
-      return true;
-    default:
-      return false;
+    case STRUT_COLUMN_NODE_VX: primitive->kind = STRUT_COLUMN_NODE_X; return true;
+    case STRUT_COLUMN_NODE_VY: primitive->kind = STRUT_COLUMN_NODE_Y; return true;
+    case STRUT_COLUMN_CENTRE_VX: primitive->kind = STRUT_COLUMN_CENTRE_X; return true;
+    case STRUT_COLUMN_CENTRE_VY: primitive->kind = STRUT_COLUMN_CENTRE_Y; return true;
+    case STRUT_COLUMN_RATE: primitive->kind = STRUT_COLUMN_LENGTH; return true;
+    default: return false;
   }
 }
 
@@ -158,22 +147,14 @@ static void add(meter *m, double from, double to, double time) {
 static double reduce(const meter *m, const stretch *s, double time, double value, double place) {
   double length = time - s->time;
   switch (m->definition->take) {
-    case STRUT_TAKE_MEAN:
-      return (m->rate_of == NONE ? s->integral : place - s->origin) / length;
-    case STRUT_TAKE_MIN:
-      return s->low;
-    case STRUT_TAKE_MAX:
-      return s->high;
-    case STRUT_TAKE_RANGE:
-      return s->high - s->low;
-    case STRUT_TAKE_RMS:
-      return sqrt(s->square / length);
-    case STRUT_TAKE_FINAL:
-      return value;
-    case STRUT_TAKE_CHANGE:
-      return value - s->begin;
-    default:
-      return (value - s->begin) / length;
+    case STRUT_TAKE_MEAN: return (m->rate_of == NONE ? s->integral : place - s->origin) / length;
+    case STRUT_TAKE_MIN: return s->low;
+    case STRUT_TAKE_MAX: return s->high;
+    case STRUT_TAKE_RANGE: return s->high - s->low;
+    case STRUT_TAKE_RMS: return sqrt(s->square / length);
+    case STRUT_TAKE_FINAL: return value;
+    case STRUT_TAKE_CHANGE: return value - s->begin;
+    default: return (value - s->begin) / length;
   }
 }
 
@@ -308,7 +289,8 @@ static void fill(strut_quantities *q, meter *m, strut_measured *to) {
   bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
   double per = take == STRUT_TAKE_RATE ? q->time - q->begin : 1.0;
-  strut_magnitude made = strut_quantity_program_magnitude(m->definition, m->index, q->sizes, q->size_stack);
+  strut_magnitude made =
+      strut_quantity_program_magnitude(m->definition, m->index, q->sizes, q->size_stack);
   double size = fmax(made.size, m->largest);
   if (!isfinite(m->result)) return;
   to->value = m->result;

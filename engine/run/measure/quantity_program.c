@@ -5,54 +5,30 @@
 
 static double apply(strut_operation operation, double a, double b) {
   switch (operation) {
-    case STRUT_OPERATION_ADD:
-      return a + b;
-    case STRUT_OPERATION_SUBTRACT:
-      return a - b;
-    case STRUT_OPERATION_MULTIPLY:
-      return a * b;
-    case STRUT_OPERATION_DIVIDE:
-      return a / b;
-    case STRUT_OPERATION_POWER:
-      return pow(a, b);
-    case STRUT_OPERATION_NEGATE:
-      return -a;
-    case STRUT_OPERATION_SIN:
-      return sin(a);
-    case STRUT_OPERATION_COS:
-      return cos(a);
-    case STRUT_OPERATION_TAN:
-      return tan(a);
-    case STRUT_OPERATION_ASIN:
-      return asin(a);
-    case STRUT_OPERATION_ACOS:
-      return acos(a);
-    case STRUT_OPERATION_ATAN:
-      return atan(a);
-    case STRUT_OPERATION_ATAN2:
-      return atan2(a, b);
-    case STRUT_OPERATION_SQRT:
-      return sqrt(a);
-    case STRUT_OPERATION_EXP:
-      return exp(a);
-    case STRUT_OPERATION_LOG:
-      return log(a);
-    case STRUT_OPERATION_LOG10:
-      return log10(a);
-    case STRUT_OPERATION_ABS:
-      return fabs(a);
-    case STRUT_OPERATION_MIN:
-      return b < a ? b : a;
-    case STRUT_OPERATION_MAX:
-      return b > a ? b : a;
-    case STRUT_OPERATION_FLOOR:
-      return floor(a);
-    case STRUT_OPERATION_CEIL:
-      return ceil(a);
-    case STRUT_OPERATION_ROUND:
-      return round(a);
-    default:
-      return hypot(a, b);
+    case STRUT_OPERATION_ADD: return a + b;
+    case STRUT_OPERATION_SUBTRACT: return a - b;
+    case STRUT_OPERATION_MULTIPLY: return a * b;
+    case STRUT_OPERATION_DIVIDE: return a / b;
+    case STRUT_OPERATION_POWER: return pow(a, b);
+    case STRUT_OPERATION_NEGATE: return -a;
+    case STRUT_OPERATION_SIN: return sin(a);
+    case STRUT_OPERATION_COS: return cos(a);
+    case STRUT_OPERATION_TAN: return tan(a);
+    case STRUT_OPERATION_ASIN: return asin(a);
+    case STRUT_OPERATION_ACOS: return acos(a);
+    case STRUT_OPERATION_ATAN: return atan(a);
+    case STRUT_OPERATION_ATAN2: return atan2(a, b);
+    case STRUT_OPERATION_SQRT: return sqrt(a);
+    case STRUT_OPERATION_EXP: return exp(a);
+    case STRUT_OPERATION_LOG: return log(a);
+    case STRUT_OPERATION_LOG10: return log10(a);
+    case STRUT_OPERATION_ABS: return fabs(a);
+    case STRUT_OPERATION_MIN: return b < a ? b : a;
+    case STRUT_OPERATION_MAX: return b > a ? b : a;
+    case STRUT_OPERATION_FLOOR: return floor(a);
+    case STRUT_OPERATION_CEIL: return ceil(a);
+    case STRUT_OPERATION_ROUND: return round(a);
+    default: return hypot(a, b);
   }
 }
 
@@ -66,7 +42,7 @@ static int operands(strut_operation operation) {
 }
 
 double strut_quantity_program_evaluate(const strut_quantity_definition *d, const size_t *index,
-                              const double *value, double *stack) {
+                                       const double *value, double *stack) {
   size_t top = 0;
   for (size_t i = 0; i < d->length; i++) {
     const strut_instruction *p = &d->program[i];
@@ -87,22 +63,15 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
 /* How far the result of one operation moves where its operands move by da and db. */
 static double carried(strut_operation operation, double a, double b, double da, double db) {
   switch (operation) {
-    case STRUT_OPERATION_MULTIPLY:
-      return a * db + b * da;
-    case STRUT_OPERATION_DIVIDE:
-      return da / b + a * db / (b * b);
-    case STRUT_OPERATION_POWER:
-      return a > 0.0 ? fabs(b) * pow(a, b) * da / a : da;
-    case STRUT_OPERATION_SQRT:
-      return a > 0.0 ? 0.5 * da / sqrt(a) : sqrt(da);
-    case STRUT_OPERATION_EXP:
-      return exp(a) * da;
+    case STRUT_OPERATION_MULTIPLY: return a * db + b * da;
+    case STRUT_OPERATION_DIVIDE: return da / b + a * db / (b * b);
+    case STRUT_OPERATION_POWER: return a > 0.0 ? fabs(b) * pow(a, b) * da / a : da;
+    case STRUT_OPERATION_SQRT: return a > 0.0 ? 0.5 * da / sqrt(a) : sqrt(da);
+    case STRUT_OPERATION_EXP: return exp(a) * da;
     case STRUT_OPERATION_LOG:
     case STRUT_OPERATION_LOG10:
-    case STRUT_OPERATION_ATAN2:
-      return a > 0.0 ? da / a : 0.0;
-    default:
-      return da + db;
+    case STRUT_OPERATION_ATAN2: return a > 0.0 ? da / a : 0.0;
+    default: return da + db;
   }
 }
 
@@ -113,9 +82,7 @@ static strut_magnitude combine(strut_operation operation, strut_magnitude a, str
     case STRUT_OPERATION_DIVIDE:
     case STRUT_OPERATION_POWER:
     case STRUT_OPERATION_SQRT:
-    case STRUT_OPERATION_EXP:
-      size = fabs(apply(operation, a.size, b.size));
-      break;
+    case STRUT_OPERATION_EXP: size = fabs(apply(operation, a.size, b.size)); break;
     case STRUT_OPERATION_SIN:
     case STRUT_OPERATION_COS:
     case STRUT_OPERATION_ASIN:
@@ -123,19 +90,16 @@ static strut_magnitude combine(strut_operation operation, strut_magnitude a, str
     case STRUT_OPERATION_ATAN:
     case STRUT_OPERATION_ATAN2:
     case STRUT_OPERATION_LOG:
-    case STRUT_OPERATION_LOG10:
-      size = 1.0;
-      break;
-    default:
-      size = fmax(a.size, b.size);
-      break;
+    case STRUT_OPERATION_LOG10: size = 1.0; break;
+    default: size = fmax(a.size, b.size); break;
   }
   return (strut_magnitude){size, carried(operation, a.size, b.size, a.span, b.span),
                            carried(operation, a.size, b.size, a.noise, b.noise)};
 }
 
-strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *d, const size_t *index,
-                                        const strut_magnitude *value, strut_magnitude *stack) {
+strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *d,
+                                                 const size_t *index, const strut_magnitude *value,
+                                                 strut_magnitude *stack) {
   size_t top = 0;
   for (size_t i = 0; i < d->length; i++) {
     const strut_instruction *p = &d->program[i];

@@ -8,8 +8,8 @@
 #include "engine/scene/quantity.h"
 
 /** A program with its columns found: `index` (length) into `value`. */
-double strut_quantity_program_evaluate(const strut_quantity_definition *definition, const size_t *index,
-                              const double *value, double *stack);
+double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
+                                       const size_t *index, const double *value, double *stack);
 
 /** The size of a term, and two uncertainties that arithmetic carries on alike. */
 typedef struct strut_magnitude {
@@ -20,7 +20,7 @@ typedef struct strut_magnitude {
 
 /** The same program on magnitudes: sums take the larger size and add span and noise. */
 strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
-                                        const size_t *index, const strut_magnitude *value,
-                                        strut_magnitude *stack);
+                                                 const size_t *index, const strut_magnitude *value,
+                                                 strut_magnitude *stack);
 
 #endif

@@ -13,8 +13,8 @@ enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
 static const double GROWTH = 1.0, GROWTH_RK4 = 4.0, HOPELESS = 16.0;
 
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
-static void apply_members(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
-                          const strut_monitored_set *w) {
+static void apply_members(const strut_model *model, const strut_state *state,
+                          strut_step_limit_monitor *g, const strut_monitored_set *w) {
   const strut_member_table *t = &model->members;
   const double *q = state->q, *x = w->motion;
   double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
@@ -33,8 +33,8 @@ static void apply_members(const strut_model *model, const strut_state *state, st
   }
 }
 
-static void apply_contacts(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
-                           const strut_monitored_set *w) {
+static void apply_contacts(const strut_model *model, const strut_state *state,
+                           strut_step_limit_monitor *g, const strut_monitored_set *w) {
   const strut_contact_table *c = &model->contacts;
   double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
   for (int32_t i = 0; i < c->count; i++) {
@@ -48,7 +48,8 @@ static void apply_contacts(const strut_model *model, const strut_state *state, s
 }
 
 /* So that no motion is left out for ever. */
-static void stir(const strut_model *model, strut_step_limit_monitor *g, strut_monitored_set *w, double size) {
+static void stir(const strut_model *model, strut_step_limit_monitor *g, strut_monitored_set *w,
+                 double size) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
     g->noise = g->noise * 6364136223846793005u + 1442695040888963407u;
     if (!model->fixed[i]) w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
@@ -100,7 +101,8 @@ static double limit_at(const strut_model *model, const strut_step_limit_monitor 
   return fmax(bound, seen);
 }
 
-static void compute(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g) {
+static void compute(const strut_model *model, const strut_state *state,
+                    strut_step_limit_monitor *g) {
   g->known_limit = limit_at(model, g, state->q, state->rest, true);
   for (int i = 0; i < g->count; i++) {
     strut_monitored_set *w = &g->watch[i];
@@ -122,7 +124,8 @@ static void note_below(strut_step_limit_monitor *g, double time, int64_t steps) 
   g->hopeless = g->hopeless || g->grown > HOPELESS;
 }
 
-void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g) {
+void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state,
+                                     strut_step_limit_monitor *g) {
   int64_t steps = state->step - g->last;
   bool again = false;
   g->last = state->step;
@@ -144,11 +147,13 @@ void strut_step_limit_monitor_sample(const strut_model *model, const strut_state
     g->below = false;
 }
 
-double strut_step_limit_monitor_last_limit(const strut_model *model, const strut_step_limit_monitor *g) {
+double strut_step_limit_monitor_last_limit(const strut_model *model,
+                                           const strut_step_limit_monitor *g) {
   return g->count > 0 ? limit_at(model, g, g->shape, g->rest, false) : HUGE_VAL;
 }
 
-void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g) {
+void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state,
+                                    strut_step_limit_monitor *g) {
   if (g->count == 0) return;
   double before = strut_step_limit_monitor_last_limit(model, g);
   g->known_limit = fmin(before, limit_at(model, g, state->q, state->rest, false));
@@ -156,9 +161,11 @@ void strut_step_limit_monitor_check(const strut_model *model, const strut_state 
 }
 
 bool strut_step_limit_monitor_create(const strut_model *model, strut_state *state,
-                        const strut_integrator *method, double step, strut_step_limit_monitor *guard) {
+                                     const strut_integrator *method, double step,
+                                     strut_step_limit_monitor *guard) {
   bool rk4 = method->region == STRUT_REGION_RK4, euler = method->region == STRUT_REGION_EULER;
-  *guard = (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
+  *guard =
+      (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
   if (method->region == STRUT_REGION_ALL || (model->plan & STRUT_TERM_RIGID)) return true;
   guard->known_limit = HUGE_VAL;
   guard->count = rk4 ? 2 : 1;
@@ -184,8 +191,9 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   return true;
 }
 
-strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *g, const strut_state *state, double start_limit,
-                              strut_error *error) {
+strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *g,
+                                           const strut_state *state, double start_limit,
+                                           strut_error *error) {
   const char *name = g->method->name;
   if (g->lowest > 0.0)
     return strut_fail(error, STRUT_DIVERGED,

@@ -42,16 +42,21 @@ typedef struct strut_step_limit_monitor {
 
 /** Room and a first estimate, in the state's arena. False: out of memory. */
 bool strut_step_limit_monitor_create(const strut_model *model, strut_state *state,
-                        const strut_integrator *method, double step, strut_step_limit_monitor *guard);
+                                     const strut_integrator *method, double step,
+                                     strut_step_limit_monitor *guard);
 /** To be called between steps, at or after `next`. */
-void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state, strut_step_limit_monitor *guard);
+void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state,
+                                     strut_step_limit_monitor *guard);
 
 /** After something went wrong: was the limit below the step now or at the last look? Notes it. */
-void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state, strut_step_limit_monitor *guard);
+void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state,
+                                    strut_step_limit_monitor *guard);
 /** STRUT_DIVERGED, with what the guard knows of it; start_limit: the limit at the start [s]. */
-strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *guard, const strut_state *state,
-                              double start_limit, strut_error *error);
+strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *guard,
+                                           const strut_state *state, double start_limit,
+                                           strut_error *error);
 /** The limit of the shape at the last look [s]; HUGE_VAL where nothing is watched. */
-double strut_step_limit_monitor_last_limit(const strut_model *model, const strut_step_limit_monitor *guard);
+double strut_step_limit_monitor_last_limit(const strut_model *model,
+                                           const strut_step_limit_monitor *guard);
 
 #endif

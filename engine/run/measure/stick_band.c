@@ -111,7 +111,7 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
 }
 
 void strut_stick_band_sample(const strut_model *model, const strut_state *state,
-                           strut_stick_band *band) {
+                             strut_stick_band *band) {
   const strut_contact_table *c = &model->contacts;
   if (!band->watch) return;
   double time = (double)(state->step - band->last) * band->step;

@@ -32,8 +32,8 @@ typedef struct strut_stick_band {
   double step; /* [s] */
   int looks;
   strut_stick_band_monitor *watch; /* (contacts); NULL: nothing to watch */
-  double *a, *scratch;     /* (length) */
-  strut_band_tie *ties;    /* (tie_count) */
+  double *a, *scratch;             /* (length) */
+  strut_band_tie *ties;            /* (tie_count) */
   int32_t tie_count;
   int64_t last; /* step of the latest look */
 } strut_stick_band;
@@ -51,7 +51,7 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
                              const strut_integrator *method, double step, strut_stick_band *band);
 /** Between steps, now and then: reads slip, and from the last forces the acceleration. */
 void strut_stick_band_sample(const strut_model *model, const strut_state *state,
-                           strut_stick_band *band);
+                             strut_stick_band *band);
 /**
  * The mean |a| dt of a contact while it slid [m/s], where its band is so much narrower that this
  * changes the answer: half of that where static friction is the stronger, else a hundredth; else 0.

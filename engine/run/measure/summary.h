@@ -36,15 +36,16 @@ typedef struct strut_contact_summary {
   const char *node;  /* name; owned by the scene */
   double duty;       /* fraction of the window's steps in contact [1] */
   double max_height; /* largest height above the ground in the window [m] */
-  double band_needed; /* where a step passes over its stick band: the width that would do [m/s]; or 0 */
+  double
+      band_needed; /* where a step passes over its stick band: the width that would do [m/s]; or 0 */
 } strut_contact_summary;
 
 /** One of the quantities that the scene's `measure` names, over the window. */
 typedef struct strut_measured {
   const char *name, *unit; /* owned by the scene */
-  double value;    /* SI; NAN where the run did not come to the end of its window */
-  double spread;   /* standard deviation of the value of each of the window's periods; or NAN */
-  double scale;    /* largest absolute value over the window, of the quantity and of the terms that it
+  double value;            /* SI; NAN where the run did not come to the end of its window */
+  double spread; /* standard deviation of the value of each of the window's periods; or NAN */
+  double scale;  /* largest absolute value over the window, of the quantity and of the terms that it
                       is made of: relative errors mean nothing where the value is far below it */
   double expected; /* error to expect, SI; NAN where that is not known */
   bool kept;       /* expected is within what is wanted */
@@ -62,25 +63,25 @@ typedef enum strut_motion {
 enum { STRUT_MOST_MULTIPLIERS = 8 };
 typedef struct strut_steady_summary {
   strut_motion kind;
-  int32_t repeats;      /* n of a period-n motion; 1: every drive period alike */
-  int64_t periods;      /* drive periods simulated until that was known */
-  double interval;      /* the velocity lies within +- this [m/s] */
-  double residual;      /* change of the shape over one repetition, relative to the shape's motion */
-  bool shot;            /* finished by Newton's method; else run on, and `reason` says why */
-  int iterations;       /* of Newton's method; 0 where it was not asked for */
+  int32_t repeats; /* n of a period-n motion; 1: every drive period alike */
+  int64_t periods; /* drive periods simulated until that was known */
+  double interval; /* the velocity lies within +- this [m/s] */
+  double residual; /* change of the shape over one repetition, relative to the shape's motion */
+  bool shot;       /* finished by Newton's method; else run on, and `reason` says why */
+  int iterations;  /* of Newton's method; 0 where it was not asked for */
   char reason[200];
-  size_t multiplier_count; /* Floquet multipliers, the largest first */
+  size_t multiplier_count;                      /* Floquet multipliers, the largest first */
   double multiplier[STRUT_MOST_MULTIPLIERS][2]; /* real and imaginary part */
 } strut_steady_summary;
 
 /** How a run with a wanted accuracy chose its method; `wanted` is 0 without. */
 typedef struct strut_accuracy_summary {
-  double wanted;     /* relative [1] */
-  double expected;   /* error of the velocity, relative to it or to `scale` if that is larger [1];
+  double wanted;   /* relative [1] */
+  double expected; /* error of the velocity, relative to it or to `scale` if that is larger [1];
                         NAN where the runs that were made do not tell it */
-  double scale;      /* [m/s] below which errors are not relative any more */
-  bool kept;         /* expected <= wanted */
-  char why[400];     /* which method and step, and why, in one or two sentences */
+  double scale;    /* [m/s] below which errors are not relative any more */
+  bool kept;       /* expected <= wanted */
+  char why[400];   /* which method and step, and why, in one or two sentences */
   int64_t check_evaluations; /* of the forces, spent on choosing and checking; not in the run's */
 } strut_accuracy_summary;
 
@@ -94,40 +95,40 @@ typedef struct strut_step_limit_violation {
 /** What a user must know of a result beside its figures: once per cause. */
 typedef struct strut_warning {
   const char *code; /* for programs: "energy_balance", "stick_band", "step_limit"; a constant */
-  char text[600];   /* what it is, its likely cause and the remedy: a sentence without a full stop */
+  char text[600]; /* what it is, its likely cause and the remedy: a sentence without a full stop */
 } strut_warning;
 enum { STRUT_MOST_WARNINGS = 8 };
 /** How the start came to rest; all zero where the scene does not settle or the run starts elsewhere. */
 typedef struct strut_settle_summary {
-  double step;            /* of the Runge-Kutta method that settled [s] */
-  int64_t evaluations;    /* of the forces; not in the run's */
-  int32_t perturbations;  /* times it was pushed off an unstable equilibrium */
-  bool unstable;          /* the Hessian at rest, contacts as they are, has a negative direction */
-  const char *node;       /* that moves most in it; owned by the scene; NULL where stable */
-  double stiffness;       /* the lowest eigenvalue of the Hessian [N/m]; 0 where stable */
-  double growth_rate;     /* of that motion without damping [1/s]; 0 where stable */
+  double step;           /* of the Runge-Kutta method that settled [s] */
+  int64_t evaluations;   /* of the forces; not in the run's */
+  int32_t perturbations; /* times it was pushed off an unstable equilibrium */
+  bool unstable;         /* the Hessian at rest, contacts as they are, has a negative direction */
+  const char *node;      /* that moves most in it; owned by the scene; NULL where stable */
+  double stiffness;      /* the lowest eigenvalue of the Hessian [N/m]; 0 where stable */
+  double growth_rate;    /* of that motion without damping [1/s]; 0 where stable */
 } strut_settle_summary;
 
 /** Owned by whoever made it with strut_simulate; strut_summary_free releases the arrays. */
 typedef struct strut_summary {
-  strut_status status;     /* STRUT_OK, STRUT_DIVERGED, STRUT_INTERRUPTED, ... */
-  char reason[600];        /* one sentence where status is not STRUT_OK; else empty */
-  double velocity;         /* (14): mean x-velocity over the window [m/s] */
-  double velocity_spread;  /* standard deviation over the window's periods; NAN without periods */
-  bool velocity_zero;      /* zero by symmetry: nothing but rounding beside the nodes' speeds */
-  double window_start;     /* [s] */
-  double duration;         /* simulated [s] */
-  double settle_time;      /* simulated before t = 0 to come to rest [s]; not in duration */
+  strut_status status;    /* STRUT_OK, STRUT_DIVERGED, STRUT_INTERRUPTED, ... */
+  char reason[600];       /* one sentence where status is not STRUT_OK; else empty */
+  double velocity;        /* (14): mean x-velocity over the window [m/s] */
+  double velocity_spread; /* standard deviation over the window's periods; NAN without periods */
+  bool velocity_zero;     /* zero by symmetry: nothing but rounding beside the nodes' speeds */
+  double window_start;    /* [s] */
+  double duration;        /* simulated [s] */
+  double settle_time;     /* simulated before t = 0 to come to rest [s]; not in duration */
   strut_settle_summary settle;
   int64_t steps, force_evaluations; /* from t = 0 on */
-  int64_t events;                   /* switches located in time; 0 with a method that locates none */
-  char method[32];                  /* that ran */
+  int64_t events;          /* switches located in time; 0 with a method that locates none */
+  char method[32];         /* that ran */
   double step, step_limit; /* [s]; step_limit is INFINITY where nothing limits it */
   strut_step_limit_violation limit_fell;
-  double wall_time;        /* seconds spent stepping; never written into a file */
+  double wall_time; /* seconds spent stepping; never written into a file */
   size_t node_count, contact_count;
-  const char **node_names; /* (node_count) names owned by the scene */
-  double *positions;       /* (node_count, 2) at the end [m] */
+  const char **node_names;         /* (node_count) names owned by the scene */
+  double *positions;               /* (node_count, 2) at the end [m] */
   strut_contact_summary *contacts; /* (contact_count) */
   size_t measured_count;
   strut_measured *measured; /* (measured_count) in the scene's order */

@@ -20,8 +20,7 @@ strut_status strut_period_map_create(const strut_scene *scene, const strut_exper
   strut_status status = strut_model_compile(&map->scene, &map->model, error);
   if (!status) status = strut_state_create(map->model, &map->state, error);
   if (!status) map->workspace = map->method->create(map->model, map->state);
-  if (!status &&
-      (!map->workspace || strut_measure_create(map->model, &grid, 0, 0, &map->measure)))
+  if (!status && (!map->workspace || strut_measure_create(map->model, &grid, 0, 0, &map->measure)))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (status) {
     strut_period_map_free(map);
@@ -62,9 +61,8 @@ static void advance(strut_period_map *map) {
   int64_t left = map->steps * map->repeats;
   state->interrupt = map->interrupt;
   if (map->most_evaluations > 0)
-    state->most_evaluations = map->most_evaluations > map->evaluations
-                                  ? map->most_evaluations - map->evaluations
-                                  : 1;
+    state->most_evaluations =
+        map->most_evaluations > map->evaluations ? map->most_evaluations - map->evaluations : 1;
   while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !used_up(map)) {
     int64_t count = left < most ? left : most;
     map->method->advance(model, state, map->workspace, map->dt, count);
@@ -95,7 +93,8 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   double shift = map->travels ? mean_along(model, y) - before : 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     y[i] -= shift * model->contacts.tangent[i % 2];
-  bool whole = !state->trouble && !strut_period_map_interrupted(map) && !strut_period_map_spent(map);
+  bool whole =
+      !state->trouble && !strut_period_map_interrupted(map) && !strut_period_map_spent(map);
   return whole ? to - from : (double)NAN;
 }
 

@@ -26,7 +26,8 @@ typedef struct strut_period_map {
   int64_t steps;     /* of one drive period */
   int32_t repeats;   /* drive periods of one application */
   bool travels;
-  const volatile sig_atomic_t *interrupt; /* an application ends soon after it is set; may be NULL */
+  const volatile sig_atomic_t
+      *interrupt;           /* an application ends soon after it is set; may be NULL */
   int64_t most_evaluations; /* and soon after so many, all applications together; 0: any number */
   int64_t evaluations, events, applied; /* so far; applied: drive periods */
 } strut_period_map;

@@ -21,7 +21,7 @@ typedef struct shot {
   double *along;  /* (count) the shift along the ground, of length 1; zeros where there is none */
   double *matrix; /* (count, count) derivative of the map, without the neutral shift */
   double *work;   /* (count, count) */
-  double *f, *change; /* (count) */
+  double *f, *change;           /* (count) */
   double *here, *there, *trial; /* (both) */
   strut_arena arena;
 } shot;
@@ -121,8 +121,7 @@ static double search_line(shot *s, double before, double *travel) {
   for (int k = 0; k < MOST_HALVINGS && !strut_period_map_interrupted(s->map); k++, part *= 0.5) {
     double gone;
     memcpy(s->trial, s->here, s->both * sizeof(double));
-    for (size_t i = 0; i < s->count; i++)
-      s->trial[s->place[i]] += part * s->change[i] * s->unit[i];
+    for (size_t i = 0; i < s->count; i++) s->trial[s->place[i]] += part * s->change[i] * s->unit[i];
     double left = leftover(s, s->trial, &gone);
     if (left < before) {
       memcpy(s->here, s->trial, s->both * sizeof(double));

@@ -48,7 +48,7 @@ static bool drives_repeat(const strut_steady_detector *w, int32_t n) {
 }
 
 strut_status strut_steady_detector_create(const strut_model *model, double period, double begin,
-                                strut_steady_detector *w) {
+                                          strut_steady_detector *w) {
   const strut_steady *wanted = &model->scene->experiment.steady;
   size_t both = 2 * (size_t)model->length;
   *w = (strut_steady_detector){
@@ -104,7 +104,9 @@ static double distance(const strut_steady_detector *w, const double *a, const do
   return most;
 }
 
-void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *w) { take(state, w, w->middle); }
+void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *w) {
+  take(state, w, w->middle);
+}
 
 /*
  * What is left of a decay: the sum of the geometric series that goes on from the latest change. It is
@@ -121,8 +123,8 @@ static double remaining(const double *residual, int64_t now, int32_t n, int32_t 
 }
 
 /* From b to a along coordinate i, without the travel `along`, in sizes and sizes times 2 pi f. */
-static double step_of(const strut_steady_detector *w, const double *a, const double *b, double along,
-                      int32_t i, double *speed) {
+static double step_of(const strut_steady_detector *w, const double *a, const double *b,
+                      double along, int32_t i, double *speed) {
   int32_t length = w->model->length;
   double shift = w->travels ? along * w->model->contacts.tangent[i % 2] : 0.0;
   *speed = (a[length + i] - b[length + i]) * w->period / (w->model->size * TURN);
@@ -252,7 +254,8 @@ static void mark(strut_steady_detector *w, int64_t now, double x) {
 }
 
 /* Mean velocity over the latest 8 batches of `each` stretches, and its interval by Student's t. */
-static double batch_mean(const strut_steady_detector *w, int32_t each, double *interval, double *trend) {
+static double batch_mean(const strut_steady_detector *w, int32_t each, double *interval,
+                         double *trend) {
   double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
   double time = each * (double)w->stride * w->period;
   for (int i = 0; i < BATCHES; i++) {

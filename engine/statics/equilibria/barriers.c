@@ -48,8 +48,8 @@ static int32_t find_saddle(const strut_equilibrium_search *h, int32_t saddle) {
 }
 
 /* The barrier from one of the landscape's minima to another; false: out of memory. */
-static bool fill(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a, int32_t b, int32_t way,
-                 strut_barrier *barrier) {
+static bool fill(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a, int32_t b,
+                 int32_t way, strut_barrier *barrier) {
   const strut_landscape *l = &h->landscape;
   const strut_critical_point *points = l->set.points;
   int32_t direct = strut_landscape_direct(l, a, b);
@@ -80,8 +80,8 @@ strut_status strut_barriers_find(strut_equilibrium_search *h) {
     for (int b = 0; b < count && good; b++) {
       int32_t way = a == b ? -1 : strut_landscape_path(l, chosen[a], chosen[b]);
       if (way < 0) continue;
-      good = fill(h, of_state, chosen[a], chosen[b], way,
-                  &h->out->barriers[h->out->barrier_count++]);
+      good =
+          fill(h, of_state, chosen[a], chosen[b], way, &h->out->barriers[h->out->barrier_count++]);
     }
   strut_release(of_state);
   return good ? STRUT_OK : strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");

@@ -26,8 +26,8 @@ static void count_starts(strut_equilibrium_search *h, const strut_critical_set *
 }
 
 /* The level scene with all shapes laid on the set, its start too: `placed` shares the rest. */
-static double *place_shapes(const strut_equilibrium_search *h, const strut_node_set *set, strut_scene *placed,
-                            size_t length, strut_arena *arena) {
+static double *place_shapes(const strut_equilibrium_search *h, const strut_node_set *set,
+                            strut_scene *placed, size_t length, strut_arena *arena) {
   const strut_scene *flat = &h->flat.scene;
   size_t nodes = flat->node_count, shapes = flat->configuration_count;
   *placed = *flat;
@@ -65,8 +65,8 @@ static strut_status add_points(strut_equilibrium_search *h, const strut_critical
 }
 
 static strut_status search_held(strut_equilibrium_search *h, const strut_potential *potential,
-                                const uint8_t *held, const double *shape,
-                                const strut_node_set *set, int32_t group, strut_arena *arena) {
+                                const uint8_t *held, const double *shape, const strut_node_set *set,
+                                int32_t group, strut_arena *arena) {
   const strut_equilibria_options *o = h->options;
   size_t shapes = h->flat.scene.configuration_count, length = (size_t)h->model->length;
   const double **extra = strut_arena_allocate(arena, shapes + 1, sizeof *extra);
@@ -96,8 +96,8 @@ static strut_status search_on(strut_equilibrium_search *h, int32_t group) {
   size_t length = (size_t)h->model->length;
   double *shape = place_shapes(h, set, &placed, length, &scratch);
   uint8_t *held = strut_arena_allocate(&scratch, length, 1);
-  strut_status status = shape && held ? strut_model_compile(&placed, &model, h->error)
-                                      : no_memory(h);
+  strut_status status =
+      shape && held ? strut_model_compile(&placed, &model, h->error) : no_memory(h);
   if (!status) {
     strut_supports_hold(&h->supports, set, held);
     status = strut_potential_create(model, held, false, &potential, h->error);
@@ -144,7 +144,8 @@ static strut_status add_ground(strut_equilibrium_search *h) {
     strut_candidate_equilibrium *f = &h->finds[at];
     strut_equilibrium *e = &f->e;
     f->group = (int32_t)h->supports.count;
-    strut_status status = strut_equilibrium_search_fill(h, f, h->world, NULL, NULL, &set->points[i]);
+    strut_status status =
+        strut_equilibrium_search_fill(h, f, h->world, NULL, NULL, &set->points[i]);
     if (status) return status;
     f->number = (int32_t)i;
     f->state = (int32_t)i < h->landscape.minima ? (int32_t)i : -1;
@@ -259,8 +260,8 @@ static strut_status prepare(strut_equilibrium_search *h, const strut_model *orig
   if (!status && h->on_ground && !is_pressed(h)) status = make_world(h, false);
   if (status) return status;
   if (h->on_ground && h->flat.askew < 0)
-    status = strut_supports_choose(&h->flat.scene, o->supports, &h->out->arena, &h->supports,
-                                   h->error);
+    status =
+        strut_supports_choose(&h->flat.scene, o->supports, &h->out->arena, &h->supports, h->error);
   else if (o->supports)
     status = strut_fail(h->error, STRUT_USAGE,
                         h->flat.askew >= 0

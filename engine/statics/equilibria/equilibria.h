@@ -17,7 +17,7 @@ typedef enum strut_outcome {
   STRUT_OUTCOME_BELOW_GROUND, /* set aside: nodes lie under the ground */
   STRUT_OUTCOME_UNSTABLE,     /* a saddle or maximum: not followed */
   STRUT_OUTCOME_FLOPPY,
-  STRUT_OUTCOME_NO_REST       /* did not come to rest: falls, slides */
+  STRUT_OUTCOME_NO_REST /* did not come to rest: falls, slides */
 } strut_outcome;
 
 /** One equilibrium: on held contacts (supports not NULL), or as the scene itself stands. */
@@ -30,52 +30,52 @@ typedef struct strut_equilibrium {
   uint8_t *below;                 /* (node_count) 1 where under the ground */
   double *member_force;           /* (member_count) tension positive [N] */
   strut_outcome fate;
-  int32_t tips_over;              /* node about which it turns, or -1 */
-  int32_t ends_as;                /* the equilibrium it ends in, or -1; itself if it stands */
-  double *rest;                   /* (length) where it comes to rest on the real ground, or NULL */
-  double rest_energy;             /* (13) there [J] */
-  double rest_residual;           /* largest net force there [N] */
+  int32_t tips_over;    /* node about which it turns, or -1 */
+  int32_t ends_as;      /* the equilibrium it ends in, or -1; itself if it stands */
+  double *rest;         /* (length) where it comes to rest on the real ground, or NULL */
+  double rest_energy;   /* (13) there [J] */
+  double rest_residual; /* largest net force there [N] */
   int32_t contact_count;
-  int32_t *contacts;              /* nodes that touch at the end; before it is followed: supports */
-  double *normal;                 /* (contact_count) [N] */
-  char verdict[160];              /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
+  int32_t *contacts; /* nodes that touch at the end; before it is followed: supports */
+  double *normal;    /* (contact_count) [N] */
+  char verdict[160]; /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
 } strut_equilibrium;
 
 /** The lowest way known between two stable equilibria on the real ground. */
 typedef struct strut_barrier {
-  int32_t from, to;  /* in the list */
-  double height;     /* [J] above `from` */
-  int32_t saddle;    /* the highest saddle on the way, in the list */
+  int32_t from, to; /* in the list */
+  double height;    /* [J] above `from` */
+  int32_t saddle;   /* the highest saddle on the way, in the list */
   int32_t via_count;
-  int32_t *via;      /* (via_count) stable or floppy equilibria in between, in the list, or -1 */
-  double direct;     /* [J] of the lowest saddle that leads straight there; NAN: none is known */
+  int32_t *via;  /* (via_count) stable or floppy equilibria in between, in the list, or -1 */
+  double direct; /* [J] of the lowest saddle that leads straight there; NAN: none is known */
   int32_t direct_saddle; /* in the list, or -1 */
 } strut_barrier;
 
 typedef struct strut_equilibria {
   size_t count;
-  strut_equilibrium *list;  /* by supports in the scene's order; those of the real ground last */
+  strut_equilibrium *list; /* by supports in the scene's order; those of the real ground last */
   size_t barrier_count;
   strut_barrier *barriers;
   uint64_t seed;
   int64_t starts;
-  double missed;            /* the largest over the searches, as in strut_critical_set */
-  double missed_below;      /* its upper 95 % limit */
-  double missed_one;        /* upper 95 % limit on the share of starts of a stable one never met */
-  int64_t unmet;            /* stable ones, over all searches, that no random start met */
-  bool cut_short;           /* some search ended early, for the structure's size */
+  double missed;       /* the largest over the searches, as in strut_critical_set */
+  double missed_below; /* its upper 95 % limit */
+  double missed_one;   /* upper 95 % limit on the share of starts of a stable one never met */
+  int64_t unmet;       /* stable ones, over all searches, that no random start met */
+  bool cut_short;      /* some search ended early, for the structure's size */
   strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
-  int32_t start;            /* the equilibrium it settled in, or -1: it is none of the list */
-  char start_trouble[600];  /* why the start did not come to rest; else empty */
-  char remark[400];         /* why there is none, or what moves freely; else empty */
+  int32_t start;               /* the equilibrium it settled in, or -1: it is none of the list */
+  char start_trouble[600];     /* why the start did not come to rest; else empty */
+  char remark[400];            /* why there is none, or what moves freely; else empty */
   strut_arena arena;
 } strut_equilibria;
 
 typedef struct strut_equilibria_options {
-  int64_t starts;                   /* 0: as the scene says */
-  const uint64_t *seed;             /* NULL: as the scene says */
-  const strut_node_set *supports;   /* NULL: as the scene says */
-  bool standing_only;               /* no saddles and no barriers: what stands, and where */
+  int64_t starts;                 /* 0: as the scene says */
+  const uint64_t *seed;           /* NULL: as the scene says */
+  const strut_node_set *supports; /* NULL: as the scene says */
+  bool standing_only;             /* no saddles and no barriers: what stands, and where */
   const volatile sig_atomic_t *interrupt;
 } strut_equilibria_options;
 

@@ -30,7 +30,8 @@ static double *copied(strut_arena *arena, const double *from, size_t count) {
   return copy;
 }
 
-static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *from, strut_critical_point *to) {
+static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *from,
+                       strut_critical_point *to) {
   strut_arena *arena = &h->out->arena;
   size_t length = (size_t)h->model->length;
   *to = *from;
@@ -68,7 +69,8 @@ static bool measure_reactions(strut_equilibrium_search *h, const strut_potential
   return true;
 }
 
-static void find_nodes_below(const strut_equilibrium_search *h, const uint8_t *held, strut_equilibrium *e) {
+static void find_nodes_below(const strut_equilibrium_search *h, const uint8_t *held,
+                             strut_equilibrium *e) {
   const strut_contact_table *c = &h->model->contacts;
   for (int32_t i = 0; i < c->count && h->on_ground; i++) {
     uint32_t at = c->at[i];
@@ -77,9 +79,11 @@ static void find_nodes_below(const strut_equilibrium_search *h, const uint8_t *h
   }
 }
 
-strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h, strut_candidate_equilibrium *find, const strut_potential *potential,
-                             const uint8_t *held, const strut_node_set *set,
-                             const strut_critical_point *point) {
+strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h,
+                                           strut_candidate_equilibrium *find,
+                                           const strut_potential *potential, const uint8_t *held,
+                                           const strut_node_set *set,
+                                           const strut_critical_point *point) {
   strut_arena *arena = &h->out->arena;
   strut_equilibrium *e = &find->e;
   size_t nodes = (size_t)h->model->node_count;
@@ -105,7 +109,8 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h, strut_ca
   return STRUT_OK;
 }
 
-strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, const double *q, strut_equilibrium *e) {
+strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, const double *q,
+                                               strut_equilibrium *e) {
   const strut_contact_table *c = &h->model->contacts;
   size_t most = h->on_ground ? (size_t)c->count : 0;
   e->contacts = strut_arena_allocate(&h->out->arena, most, sizeof *e->contacts);

@@ -6,8 +6,8 @@
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIUM_SEARCH_H
 
 #include "engine/statics/equilibria/equilibria.h"
-#include "engine/statics/equilibria/level_frame.h"
 #include "engine/statics/equilibria/landscape.h"
+#include "engine/statics/equilibria/level_frame.h"
 #include "engine/statics/equilibria/relax.h"
 #include "engine/statics/equilibria/supports.h"
 
@@ -33,7 +33,7 @@ typedef struct strut_equilibrium_search {
   strut_equilibria *out;
   strut_error *error;
   strut_level_frame flat;
-  strut_model *model;     /* of flat.scene */
+  strut_model *model; /* of flat.scene */
   strut_supports supports;
   strut_instability_cause unrest;
   bool on_ground;         /* else there is no ground, or nothing presses on it */
@@ -52,12 +52,15 @@ int32_t strut_equilibrium_search_add(strut_equilibrium_search *hunt);
  * Fills in what holds at point's shape: energy, member forces, reactions on `potential`, nodes
  * below. `set` NULL: as the scene itself stands. The point's arrays are copied, its shape oriented.
  */
-strut_status strut_equilibrium_search_fill(strut_equilibrium_search *hunt, strut_candidate_equilibrium *find, const strut_potential *potential,
-                             const uint8_t *held, const strut_node_set *set,
-                             const strut_critical_point *point);
+strut_status strut_equilibrium_search_fill(strut_equilibrium_search *hunt,
+                                           strut_candidate_equilibrium *find,
+                                           const strut_potential *potential, const uint8_t *held,
+                                           const strut_node_set *set,
+                                           const strut_critical_point *point);
 
 /** Nodes that touch the ground at q and with what force: contacts, contact_count, normal of e. */
-strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *hunt, const double *q, strut_equilibrium *e);
+strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *hunt, const double *q,
+                                               strut_equilibrium *e);
 
 /** Lets go of the support equilibria that may stand, and judges by where they come to rest. */
 strut_status strut_equilibrium_search_follow(strut_equilibrium_search *hunt);
@@ -66,6 +69,7 @@ strut_status strut_equilibrium_search_follow(strut_equilibrium_search *hunt);
 strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_search *hunt);
 
 /** Verdicts in words, and the remark on what moves freely. Names are given already. */
-void strut_report_candidates(strut_equilibrium_search *hunt, strut_candidate_equilibrium *finds, size_t count);
+void strut_report_candidates(strut_equilibrium_search *hunt, strut_candidate_equilibrium *finds,
+                             size_t count);
 
 #endif

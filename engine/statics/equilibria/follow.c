@@ -13,7 +13,8 @@ static bool is_followed(const strut_equilibrium_search *h, const strut_candidate
   return f->e.supports && f->e.fate == STRUT_OUTCOME_STANDS && h->unrest == STRUT_INSTABILITY_NONE;
 }
 
-static strut_outcome first_judgement(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
+static strut_outcome first_judgement(const strut_equilibrium_search *h,
+                                     const strut_candidate_equilibrium *f) {
   const strut_equilibrium *e = &f->e;
   if (e->point.label == STRUT_FLOPPY) return STRUT_OUTCOME_FLOPPY;
   if (e->point.label != STRUT_STABLE) return STRUT_OUTCOME_UNSTABLE;
@@ -69,7 +70,8 @@ static strut_status explore(strut_equilibrium_search *h) {
   return status;
 }
 
-static bool stands_on(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f, const double *rest) {
+static bool stands_on(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f,
+                      const double *rest) {
   const strut_node_set *set = f->e.supports;
   double moved = strut_shape_distance(h->model, f->e.point.q, rest, false, NULL);
   for (size_t i = 0; i < set->count; i++) {
@@ -86,8 +88,7 @@ static int32_t turning_node(const strut_candidate_equilibrium *f) {
   int32_t most = -1;
   for (size_t i = 0; i < f->e.supports->count && f->pulls; i++) {
     int32_t node = f->e.supports->node[i];
-    if (f->e.reaction[node][1] > 0 &&
-        (most < 0 || f->e.reaction[node][1] > f->e.reaction[most][1]))
+    if (f->e.reaction[node][1] > 0 && (most < 0 || f->e.reaction[node][1] > f->e.reaction[most][1]))
       most = node;
   }
   return most;
@@ -120,8 +121,7 @@ static strut_status follow(strut_equilibrium_search *h, strut_candidate_equilibr
 strut_status strut_equilibrium_search_follow(strut_equilibrium_search *h) {
   bool any = false, lost = false;
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < h->count; i++)
-    h->finds[i].e.fate = first_judgement(h, &h->finds[i]);
+  for (size_t i = 0; i < h->count; i++) h->finds[i].e.fate = first_judgement(h, &h->finds[i]);
   if (h->unrest != STRUT_INSTABILITY_NONE) return STRUT_OK;
   if ((status = explore(h))) return status;
   for (size_t i = 0; i < h->count && !status; i++) {

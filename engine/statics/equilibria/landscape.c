@@ -42,8 +42,8 @@ static strut_status find_lowest(strut_landscape *l, strut_error *error) {
 }
 
 strut_status strut_landscape_create(const strut_potential *potential,
-                                    const strut_critical_effort *effort,
-                                    strut_landscape *landscape, strut_error *error) {
+                                    const strut_critical_effort *effort, strut_landscape *landscape,
+                                    strut_error *error) {
   *landscape = (strut_landscape){.potential = potential};
   landscape->merged = 2 * potential->model->node_count - potential->n <= FEW_FIXED;
   strut_status status = strut_critical_search(potential, effort, &landscape->set, error);
@@ -67,8 +67,7 @@ static double distance(const strut_landscape *l, const double *a, const double *
 int32_t strut_landscape_find(const strut_landscape *l, const double *q) {
   double potential = strut_potential_value(l->potential, q), scale = 0.0;
   double size = l->potential->model->size;
-  for (int32_t i = 0; i < l->minima; i++)
-    scale = fmax(scale, fabs(l->set.points[i].potential));
+  for (int32_t i = 0; i < l->minima; i++) scale = fmax(scale, fabs(l->set.points[i].potential));
   for (int32_t i = 0; i < l->minima; i++) {
     const strut_critical_point *p = &l->set.points[i];
     if (fabs(p->potential - potential) > SAME_POTENTIAL * scale) continue;

@@ -9,7 +9,7 @@
 
 typedef struct strut_landscape {
   const strut_potential *potential;
-  bool merged;       /* congruent shapes are one point, mirror images too */
+  bool merged; /* congruent shapes are one point, mirror images too */
   strut_critical_set set;
   int32_t minima;    /* stable and floppy points: the first ones of the set */
   double *lowest;    /* (minima) potential of the lowest pass out of it [J]; HUGE_VAL: none known */
@@ -19,8 +19,8 @@ typedef struct strut_landscape {
 
 /** strut_landscape_free releases it, after a failure too. */
 strut_status strut_landscape_create(const strut_potential *potential,
-                                    const strut_critical_effort *effort,
-                                    strut_landscape *landscape, strut_error *error);
+                                    const strut_critical_effort *effort, strut_landscape *landscape,
+                                    strut_error *error);
 void strut_landscape_free(strut_landscape *landscape);
 
 /** The minimum that the shape q (length) is, or -1. */

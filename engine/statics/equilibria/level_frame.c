@@ -42,8 +42,8 @@ static bool copy_arrays(strut_level_frame *flat) {
   s->members = copied(&flat->arena, s->members, s->member_count, sizeof *s->members);
   s->contacts = copied(&flat->arena, s->contacts, s->contact_count, sizeof *s->contacts);
   s->loads = copied(&flat->arena, s->loads, s->load_count, sizeof *s->loads);
-  s->configurations = copied(&flat->arena, s->configurations, s->configuration_count,
-                             sizeof *s->configurations);
+  s->configurations =
+      copied(&flat->arena, s->configurations, s->configuration_count, sizeof *s->configurations);
   if (!s->nodes || !s->members || !s->contacts || !s->loads || !s->configurations) return false;
   for (size_t i = 0; i < s->configuration_count; i++) {
     strut_configuration *c = &s->configurations[i];
@@ -73,8 +73,7 @@ static void quieten(strut_scene *s) {
   for (size_t i = 0; i < s->load_count; i++)
     if (s->loads[i].signal < 0) s->loads[kept++] = s->loads[i];
   s->load_count = kept;
-  for (size_t i = 0; i < s->contact_count; i++)
-    s->contacts[i].friction.law = STRUT_FRICTION_NONE;
+  for (size_t i = 0; i < s->contact_count; i++) s->contacts[i].friction.law = STRUT_FRICTION_NONE;
   for (size_t i = 0; i < s->node_count; i++)
     s->nodes[i].velocity[0] = s->nodes[i].velocity[1] = 0.0;
 }
@@ -89,13 +88,15 @@ static void level(strut_level_frame *flat) {
     strut_level_frame_from_original(flat, 1, s->nodes[i].position);
     strut_level_frame_from_original(flat, 1, s->nodes[i].start);
   }
-  for (size_t i = 0; i < s->load_count; i++) strut_level_frame_from_original(flat, 1, s->loads[i].force);
+  for (size_t i = 0; i < s->load_count; i++)
+    strut_level_frame_from_original(flat, 1, s->loads[i].force);
   for (size_t i = 0; i < s->configuration_count; i++)
     if (s->configurations[i].position)
       strut_level_frame_from_original(flat, s->node_count, s->configurations[i].position[0]);
 }
 
-strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *flat, strut_error *error) {
+strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *flat,
+                                      strut_error *error) {
   *flat = (strut_level_frame){.scene = *original, .cosine = 1.0, .askew = held_askew(original)};
   flat->scene.arena = (strut_arena){0};
   if (!copy_arrays(flat)) {

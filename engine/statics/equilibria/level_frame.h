@@ -16,7 +16,8 @@ typedef struct strut_level_frame {
 } strut_level_frame;
 
 /** The original must outlive it; strut_level_frame_free. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *flat, strut_error *error);
+strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *flat,
+                                      strut_error *error);
 void strut_level_frame_free(strut_level_frame *flat);
 
 /** Turns count vectors (x, y) between the flat scene's and the original's coordinates, in place. */

@@ -29,8 +29,7 @@ void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size
     if (n < 0) return;
     used += (size_t)n, done++;
   }
-  if (shown < all && used < size)
-    snprintf(text + used, size - used, " and %zu more", all - shown);
+  if (shown < all && used < size) snprintf(text + used, size - used, " and %zu more", all - shown);
 }
 
 /* The x about which the whole may be mirrored; false: its mirror image is another problem. */
@@ -154,8 +153,8 @@ static bool name_on_set(const strut_model *model, const strut_configuration *c, 
   }
 }
 
-strut_status strut_name_equilibria(const strut_model *model, size_t count,
-                                   strut_equilibrium **list, strut_arena *arena) {
+strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
+                                   strut_arena *arena) {
   const strut_scene *scene = model->scene;
   double *scratch = strut_allocate((size_t)model->length, sizeof *scratch);
   if (!scratch) return STRUT_NO_MEMORY;

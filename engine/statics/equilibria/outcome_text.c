@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/statics/equilibria/floppy.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
+#include "engine/statics/equilibria/floppy.h"
 #include "engine/statics/equilibria/naming.h"
 
 enum { NAMES = 100 };
@@ -59,7 +59,8 @@ static void say_friction(const part *p, size_t room, char *text) {
     snprintf(text, room, "with it too, as nothing presses it down");
 }
 
-static void say_unrest(strut_equilibrium_search *h, strut_instability_cause unrest, const part *p, const uint8_t *flag) {
+static void say_unrest(strut_equilibrium_search *h, strut_instability_cause unrest, const part *p,
+                       const uint8_t *flag) {
   char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t count = 0;
@@ -97,7 +98,8 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
 }
 
 /* Does the free motion lead anywhere? Asked of the forces that it was found with. */
-static bool leads_away(const strut_equilibrium_search *h, const strut_equilibrium *e, uint8_t *held) {
+static bool leads_away(const strut_equilibrium_search *h, const strut_equilibrium *e,
+                       uint8_t *held) {
   strut_potential *potential = NULL;
   if (!e->supports) return strut_floppy_stays(h->world, &e->point);
   memset(held, 0, (size_t)h->model->length);
@@ -109,8 +111,8 @@ static bool leads_away(const strut_equilibrium_search *h, const strut_equilibriu
 }
 
 /* True if it leads away at one energy. flag: (length) */
-static bool say_floppy(strut_equilibrium_search *h, const strut_equilibrium *e, uint8_t *flag, size_t room,
-                       char *text) {
+static bool say_floppy(strut_equilibrium_search *h, const strut_equilibrium *e, uint8_t *flag,
+                       size_t room, char *text) {
   char names[NAMES];
   int32_t count = 0;
   bool away = leads_away(h, e, flag);
@@ -126,8 +128,8 @@ static bool say_floppy(strut_equilibrium_search *h, const strut_equilibrium *e, 
   return away;
 }
 
-static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds, const strut_candidate_equilibrium *f, uint8_t *flag,
-                     strut_equilibrium *e) {
+static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds,
+                     const strut_candidate_equilibrium *f, uint8_t *flag, strut_equilibrium *e) {
   char names[NAMES];
   const strut_scene *scene = &h->flat.scene;
   const char *over = e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL;
@@ -143,13 +145,15 @@ static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibr
 
 static void say_no_rest(const strut_equilibrium_search *h, strut_equilibrium *e) {
   static const char *const why[] = {
-      [STRUT_INSTABILITY_NONE] = "does not come to rest", [STRUT_INSTABILITY_FALLS] = "falls",
+      [STRUT_INSTABILITY_NONE] = "does not come to rest",
+      [STRUT_INSTABILITY_FALLS] = "falls",
       [STRUT_INSTABILITY_SLIDES] = "slides along the ground without friction",
       [STRUT_INSTABILITY_LIFTED] = "is lifted off the ground"};
   snprintf(e->verdict, sizeof e->verdict, "%s", why[h->unrest]);
 }
 
-static void say_one(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, strut_candidate_equilibrium *f, uint8_t *flag) {
+static void say_one(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
+                    strut_candidate_equilibrium *f, uint8_t *flag) {
   strut_equilibrium *e = &f->e;
   size_t room = sizeof e->verdict;
   char names[NAMES];
@@ -170,7 +174,8 @@ static void say_one(strut_equilibrium_search *h, strut_candidate_equilibrium *fi
 }
 
 /* Only where there is nothing better to stand in do free motions need a remark. */
-static void remark_on(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, size_t count, uint8_t *flag) {
+static void remark_on(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, size_t count,
+                      uint8_t *flag) {
   char *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t floppy = -1;
@@ -202,7 +207,8 @@ static void remark_on(strut_equilibrium_search *h, strut_candidate_equilibrium *
   }
 }
 
-void strut_report_candidates(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, size_t count) {
+void strut_report_candidates(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
+                             size_t count) {
   uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, 1);
   if (!flag) return;
   for (size_t i = 0; i < count; i++) say_one(h, finds, &finds[i], flag);

@@ -92,7 +92,8 @@ static void clean_up(strut_equilibrium_search *h) {
 }
 
 /* The node that moved most from one shape to the other. */
-static const char *farthest(const strut_equilibrium_search *h, const double *from, const double *to) {
+static const char *farthest(const strut_equilibrium_search *h, const double *from,
+                            const double *to) {
   int32_t node = 0;
   double most = -1.0;
   for (int32_t i = 0; i < h->model->node_count; i++) {
@@ -137,8 +138,8 @@ static strut_status from_start(strut_equilibrium_search *h, double *q) {
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
-static bool fits(strut_equilibrium_search *h, const strut_configuration *c, const double *shape, const double *q,
-                 strut_node_set *rests_on) {
+static bool fits(strut_equilibrium_search *h, const strut_configuration *c, const double *shape,
+                 const double *q, strut_node_set *rests_on) {
   strut_equilibrium e = {0};
   if (strut_equilibrium_search_contacts(h, q, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
@@ -150,8 +151,8 @@ static bool fits(strut_equilibrium_search *h, const strut_configuration *c, cons
 }
 
 /* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
-static strut_status from_shape(strut_equilibrium_search *h, const strut_configuration *c, double *q, bool *found,
-                               strut_node_set *rests_on) {
+static strut_status from_shape(strut_equilibrium_search *h, const strut_configuration *c, double *q,
+                               bool *found, strut_node_set *rests_on) {
   size_t nodes = h->flat.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
   if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
@@ -284,8 +285,8 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
 }
 
 /* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
-static strut_status from_settling(const strut_model *model, strut_arena *arena, strut_rest_state *stand,
-                                  strut_error *error) {
+static strut_status from_settling(const strut_model *model, strut_arena *arena,
+                                  strut_rest_state *stand, strut_error *error) {
   double time;
   strut_status status =
       strut_settle_experiment(model, NULL, NULL, stand->q, &time, &stand->settle, error);
@@ -295,7 +296,7 @@ static strut_status from_settling(const strut_model *model, strut_arena *arena, 
 }
 
 strut_status strut_rest_state_find(const strut_model *model, const char *name, strut_arena *arena,
-                              strut_rest_state *stand, strut_error *error) {
+                                   strut_rest_state *stand, strut_error *error) {
   const strut_scene *scene = model->scene;
   const strut_configuration *c = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
@@ -316,8 +317,7 @@ strut_status strut_rest_state_find(const strut_model *model, const char *name, s
       memcpy(stand->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
     return judge(model, arena, stand, error);
   }
-  if (!c && scene->settle.wanted && model->mass)
-    return from_settling(model, arena, stand, error);
+  if (!c && scene->settle.wanted && model->mass) return from_settling(model, arena, stand, error);
   strut_status status = seek(model, c, stand->q, error);
   if (!status) status = judge(model, arena, stand, error);
   stand->at_rest = true;

@@ -9,15 +9,15 @@
 #include "engine/run/measure/summary.h"
 
 typedef struct strut_rest_state {
-  const char *name;  /* "drawn", "start", a configuration's, or one that the list of all gives */
-  double *q;         /* (length) [m] */
-  bool at_rest;      /* false where it is no equilibrium on the real ground: as drawn, or listed on
+  const char *name; /* "drawn", "start", a configuration's, or one that the list of all gives */
+  double *q;        /* (length) [m] */
+  bool at_rest;     /* false where it is no equilibrium on the real ground: as drawn, or listed on
                         supports that it does not stand on */
-  double residual;   /* largest net force on a free coordinate [N] */
-  double scale;      /* sum of the weights and loads [N], or of member forces without any */
+  double residual;  /* largest net force on a free coordinate [N] */
+  double scale;     /* sum of the weights and loads [N], or of member forces without any */
   int32_t closed_count;
-  int32_t *closed;   /* (closed_count) nodes that touch the ground */
-  double *normal;    /* (closed_count) forces of the ground on them [N] */
+  int32_t *closed;             /* (closed_count) nodes that touch the ground */
+  double *normal;              /* (closed_count) forces of the ground on them [N] */
   strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
 } strut_rest_state;
 
@@ -31,8 +31,8 @@ typedef struct strut_rest_state {
  * move, STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_rest_state_find(const strut_model *model, const char *name,
-                                        strut_arena *arena, strut_rest_state *stand,
-                                        strut_error *error);
+                                             strut_arena *arena, strut_rest_state *stand,
+                                             strut_error *error);
 
 /**
  * Puts the equilibrium that the scene wants to start from into its nodes' start positions, and

@@ -116,8 +116,7 @@ strut_status strut_supports_choose(const strut_scene *flat, const strut_node_set
   return take_all(flat, size == 1 ? 1 : 2, arena, supports, error);
 }
 
-void strut_supports_hold(const strut_supports *supports, const strut_node_set *set,
-                         uint8_t *held) {
+void strut_supports_hold(const strut_supports *supports, const strut_node_set *set, uint8_t *held) {
   for (size_t i = 0; i < set->count; i++) held[2 * set->node[i] + 1] = 1;
   if (supports->pin && set->count) held[2 * set->node[0]] = 1;
 }

@@ -10,8 +10,8 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_EXTENDED_FACTOR_H
 #define STRUT_ENGINE_STATICS_MODES_EXTENDED_FACTOR_H
 
-#include "engine/model/linear_solver.h"
 #include "engine/base/double_double.h"
+#include "engine/model/linear_solver.h"
 
 typedef struct strut_extended_factor {
   int32_t n;

@@ -17,8 +17,8 @@ const char *strut_mode_kind_name(strut_mode_kind kind) {
 }
 
 /* Nodes that touch, held along the ground: only where that is one coordinate. */
-static strut_status hold_stuck(const strut_model *model, const strut_rest_state *stand, uint8_t *held,
-                               strut_error *error) {
+static strut_status hold_stuck(const strut_model *model, const strut_rest_state *stand,
+                               uint8_t *held, strut_error *error) {
   const double *tangent = model->contacts.tangent;
   if (stand->closed_count && tangent[0] != 0 && tangent[1] != 0)
     return strut_fail(error, STRUT_USAGE,

@@ -52,7 +52,7 @@ typedef struct strut_modes {
   bool damped_exactly;   /* damping from the quadratic eigenproblem; else by the modal quotient */
   bool at_rest;          /* the shape is an equilibrium */
   strut_settle_summary settle; /* of strut_rest_state */
-  double condition;      /* largest eigenvalue over the smallest that is not zero */
+  double condition;            /* largest eigenvalue over the smallest that is not zero */
   size_t count;
   strut_mode *list; /* by eigenvalue */
   strut_arena arena;

@@ -5,9 +5,9 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
+#include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/modes/solver.h"
-#include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/modes/vibration.h"
 
 /** Eigenvalues ascending and vectors (n each), x'Mx = 1. */

@@ -151,17 +151,14 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
 bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_path_terms *rates) {
   int32_t at = p->options->index;
   switch (p->options->over) {
-    case STRUT_PATH_OVER_SCENE:
-      return difference_scenes(p, value, rates);
+    case STRUT_PATH_OVER_SCENE: return difference_scenes(p, value, rates);
     case STRUT_PATH_OVER_LOAD:
       memcpy(rates->force, p->load, (size_t)p->model->length * sizeof(double));
       return true;
     case STRUT_PATH_OVER_ACTUATOR:
       rates->rest[p->model->scene->actuators[at].member] = 1;
       return true;
-    case STRUT_PATH_OVER_COORDINATE:
-      rates->position[at] = 1;
-      return true;
+    case STRUT_PATH_OVER_COORDINATE: rates->position[at] = 1; return true;
   }
   return false;
 }

@@ -100,11 +100,12 @@ typedef struct strut_path_options {
   const char *unit;
   strut_path_scene_at scene_at;
   void *context;
-  const char *at; /* equilibrium to begin at, as strut_rest_state_find knows it; NULL: where the start
+  const char
+      *at;      /* equilibrium to begin at, as strut_rest_state_find knows it; NULL: where the start
                         comes to rest */
-  double from;    /* where the path begins: in SI, or the factor */
-  double until;   /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps;  /* most steps; 0: 400 */
+  double from;  /* where the path begins: in SI, or the factor */
+  double until; /* where it ends; a load's factor from 0 to 0 ends at 1 */
+  int32_t steps; /* most steps; 0: 400 */
 } strut_path_options;
 
 /**

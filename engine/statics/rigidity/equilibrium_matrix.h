@@ -13,15 +13,15 @@
 #include "engine/model/model.h"
 
 typedef struct strut_equilibrium_matrix {
-  int32_t rows;          /* free coordinates */
-  int32_t columns;       /* members */
-  int32_t *coordinate;   /* (rows) index into coordinate arrays */
-  int32_t *row_of;       /* (length) row of a coordinate, -1 where fixed */
-  double *length;        /* (columns) of the members in the shape [m] */
+  int32_t rows;           /* free coordinates */
+  int32_t columns;        /* members */
+  int32_t *coordinate;    /* (rows) index into coordinate arrays */
+  int32_t *row_of;        /* (length) row of a coordinate, -1 where fixed */
+  double *length;         /* (columns) of the members in the shape [m] */
   double (*direction)[2]; /* (columns) unit vector from first node to second; 0, 0 without length */
-  int32_t *start;        /* (columns + 1) A by columns */
-  int32_t *row;          /* (start[columns]) ascending within a column */
-  double *value;         /* (start[columns]) */
+  int32_t *start;         /* (columns + 1) A by columns */
+  int32_t *row;           /* (start[columns]) ascending within a column */
+  double *value;          /* (start[columns]) */
 } strut_equilibrium_matrix;
 
 /** A of the positions q (length), in the arena. STRUT_OK or STRUT_NO_MEMORY. */

@@ -7,9 +7,9 @@
 
 enum { STEPS = 10, MOST_CORRECTIONS = 12 };
 
-static const double STRIDE = 0.01;   /* of the size, by the node that moves most */
-static const double KEPT = 1e-12;    /* strain that counts as none */
-static const double PROGRESS = 0.5;  /* of a stride that corrections must leave */
+static const double STRIDE = 0.01;       /* of the size, by the node that moves most */
+static const double KEPT = 1e-12;        /* strain that counts as none */
+static const double PROGRESS = 0.5;      /* of a stride that corrections must leave */
 static const double LEAST_CHANGE = 0.02; /* of the size: else it was a rigid motion */
 /* Redundant members make A' A singular; this much on its diagonal leaves the rest alone. */
 static const double DAMPING = 1e-11;
@@ -101,8 +101,7 @@ static bool straighten(walker *w) {
 static bool stride(walker *w, double stride_length, double *strain) {
   double gone = 0.0;
   memcpy(w->before, w->q, (size_t)w->model->length * sizeof *w->q);
-  for (int32_t r = 0; r < w->a.rows; r++)
-    w->q[w->a.coordinate[r]] += stride_length * w->motion[r];
+  for (int32_t r = 0; r < w->a.rows; r++) w->q[w->a.coordinate[r]] += stride_length * w->motion[r];
   if (!correct(w, strain)) return false;
   for (int32_t r = 0; r < w->a.rows; r++) {
     int32_t at = w->a.coordinate[r];

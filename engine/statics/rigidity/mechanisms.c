@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/rigidity/finite_motion.h"
 #include "engine/statics/rigid_motions.h"
+#include "engine/statics/rigidity/finite_motion.h"
 #include "engine/statics/rigidity/stress_matrix.h"
 #include "engine/statics/symmetric.h"
 
@@ -115,11 +115,10 @@ static strut_status find_stiffener(sorter *s, strut_mechanisms *m) {
   double *force = strut_arena_allocate(s->arena, s->members + 1, sizeof *force);
   if (!force) return STRUT_NO_MEMORY;
   for (int cables = 1; cables >= 0 && s->forms; cables--) {
-    strut_stress_wish wish = {.cables = cables, .motions = (int32_t)s->n, .forms = s->forms,
-                              .scale = s->scale};
+    strut_stress_wish wish = {
+        .cables = cables, .motions = (int32_t)s->n, .forms = s->forms, .scale = s->scale};
     bool found = false;
-    strut_status status =
-        strut_self_stress_combine(s->model, s->states, &wish, force, &found);
+    strut_status status = strut_self_stress_combine(s->model, s->states, &wish, force, &found);
     if (status != STRUT_OK) return status;
     if (!found) continue;
     m->stiffener = force;
@@ -206,14 +205,17 @@ static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
 
 static strut_mechanism blank(strut_motion_kind kind, const double *motion) {
   const double none = (double)NAN;
-  return (strut_mechanism){.kind = kind, .motion = motion, .stiffness = none,
-                           .stress_form = none, .moved = none, .strain = none};
+  return (strut_mechanism){.kind = kind,
+                           .motion = motion,
+                           .stiffness = none,
+                           .stress_form = none,
+                           .moved = none,
+                           .strain = none};
 }
 
 static strut_status judge(sorter *s, const double *force, strut_mechanisms *m,
                           strut_mechanism *list) {
-  for (size_t i = 0; i < s->n; i++)
-    list[i] = blank(STRUT_MOTION_UNDECIDED, s->inner + i * s->rows);
+  for (size_t i = 0; i < s->n; i++) list[i] = blank(STRUT_MOTION_UNDECIDED, s->inner + i * s->rows);
   if (force && s->n <= MOST_MOTIONS) {
     double size = form_of(s, force, s->form);
     if (!rotate(s, s->form)) return STRUT_NO_MEMORY;
@@ -300,8 +302,8 @@ strut_status strut_mechanisms_find(const strut_model *model, const strut_equilib
   if (spaces->motions == 0) return STRUT_OK;
   sorter s = {.model = model, .a = a, .q = q, .states = states, .arena = arena};
   s.rows = (size_t)a->rows, s.members = (size_t)a->columns;
-  strut_status status = spaces->motion ? sort(&s, spaces, force, mechanisms)
-                                       : only_count(&s, mechanisms);
+  strut_status status =
+      spaces->motion ? sort(&s, spaces, force, mechanisms) : only_count(&s, mechanisms);
   strut_arena_free(&s.scratch);
   return status;
 }

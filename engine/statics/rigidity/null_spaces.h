@@ -17,12 +17,12 @@ enum { STRUT_DENSE_RIGIDITY = 300 };
 #define STRUT_WEAK 1e-6
 
 typedef struct strut_null_spaces {
-  bool dense;     /* by singular values, else by QR */
+  bool dense; /* by singular values, else by QR */
   int32_t rank;
-  double largest; /* singular value, or diagonal entry of R */
-  double kept;    /* the smallest kept; 0 where the rank is 0 */
-  double dropped; /* the largest dropped; 0 if none was; NAN with QR */
-  int32_t weak;   /* of those kept, how many are below STRUT_WEAK times the largest; 0 with QR */
+  double largest;  /* singular value, or diagonal entry of R */
+  double kept;     /* the smallest kept; 0 where the rank is 0 */
+  double dropped;  /* the largest dropped; 0 if none was; NAN with QR */
+  int32_t weak;    /* of those kept, how many are below STRUT_WEAK times the largest; 0 with QR */
   int32_t states;  /* s = columns - rank */
   int32_t motions; /* f = rows - rank */
   double *state;   /* (states, columns) a basis of A t = 0; NULL: too large, or none */
@@ -30,9 +30,8 @@ typedef struct strut_null_spaces {
 } strut_null_spaces;
 
 /** In the arena. STRUT_OK, STRUT_NO_MEMORY, or STRUT_SINGULAR where the decomposition fails. */
-STRUT_API strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a,
-                                              strut_arena *arena, strut_null_spaces *spaces,
-                                              strut_error *error);
+STRUT_API strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a, strut_arena *arena,
+                                              strut_null_spaces *spaces, strut_error *error);
 
 /* The two ways, for tests. */
 strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_arena *arena,

@@ -132,8 +132,7 @@ static strut_status find_all(const strut_model *model, const double *q, strut_ri
   if (!measure_forces(model, r) || !measure_balance(model, q, r) || !count_bars(model, r))
     return STRUT_NO_MEMORY;
   status = strut_null_spaces_find(&r->matrix, &r->arena, &r->spaces, error);
-  if (status == STRUT_OK)
-    status = strut_self_stress_sort(model, &r->spaces, &r->arena, &r->states);
+  if (status == STRUT_OK) status = strut_self_stress_sort(model, &r->spaces, &r->arena, &r->states);
   if (status == STRUT_OK) status = pull_cables(model, r);
   if (status != STRUT_OK) return status;
   const double *force = r->prestressed && r->equilibrium ? r->force : NULL;

@@ -14,23 +14,23 @@
 
 /** Which member forces a verdict is about. */
 typedef enum strut_stress_source {
-  STRUT_STRESS_NONE,       /* there is no state of self-stress */
-  STRUT_STRESS_STATE,      /* the only state */
-  STRUT_STRESS_SHAPE,      /* the forces in the shape, which balance without loads */
+  STRUT_STRESS_NONE,        /* there is no state of self-stress */
+  STRUT_STRESS_STATE,       /* the only state */
+  STRUT_STRESS_SHAPE,       /* the forces in the shape, which balance without loads */
   STRUT_STRESS_COMBINATION, /* a combination that pulls all cables */
-  STRUT_STRESS_FIRST       /* the first of several states, for want of something better */
+  STRUT_STRESS_FIRST        /* the first of several states, for want of something better */
 } strut_stress_source;
 
 /** The features of Obara, Klosowska and Gilewski's definition; a truss it always is. */
 typedef struct strut_tensegrity {
-  bool judged;            /* false: no state of self-stress to judge by */
-  bool self_stress;       /* S: there is a state of self-stress */
-  bool cables;            /* C: what is pulled are cables */
-  bool mechanism;         /* M: a mechanism, which self-stress with pulled cables stiffens */
-  bool all_states;        /* every state of self-stress does so, as far as the listed ones tell */
-  bool struts_apart;      /* D: no two members that are pressed meet */
-  bool struts_inside;     /* I: what is pulled is one net that meets all struts, none outermost */
-  const char *label;      /* words */
+  bool judged;        /* false: no state of self-stress to judge by */
+  bool self_stress;   /* S: there is a state of self-stress */
+  bool cables;        /* C: what is pulled are cables */
+  bool mechanism;     /* M: a mechanism, which self-stress with pulled cables stiffens */
+  bool all_states;    /* every state of self-stress does so, as far as the listed ones tell */
+  bool struts_apart;  /* D: no two members that are pressed meet */
+  bool struts_inside; /* I: what is pulled is one net that meets all struts, none outermost */
+  const char *label;  /* words */
 } strut_tensegrity;
 
 typedef struct strut_rigidity {
@@ -38,21 +38,21 @@ typedef struct strut_rigidity {
   strut_null_spaces spaces;
   strut_self_stress states;
   strut_mechanisms mechanisms;
-  double *force;          /* (members) in the shape, tension positive [N] */
-  double *density;        /* (members) force / length [N/m]; 0 without length */
-  bool prestressed;       /* some member carries a force */
-  double residual;        /* largest net force on a free coordinate: members, gravity, constant
+  double *force;        /* (members) in the shape, tension positive [N] */
+  double *density;      /* (members) force / length [N/m]; 0 without length */
+  bool prestressed;     /* some member carries a force */
+  double residual;      /* largest net force on a free coordinate: members, gravity, constant
                              loads and the ground's springs [N] */
-  double largest_force;   /* of members, weights and loads: what the residual compares to [N] */
+  double largest_force; /* of members, weights and loads: what the residual compares to [N] */
   bool equilibrium;
-  bool self_equilibrium;  /* the members balance alone: the forces are a state of self-stress */
+  bool self_equilibrium; /* the members balance alone: the forces are a state of self-stress */
   bool has_cables;
   bool cables_can_pull;   /* some self-stress pulls every cable that any state loads: `feasible` */
   double *feasible;       /* (members) that one, largest force 1; NULL: none found */
   int32_t bars_at_node;   /* class k: the most bars that meet; 0 without bars */
   int32_t without_length; /* members of no length in this shape: they have no direction */
   strut_stress_source source; /* what `stress` and the tensegrity's features are about */
-  const double *judged;   /* (members) those forces; NULL without */
+  const double *judged;       /* (members) those forces; NULL without */
   strut_stress_matrix stress;
   strut_tensegrity tensegrity;
   strut_arena arena;

@@ -8,7 +8,7 @@
 static const double TINY = 1e-11;      /* beside the largest force: rounding */
 static const double PIVOT_SHARE = 0.1; /* of the largest entry: what a pivot must have */
 static const double MOST_WORK = 4e8;   /* multiplications spent on locality */
-static const double LEADS = 0.01;        /* of the largest: what a force made 1 must have */
+static const double LEADS = 0.01;      /* of the largest: what a force made 1 must have */
 
 /* Reduced echelon form, members from `shift` on: 1 at its own pivot, 0 at the others. */
 static void reduce(double *rows, size_t count, size_t columns, size_t shift) {

@@ -12,8 +12,8 @@
  * force; without cables its first spring, else its first member. Cables pull where one sign does it.
  */
 typedef struct strut_self_stress {
-  int32_t count;    /* s */
-  double *force;    /* (count, members) [1]; NULL: none or too many to list */
+  int32_t count;     /* s */
+  double *force;     /* (count, members) [1]; NULL: none or too many to list */
   bool *cables_pull; /* (count) no cable is pressed in it */
 } strut_self_stress;
 
@@ -22,8 +22,8 @@ typedef struct strut_self_stress {
  * STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_self_stress_sort(const strut_model *model,
-                                              const strut_null_spaces *spaces,
-                                              strut_arena *arena, strut_self_stress *states);
+                                              const strut_null_spaces *spaces, strut_arena *arena,
+                                              strut_self_stress *states);
 
 /** What a combination of states is wanted to do. */
 typedef struct strut_stress_wish {
@@ -48,7 +48,7 @@ STRUT_API strut_status strut_self_stress_combine(const strut_model *model,
  * force of 1. Not *found means that there is none.
  */
 STRUT_API strut_status strut_self_stress_pull_cables(const strut_model *model,
-                                                     const strut_self_stress *states,
-                                                     double *force, bool *found);
+                                                     const strut_self_stress *states, double *force,
+                                                     bool *found);
 
 #endif

@@ -16,9 +16,9 @@ typedef struct search {
   const strut_self_stress *states;
   const strut_stress_wish *wish;
   size_t states_count, members, motions;
-  double *weight;  /* (states) the combination */
-  double *pull;    /* (states) a demand's coefficients: it wants weight . pull > 0 */
-  double *cable;   /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
+  double *weight; /* (states) the combination */
+  double *pull;   /* (states) a demand's coefficients: it wants weight . pull > 0 */
+  double *cable;  /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
   double *form, *value, *vector; /* (motions, motions), (motions), (motions, motions) */
 } search;
 
@@ -87,8 +87,7 @@ static bool softest_motion(search *s, bool *failed) {
   if (m == 0) return false;
   memset(s->form, 0, m * m * sizeof *s->form);
   for (size_t i = 0; i < s->states_count; i++)
-    for (size_t k = 0; k < m * m; k++)
-      s->form[k] += s->weight[i] * s->wish->forms[i * m * m + k];
+    for (size_t k = 0; k < m * m; k++) s->form[k] += s->weight[i] * s->wish->forms[i * m * m + k];
   if (!strut_symmetric_eigen(s->form, m, s->value, s->vector)) {
     *failed = true;
     return true;
@@ -124,8 +123,7 @@ static void combine(const search *s, double *force) {
 }
 
 strut_status strut_self_stress_combine(const strut_model *model, const strut_self_stress *states,
-                                       const strut_stress_wish *wish, double *force,
-                                       bool *found) {
+                                       const strut_stress_wish *wish, double *force, bool *found) {
   *found = false;
   if (states->count == 0 || !states->force) return STRUT_OK;
   strut_arena scratch = {0};

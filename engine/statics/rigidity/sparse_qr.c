@@ -9,22 +9,21 @@
 /* A column of the squeezed R is live where it reaches one row further down than those before it. */
 struct strut_sparse_qr {
   cholmod_common common;
-  cholmod_sparse *r, *h;    /* H: reflections, one per column, in the order of permuted rows */
-  cholmod_dense *tau;       /* of the reflections */
-  int64_t *order;  /* (columns) column of A that stands at k in R; NULL: as it was */
-  int64_t *place;  /* (rows) where a row of A stands among the permuted ones */
+  cholmod_sparse *r, *h; /* H: reflections, one per column, in the order of permuted rows */
+  cholmod_dense *tau;    /* of the reflections */
+  int64_t *order;        /* (columns) column of A that stands at k in R; NULL: as it was */
+  int64_t *place;        /* (rows) where a row of A stands among the permuted ones */
   int32_t rows, columns, rank;
-  int32_t *live;            /* (rank) column of R with the diagonal of row k */
-  int32_t *dead;            /* (columns - rank) the others */
-  double *work;             /* (rows) */
+  int32_t *live; /* (rank) column of R with the diagonal of row k */
+  int32_t *dead; /* (columns - rank) the others */
+  double *work;  /* (rows) */
 };
 
 static cholmod_sparse *copy_matrix(strut_sparse_qr *qr, const int32_t *start, const int32_t *row,
                                    const double *value) {
   size_t count = (size_t)start[qr->columns];
-  cholmod_sparse *a = cholmod_l_allocate_sparse((size_t)qr->rows, (size_t)qr->columns,
-                                                count ? count : 1, 1, 1, 0, CHOLMOD_REAL,
-                                                &qr->common);
+  cholmod_sparse *a = cholmod_l_allocate_sparse(
+      (size_t)qr->rows, (size_t)qr->columns, count ? count : 1, 1, 1, 0, CHOLMOD_REAL, &qr->common);
   if (!a) return NULL;
   int64_t *p = a->p, *i = a->i;
   for (int32_t j = 0; j <= qr->columns; j++) p[j] = start[j];
@@ -56,9 +55,8 @@ static void tell_columns(strut_sparse_qr *qr) {
 }
 
 static bool factorise(strut_sparse_qr *qr, cholmod_sparse *a, double tolerance) {
-  int64_t rank =
-      SuiteSparseQR_C(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, a, NULL, NULL, NULL, NULL, &qr->r,
-                      &qr->order, &qr->h, &qr->place, &qr->tau, &qr->common);
+  int64_t rank = SuiteSparseQR_C(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, a, NULL, NULL, NULL, NULL,
+                                 &qr->r, &qr->order, &qr->h, &qr->place, &qr->tau, &qr->common);
   if (rank < 0 || !qr->r || !qr->h || !qr->tau) return false;
   qr->rank = (int32_t)rank;
   qr->live = strut_allocate((size_t)rank + 1, sizeof *qr->live);

@@ -119,9 +119,9 @@ static void judge(const strut_equilibrium_matrix *a, const double *force,
   stress->super_stable = stress->positive && least && (stress->supported || !stress->on_conic);
 }
 
-strut_status strut_stress_matrix_judge(const strut_model *model,
-                                       const strut_equilibrium_matrix *a, const double *force,
-                                       strut_arena *arena, strut_stress_matrix *stress) {
+strut_status strut_stress_matrix_judge(const strut_model *model, const strut_equilibrium_matrix *a,
+                                       const double *force, strut_arena *arena,
+                                       strut_stress_matrix *stress) {
   *stress = (strut_stress_matrix){0};
   if (model->node_count > STRUT_DENSE_STRESS) return STRUT_OK;
   strut_arena scratch = {0};

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const double NONE = 1e-9; /* of the largest force: no force */
+static const double NONE = 1e-9;    /* of the largest force: no force */
 static const double ON_LINE = 1e-9; /* of the size: a node on the outline */
 
 /* -1 pressed, 1 pulled, 0 neither, in the state that is judged. */
@@ -92,8 +92,7 @@ static const char *label_of(const strut_tensegrity *t) {
   return "no tensegrity: no stiffened mechanism, struts neither apart nor inside the net";
 }
 
-strut_status strut_tensegrity_judge(const strut_model *model, const double *q,
-                                    strut_rigidity *r) {
+strut_status strut_tensegrity_judge(const strut_model *model, const double *q, strut_rigidity *r) {
   strut_tensegrity *t = &r->tensegrity;
   *t = (strut_tensegrity){.self_stress = r->states.count > 0, .judged = r->judged != NULL};
   if (r->judged) {

@@ -34,8 +34,8 @@ typedef struct search {
   int64_t climbs_left;
   double cost, spent, budget; /* of one Hessian, so far, and at most */
   size_t batch_size;          /* tasks before the work done is looked at again */
-  size_t climbed, paired; /* points up to which modes and pairs were climbed */
-  size_t shaken;          /* points up to which rare minima were shaken */
+  size_t climbed, paired;     /* points up to which modes and pairs were climbed */
+  size_t shaken;              /* points up to which rare minima were shaken */
   strut_error *error;
 } search;
 
@@ -206,9 +206,9 @@ static strut_status shake_rare_minima(search *s) {
     const double *q = s->all.points[s->shaken].q;
     if (!is_minimum(&s->all.points[s->shaken]) || s->hits[s->shaken] > 1) continue;
     for (int64_t k = 0; k < SHAKES && !status && !over(s, CLIMBS_BY); k++)
-      status = add(s, (strut_task){.kind = STRUT_TASK_SHAKE,
-                                   .q = q,
-                                   .number = SHAKES * (int64_t)s->shaken + k});
+      status =
+          add(s, (strut_task){
+                     .kind = STRUT_TASK_SHAKE, .q = q, .number = SHAKES * (int64_t)s->shaken + k});
   }
   return status ? status : run(s);
 }

@@ -8,30 +8,30 @@
 #include "engine/statics/minimise.h"
 
 typedef enum strut_stability {
-  STRUT_STABLE,  /* all eigenvalues positive, those of free rigid-body motions apart */
-  STRUT_FLOPPY,  /* none negative, but a motion that is not a rigid one meets no stiffness */
-  STRUT_SADDLE,  /* some negative */
-  STRUT_MAXIMUM  /* all negative */
+  STRUT_STABLE, /* all eigenvalues positive, those of free rigid-body motions apart */
+  STRUT_FLOPPY, /* none negative, but a motion that is not a rigid one meets no stiffness */
+  STRUT_SADDLE, /* some negative */
+  STRUT_MAXIMUM /* all negative */
 } strut_stability;
 
 /** "stable", "floppy", "saddle", "maximum". */
 STRUT_API const char *strut_stability_name(strut_stability stability);
 
 typedef struct strut_critical_point {
-  double *q;            /* (length) of the first placement found */
-  double potential;     /* [J] */
-  double residual;      /* largest entry of g [N] */
+  double *q;        /* (length) of the first placement found */
+  double potential; /* [J] */
+  double residual;  /* largest entry of g [N] */
   strut_stability label;
-  int32_t negative;     /* eigenvalues of the Hessian below zero */
-  int32_t zero;         /* motions without stiffness, rigid ones included */
-  int32_t rigid;        /* rigid-body motions that the supports leave free */
+  int32_t negative; /* eigenvalues of the Hessian below zero */
+  int32_t zero;     /* motions without stiffness, rigid ones included */
+  int32_t rigid;    /* rigid-body motions that the supports leave free */
   int32_t eigenvalue_count;
-  double *eigenvalues;  /* ascending [N/m]; all of them where dense, else the lowest */
-  double *softest;      /* (length) unit vector of the lowest that is no rigid-body motion */
-  int64_t found;        /* starts that ended here */
-  int32_t placements;   /* congruent copies merged into it: mirror images, turned, shifted */
-  int32_t shape;        /* points of one number are mirror images of each other, not merged */
-  int32_t down[2];      /* of a saddle with one negative: minima downhill either way, or -1 */
+  double *eigenvalues; /* ascending [N/m]; all of them where dense, else the lowest */
+  double *softest;     /* (length) unit vector of the lowest that is no rigid-body motion */
+  int64_t found;       /* starts that ended here */
+  int32_t placements;  /* congruent copies merged into it: mirror images, turned, shifted */
+  int32_t shape;       /* points of one number are mirror images of each other, not merged */
+  int32_t down[2];     /* of a saddle with one negative: minima downhill either way, or -1 */
 } strut_critical_point;
 
 typedef struct strut_critical_set {
@@ -40,24 +40,25 @@ typedef struct strut_critical_set {
   int64_t starts;               /* tried for minima */
   int64_t saddle_starts;        /* tried for saddles */
   int64_t exhausted, runaway;   /* starts that ended nowhere */
-  double missed;      /* estimated chance that a further random start would find a new minimum: Good and
+  double missed; /* estimated chance that a further random start would find a new minimum: Good and
                          Turing's, one more counted than was met once, for few starts never tell 0 */
   double missed_below; /* the same, its upper 95 % limit */
-  int64_t unmet;      /* minima found that no random start met: their basins are small */
-  bool cut_short;     /* the structure is too large for as many starts and climbs as it asks for */
-  double missed_one;  /* upper 95 % bound on the share of starts of a minimum never seen: 3/starts-like */
+  int64_t unmet;       /* minima found that no random start met: their basins are small */
+  bool cut_short;      /* the structure is too large for as many starts and climbs as it asks for */
+  double
+      missed_one; /* upper 95 % bound on the share of starts of a minimum never seen: 3/starts-like */
   strut_arena arena;
 } strut_critical_set;
 
 typedef struct strut_critical_effort {
-  int64_t starts;  /* random starts for minima; 0: until `missed` is small, within reason */
+  int64_t starts; /* random starts for minima; 0: until `missed` is small, within reason */
   uint64_t seed;
-  int32_t searches; /* how many searches share one search's work, on supports in turn; 0: 1 */
-  bool saddles;    /* look for saddles too, and where they lead down to */
-  size_t extra_count;           /* starts that the caller knows of, tried first */
-  const double *const *extra;   /* (extra_count) each (length) */
-  size_t hint_count;            /* shapes close to a saddle with one negative eigenvalue */
-  const double *const *hint;    /* (hint_count) each (length) */
+  int32_t searches;   /* how many searches share one search's work, on supports in turn; 0: 1 */
+  bool saddles;       /* look for saddles too, and where they lead down to */
+  size_t extra_count; /* starts that the caller knows of, tried first */
+  const double *const *extra; /* (extra_count) each (length) */
+  size_t hint_count;          /* shapes close to a saddle with one negative eigenvalue */
+  const double *const *hint;  /* (hint_count) each (length) */
 } strut_critical_effort;
 
 /**

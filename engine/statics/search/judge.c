@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/rigid_motions.h"
 #include "engine/statics/search/critical.h"
 #include "engine/statics/search/judge_parts.h"
-#include "engine/statics/rigid_motions.h"
 #include "engine/statics/spectrum.h"
 
 static const double LARGEST = 1e150; /* entry of a stiffness matrix */

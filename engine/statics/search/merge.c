@@ -34,7 +34,7 @@ static void see_motions(strut_stationary_set *g) {
 }
 
 void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *potential,
-                           strut_arena *arena) {
+                                strut_arena *arena) {
   const strut_model *model = potential->model;
   double size = model->size > 0 ? model->size : 1.0, stiffest = 0.0;
   *g = (strut_stationary_set){.potential = potential, .arena = arena};
@@ -94,8 +94,7 @@ static double blur(const strut_stationary_set *g, const strut_critical_point *po
 
 static int32_t find(const strut_stationary_set *g, const double *q, double energy) {
   for (size_t i = 0; i < g->count; i++)
-    if (same_energy(g, energy, g->points[i].potential) &&
-        same_point(g, q, g->points[i].q, g->near))
+    if (same_energy(g, energy, g->points[i].potential) && same_point(g, q, g->points[i].q, g->near))
       return (int32_t)i;
   for (size_t i = 0; i < g->count; i++) {
     const strut_critical_point *known = &g->points[i];
@@ -172,8 +171,8 @@ static void make_degenerate(strut_critical_point *known, const strut_critical_po
   known->down[0] = before.down[0], known->down[1] = before.down[1];
 }
 
-strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, int32_t *index, bool *fresh,
-                                 strut_error *error) {
+strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, int32_t *index,
+                                      bool *fresh, strut_error *error) {
   strut_critical_point point;
   *index = strut_stationary_set_find(g, q);
   *fresh = *index < 0;
@@ -199,13 +198,15 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
   return STRUT_OK;
 }
 
-const double *strut_stationary_set_placement(const strut_stationary_set *g, int32_t index, int32_t k) {
+const double *strut_stationary_set_placement(const strut_stationary_set *g, int32_t index,
+                                             int32_t k) {
   const strut_congruent_copy *at = g->placement[index];
   while (at && k-- > 0) at = at->next;
   return at ? at->q : NULL;
 }
 
-void strut_number_shapes(const strut_stationary_set *like, strut_critical_point *points, size_t count) {
+void strut_number_shapes(const strut_stationary_set *like, strut_critical_point *points,
+                         size_t count) {
   const strut_model *model = like->potential->model;
   int32_t next = 0;
   for (size_t i = 0; i < count; i++) {

@@ -47,7 +47,7 @@ static int this_thread(void) {
 }
 
 strut_status strut_search_tasks_create(const strut_potential *potential, uint64_t seed, bool climbs,
-                                strut_search_tasks **batch, strut_error *error) {
+                                       strut_search_tasks **batch, strut_error *error) {
   strut_search_tasks *b = *batch = strut_allocate(1, sizeof *b);
   size_t length = (size_t)potential->model->length;
   if (!b) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
@@ -98,8 +98,7 @@ static void highest_between(const strut_potential *p, const double *a, const dou
   double highest = -HUGE_VAL, best = 0.5, slide = slide_over(p, a, b);
   for (int k = 1; k <= 8; k++) { /* the eighth time for good */
     double t = k < 8 ? k / 8.0 : best;
-    for (size_t i = 0; i < length; i++)
-      q[i] = a[i] + t * (b[i] + (i % 2 ? 0.0 : slide) - a[i]);
+    for (size_t i = 0; i < length; i++) q[i] = a[i] + t * (b[i] + (i % 2 ? 0.0 : slide) - a[i]);
     double value = strut_potential_value(p, q);
     if (k < 8 && value > highest) highest = value, best = t;
   }
@@ -151,7 +150,8 @@ static strut_descent_end descend(const strut_search_tasks *b, worker *w, const s
 }
 
 static int64_t looks_of(const worker *w) {
-  return strut_minimiser_hessian_count(w->minimiser) + (w->climber ? strut_climber_hessian_count(w->climber) : 0);
+  return strut_minimiser_hessian_count(w->minimiser) +
+         (w->climber ? strut_climber_hessian_count(w->climber) : 0);
 }
 
 static void work(strut_search_tasks *b, const strut_task *task, strut_task_result *result) {
@@ -165,7 +165,8 @@ static void work(strut_search_tasks *b, const strut_task *task, strut_task_resul
   result->looks = looks_of(w) - before;
 }
 
-const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task, size_t count) {
+const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
+                                                size_t count) {
   int tasks = (int)count;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(batch->worker_count)

@@ -13,16 +13,16 @@
 enum { STRUT_BATCH = 64 };
 
 typedef enum strut_task_kind {
-  STRUT_TASK_SHAPE,       /* down from q */
-  STRUT_TASK_FOLD,        /* down from fold `number` of q */
-  STRUT_TASK_CROSS,       /* down by short steps from q with some nodes where `other` has them */
-  STRUT_TASK_SHAKE,       /* down by short steps from q shaken, by `number` */
-  STRUT_TASK_RANDOM,      /* down from random shape `number` */
-  STRUT_TASK_CLIMB_MODE,  /* up from the minimum q along mode `number`, `side` +-1 */
-  STRUT_TASK_CLIMB_SHAPE, /* up from q itself, which is close to a saddle */
-  STRUT_TASK_CLIMB_PAIR,  /* up from the highest place on the straight way from q to other */
+  STRUT_TASK_SHAPE,        /* down from q */
+  STRUT_TASK_FOLD,         /* down from fold `number` of q */
+  STRUT_TASK_CROSS,        /* down by short steps from q with some nodes where `other` has them */
+  STRUT_TASK_SHAKE,        /* down by short steps from q shaken, by `number` */
+  STRUT_TASK_RANDOM,       /* down from random shape `number` */
+  STRUT_TASK_CLIMB_MODE,   /* up from the minimum q along mode `number`, `side` +-1 */
+  STRUT_TASK_CLIMB_SHAPE,  /* up from q itself, which is close to a saddle */
+  STRUT_TASK_CLIMB_PAIR,   /* up from the highest place on the straight way from q to other */
   STRUT_TASK_CLIMB_RANDOM, /* up from random shape `number`, or from q shaken if not NULL */
-  STRUT_TASK_DOWN         /* down from the saddle q along `other`, `side` +-1 */
+  STRUT_TASK_DOWN          /* down from the saddle q along `other`, `side` +-1 */
 } strut_task_kind;
 
 typedef struct strut_task {
@@ -42,10 +42,11 @@ typedef struct strut_task_result {
 typedef struct strut_search_tasks strut_search_tasks;
 /** climbs: will there be any? Only below STRUT_DENSE_STATICS coordinates. */
 strut_status strut_search_tasks_create(const strut_potential *potential, uint64_t seed, bool climbs,
-                                strut_search_tasks **batch, strut_error *error);
+                                       strut_search_tasks **batch, strut_error *error);
 void strut_search_tasks_free(strut_search_tasks *batch);
 
 /** Works off up to STRUT_BATCH tasks; the results are valid until the next call. */
-const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task, size_t count);
+const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
+                                                size_t count);
 
 #endif

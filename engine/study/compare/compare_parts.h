@@ -12,8 +12,8 @@
 typedef struct strut_compare_work {
   const strut_compare_options *options;
   strut_compare_column *column;
-  strut_arena *arena; /* of the result */
-  strut_rest_state stand;  /* where it stands; q is NULL where it does not */
+  strut_arena *arena;     /* of the result */
+  strut_rest_state stand; /* where it stands; q is NULL where it does not */
 } strut_compare_work;
 
 void strut_compare_put(strut_compare_work *work, strut_compare_quantity quantity, double value);

@@ -153,7 +153,8 @@ static bool alike(const structure *a, const structure *b) {
 }
 
 /* The structure of a scene, kept or new; *own: the caller frees it. NULL: memory is out. */
-static structure *structure_of(strut_equilibrium_cache *standing, const strut_scene *scene, bool *own) {
+static structure *structure_of(strut_equilibrium_cache *standing, const strut_scene *scene,
+                               bool *own) {
   structure *s = describe(scene), *same = NULL;
   *own = false;
   if (!s) return NULL;
@@ -177,8 +178,8 @@ static void look(const strut_scene *scene, size_t configuration, found *f) {
   f->known = true;
   f->status = strut_model_compile(scene, &model, &f->error);
   if (!f->status)
-    f->status = strut_rest_state_find(model, scene->configurations[configuration].name, &arena, &stand,
-                                 &f->error);
+    f->status = strut_rest_state_find(model, scene->configurations[configuration].name, &arena,
+                                      &stand, &f->error);
   if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
     f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
   if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
@@ -211,7 +212,7 @@ void strut_equilibrium_cache_free(strut_equilibrium_cache *standing) {
 }
 
 strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_scene *scene,
-                                    strut_error *error) {
+                                             strut_error *error) {
   bool own;
   if (scene->start_equilibrium < 0) return STRUT_OK;
   structure *s = structure_of(standing, scene, &own);
@@ -254,8 +255,9 @@ static int32_t nearest(structure *s, const strut_scene *scene, const double *pos
 }
 
 /* What the nearest configuration is must not depend on where the run began. */
-strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing, const strut_scene *scene,
-                                    const double *positions, int32_t *index, strut_error *error) {
+strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
+                                             const strut_scene *scene, const double *positions,
+                                             int32_t *index, strut_error *error) {
   bool own = false;
   strut_scene drawn = *scene;
   *index = -1;

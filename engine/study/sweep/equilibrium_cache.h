@@ -20,14 +20,15 @@ void strut_equilibrium_cache_free(strut_equilibrium_cache *standing); /* NULL is
 
 /** As strut_resolve_start_equilibrium. */
 strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_scene *scene,
-                                    strut_error *error);
+                                             strut_error *error);
 
 /**
  * The configuration whose equilibrium is nearest to a shape (node_count, 2), turned and shifted at
  * will, or mirrored too where contacts alone tell the configuration: its index, -1 where none is
  * within a tenth of the structure's size. STRUT_OK, STRUT_NO_MEMORY.
  */
-strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing, const strut_scene *scene,
-                                    const double *positions, int32_t *index, strut_error *error);
+strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
+                                             const strut_scene *scene, const double *positions,
+                                             int32_t *index, strut_error *error);
 
 #endif

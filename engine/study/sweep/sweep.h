@@ -27,11 +27,11 @@ typedef struct strut_sweep_plan {
   const strut_study *study;
   strut_sweep_scenes scenes;
   int64_t points;
-  unsigned keep;       /* bits 1 << strut_keep */
+  unsigned keep; /* bits 1 << strut_keep */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
-  bool check, flips;   /* each point is run twice; and outcomes are compared */
-  size_t axis_columns; /* the first columns */
+  bool check, flips;       /* each point is run twice; and outcomes are compared */
+  size_t axis_columns;     /* the first columns */
   size_t column_count;
   strut_slot_column *columns; /* of the axes, of what is kept, of the check */
   strut_arena arena;
@@ -56,8 +56,8 @@ typedef struct strut_sweep_state {
 } strut_sweep_state;
 
 typedef struct strut_sweep_options {
-  int threads;                            /* 0: strut_sweep_threads */
-  int lanes; /* points at a time on one processor, where they are alike; 0: as it is good for */
+  int threads; /* 0: strut_sweep_threads */
+  int lanes;   /* points at a time on one processor, where they are alike; 0: as it is good for */
   const volatile sig_atomic_t *interrupt; /* may be NULL */
   const char *directory;                  /* of runs, where trajectories are wanted */
   /** A few times a second, one thread at a time; may be NULL. */

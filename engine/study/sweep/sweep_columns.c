@@ -8,9 +8,8 @@
 #include "engine/study/sweep/sweep_parts.h"
 
 #define BIT(name) (1u << STRUT_KEEP_##name)
-static const unsigned USUAL =
-    BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) | BIT(EVALUATIONS) | BIT(OUTCOME) |
-    BIT(QUANTITIES);
+static const unsigned USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
+                              BIT(EVALUATIONS) | BIT(OUTCOME) | BIT(QUANTITIES);
 
 /* What one word of `keep` stands for: columns, in order. The last has no name. */
 typedef struct entry {
@@ -101,8 +100,8 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
     const char *unit = strut_arena_text(&plan->arena, d->unit, strlen(d->unit));
     if (!name || !unit) return false;
     plan->quantities[plan->quantity_count++] = name;
-    bool taken = is_taken(plan, plan->column_count, name) &&
-                 !is_taken(plan, plan->axis_columns, name);
+    bool taken =
+        is_taken(plan, plan->column_count, name) && !is_taken(plan, plan->axis_columns, name);
     if (!add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
   }
   return true;

@@ -19,8 +19,7 @@ static bool has_member_mass(const strut_scene *scene) {
 /* Whether there are bars that could be rigid: none of them is driven. */
 static bool has_still_bars(const strut_scene *scene) {
   bool any = false;
-  for (size_t i = 0; i < scene->member_count; i++)
-    any = any || scene->members[i].kind == STRUT_BAR;
+  for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
   for (size_t i = 0; i < scene->actuator_count; i++)
     any = any && scene->members[scene->actuators[i].member].kind != STRUT_BAR;
   return any;
@@ -58,22 +57,14 @@ static bool damped_ground(const strut_scene *scene) {
 
 static bool makes_sense(const strut_scene *scene, kind what) {
   switch (what) {
-    case OWN:
-      return true;
-    case MASS:
-      return has_member_mass(scene);
-    case RIGID:
-      return has_still_bars(scene);
-    case KARNOPP:
-      return rubs(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
-    case COULOMB:
-      return rubs(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
-    case SMOOTH:
-      return rubs(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
-    case GROUND:
-      return scene->contact_count > 0 && damped_ground(scene);
-    default:
-      return false;
+    case OWN: return true;
+    case MASS: return has_member_mass(scene);
+    case RIGID: return has_still_bars(scene);
+    case KARNOPP: return rubs(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
+    case COULOMB: return rubs(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
+    case SMOOTH: return rubs(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
+    case GROUND: return scene->contact_count > 0 && damped_ground(scene);
+    default: return false;
   }
 }
 
@@ -153,11 +144,10 @@ strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene 
                                       strut_arena *arena) {
   kind what = kind_of(s, fidelity);
   if (what == MASS)
-    scene->mass_model = scene->mass_model == STRUT_MASS_LUMPED ? STRUT_MASS_CONSISTENT
-                                                               : STRUT_MASS_LUMPED;
+    scene->mass_model =
+        scene->mass_model == STRUT_MASS_LUMPED ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED;
   if (what == RIGID)
-    scene->bar_model =
-        scene->bar_model == STRUT_BARS_RIGID ? STRUT_BARS_ELASTIC : STRUT_BARS_RIGID;
+    scene->bar_model = scene->bar_model == STRUT_BARS_RIGID ? STRUT_BARS_ELASTIC : STRUT_BARS_RIGID;
   if (what < GROUND) return STRUT_OK;
   strut_contact *contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *contacts);
   if (!contacts) return STRUT_NO_MEMORY;

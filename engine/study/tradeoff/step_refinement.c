@@ -104,7 +104,7 @@ static void cost_row(study *s, strut_tradeoff_row *row, double *ratios, size_t c
 }
 
 strut_status strut_study_run_row(study *s, study_ladder *from, study_setting setting, bool base,
-                            bool *cannot) {
+                                 bool *cannot) {
   strut_tradeoff *r = s->result;
   double began = strut_study_clock();
   strut_tradeoff_row *row = new_row(s, from, setting);
@@ -116,8 +116,8 @@ strut_status strut_study_run_row(study *s, study_ladder *from, study_setting set
   *cannot = false;
   for (size_t p = 0; p < r->point_count; p++) {
     study_outcome outcome;
-    status = strut_study_run(s, p, row->fidelity, setting, row->value + p * r->value_count,
-                             &outcome);
+    status =
+        strut_study_run(s, p, row->fidelity, setting, row->value + p * r->value_count, &outcome);
     if (status != STRUT_OK) return status;
     *cannot = outcome.cannot;
     if (outcome.cannot) break;
@@ -153,7 +153,7 @@ static bool setting_at(const study *s, const study_ladder *l, int k, study_setti
 }
 
 strut_status strut_study_probe(const study *s, int fidelity, study_setting setting,
-                          study_outcome *outcome) {
+                               study_outcome *outcome) {
   return strut_study_run(s, 0, fidelity, setting, s->scratch, outcome);
 }
 
@@ -162,9 +162,9 @@ static study_ladder *add_ladder(study *s, study_ladders *all, int fidelity, stud
   if (all->count == STUDY_MOST_LADDERS) return NULL;
   study_ladder *l = &all->at[all->count++];
   *l = (study_ladder){.fidelity = fidelity,
-                .group = (int)s->result->group_count++,
-                .first = first,
-                .limited = limited};
+                      .group = (int)s->result->group_count++,
+                      .first = first,
+                      .limited = limited};
   return l;
 }
 
@@ -178,8 +178,8 @@ static strut_status differ(const study *s, int fidelity, study_setting a, study_
     status = strut_study_run(s, p, fidelity, a, s->scratch, &one);
     if (!status) status = strut_study_run(s, p, fidelity, b, s->scratch, &other);
     bool both = one.status == STRUT_OK && other.status == STRUT_OK;
-    *different = !status && (one.status != other.status ||
-                             (both && one.evaluations != other.evaluations));
+    *different =
+        !status && (one.status != other.status || (both && one.evaluations != other.evaluations));
   }
   return status;
 }
@@ -207,7 +207,7 @@ static strut_status add_refined(study *s, study_ladders *all, int fidelity, stud
 
 /* Ladders of one method: one for each way to refine that makes a difference in this scene. */
 strut_status strut_study_add_method(study *s, study_ladders *all, int fidelity,
-                               const strut_integrator *method) {
+                                    const strut_integrator *method) {
   study_outcome outcome;
   study_setting first = {method, s->base.step, (double)NAN, 1};
   bool adaptive = strut_study_adaptive(method);

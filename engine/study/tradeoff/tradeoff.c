@@ -51,7 +51,8 @@ static strut_status prepare(study *s, size_t count) {
   s->base_timed = strut_arena_allocate(&r->arena, count, sizeof *s->base_timed);
   s->scratch = strut_arena_allocate(&r->arena, most, sizeof *s->scratch);
   if (!s->size || !s->scale || !s->base_evaluations || !s->base_seconds || !s->base_timed ||
-      !s->scratch) return out_of_memory(s);
+      !s->scratch)
+    return out_of_memory(s);
   if (!(strut_scene_span(scene).duration > 0))
     return strut_fail(s->error, STRUT_USAGE,
                       "the scene has no run to compare: it needs 'run' with a duration or periods");
@@ -111,8 +112,8 @@ static strut_status run_base(study *s, study_ladders *own) {
   for (size_t p = 0; p < r->point_count; p++) {
     strut_scene scene = *s->scenes[p];
     scene.experiment = strut_study_experiment(s, p);
-    s->base_evaluations[p] = strut_scene_span(&scene).duration / s->base.step *
-                             s->base.method->evaluations;
+    s->base_evaluations[p] =
+        strut_scene_span(&scene).duration / s->base.step * s->base.method->evaluations;
   }
   bool cannot = false;
   strut_status status = strut_study_run_row(s, in, s->base, true, &cannot);

@@ -39,8 +39,8 @@ typedef struct strut_tradeoff_options {
   int repeats;    /* of a short run, for its CPU time; 0: 5 */
   const strut_integrator *const *methods; /* (method_count) only these; 0: all */
   size_t method_count;
-  bool own_model; /* leave out other fidelities */
-  const volatile sig_atomic_t *interrupt; /* may be NULL */
+  bool own_model;                                   /* leave out other fidelities */
+  const volatile sig_atomic_t *interrupt;           /* may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
 } strut_tradeoff_options;
@@ -54,33 +54,33 @@ typedef struct strut_spread {
 
 /** A model of the scene. The first is the scene's own. */
 typedef struct strut_model_variant {
-  char name[120];     /* such as "lumped masses" */
-  char remark[600];   /* why it could not be run, or what was assumed; may be empty */
+  char name[120];   /* such as "lumped masses" */
+  char remark[600]; /* why it could not be run, or what was assumed; may be empty */
   bool run;
   char reference[2][100]; /* the two settings that agree, of the first operating point */
-  double *value;      /* (points, values) the reference */
-  double *floor;      /* (points) where the two agree; relative as errors are */
-  double *model_error; /* (points); 0 for the first */
+  double *value;          /* (points, values) the reference */
+  double *floor;          /* (points) where the two agree; relative as errors are */
+  double *model_error;    /* (points); 0 for the first */
   strut_spread model_spread, floor_spread;
 } strut_model_variant;
 
 /** One setting, run at every operating point. */
 typedef struct strut_tradeoff_row {
-  int fidelity;         /* index */
-  int group;            /* settings that differ by their step or tolerance alone */
+  int fidelity; /* index */
+  int group;    /* settings that differ by their step or tolerance alone */
   const strut_integrator *method;
-  bool base;            /* the setting that costs are relative to */
-  double step;          /* [s]; fitted to each point's periods. Of an adaptive method the largest */
-  double tolerance;     /* NAN where the method is not adaptive */
-  double refine;        /* as strut_experiment.refine; NAN where nothing is refined */
-  double *value;        /* (points, values); NAN where it diverged */
+  bool base;        /* the setting that costs are relative to */
+  double step;      /* [s]; fitted to each point's periods. Of an adaptive method the largest */
+  double tolerance; /* NAN where the method is not adaptive */
+  double refine;    /* as strut_experiment.refine; NAN where nothing is refined */
+  double *value;    /* (points, values); NAN where it diverged */
   double *error, *total; /* (points) step error and total error; INFINITY where it diverged */
   strut_spread error_spread, total_spread;
-  size_t diverged;      /* points */
-  double evaluations;   /* of the forces over those of the base: median over the points */
-  double cpu;           /* CPU time over that of the base, measured in turn; NAN: not measured */
-  double seconds;       /* CPU time of a run, median [s]; NAN: not measured */
-  bool front;           /* no other of its model is as cheap and as good: `evaluations`, worst */
+  size_t diverged;    /* points */
+  double evaluations; /* of the forces over those of the base: median over the points */
+  double cpu;         /* CPU time over that of the base, measured in turn; NAN: not measured */
+  double seconds;     /* CPU time of a run, median [s]; NAN: not measured */
+  bool front;         /* no other of its model is as cheap and as good: `evaluations`, worst */
 } strut_tradeoff_row;
 
 /** All of it; strut_tradeoff_free. Names and methods outlive it. */
@@ -88,14 +88,14 @@ typedef struct strut_tradeoff {
   const char *name; /* of the scene */
   strut_tradeoff_measure measure;
   size_t point_count, value_count, fidelity_count, row_count, group_count;
-  double scale;     /* velocities below it have errors relative to it [m/s]; of the first point */
-  double periods;   /* run; 0 where the run is given in seconds */
-  double duration;  /* of the first point [s] */
+  double scale;    /* velocities below it have errors relative to it [m/s]; of the first point */
+  double periods;  /* run; 0 where the run is given in seconds */
+  double duration; /* of the first point [s] */
   int64_t base_evaluations; /* of the first point */
   double base_seconds;
-  size_t base;      /* row */
-  size_t left_out;  /* settings for which the budget did not suffice */
-  double spent;     /* CPU time [s] */
+  size_t base;     /* row */
+  size_t left_out; /* settings for which the budget did not suffice */
+  double spent;    /* CPU time [s] */
   strut_model_variant *fidelities;
   strut_tradeoff_row *rows;
   strut_arena arena;

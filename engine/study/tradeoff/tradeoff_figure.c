@@ -41,17 +41,17 @@ static bool add_bargain(panel *p, const strut_tradeoff *r, const strut_tradeoff_
       if (errors[k] <= BEYOND) worst = fmax(worst, errors[k]);
   }
   p->bargains[p->count++] = (strut_saving){.group = group,
-                                            .label = name,
-                                            .cost = row->evaluations,
-                                            .error = gone ? HUGE_VAL : spread->median,
-                                            .low = many ? spread->median : (double)NAN,
-                                            .high = many ? worst : (double)NAN};
+                                           .label = name,
+                                           .cost = row->evaluations,
+                                           .error = gone ? HUGE_VAL : spread->median,
+                                           .low = many ? spread->median : (double)NAN,
+                                           .high = many ? worst : (double)NAN};
   if (row->diverged && !gone)
     p->bargains[p->count++] = (strut_saving){.group = group,
-                                              .cost = row->evaluations,
-                                              .error = HUGE_VAL,
-                                              .low = (double)NAN,
-                                              .high = (double)NAN};
+                                             .cost = row->evaluations,
+                                             .error = HUGE_VAL,
+                                             .low = (double)NAN,
+                                             .high = (double)NAN};
   return true;
 }
 
@@ -119,14 +119,13 @@ static strut_status draw_panel(strut_canvas *canvas, strut_box box, const panel 
   const strut_tradeoff_row *base = &r->rows[r->base];
   snprintf(cost, sizeof cost, "cost in force evaluations, %s with %s = 1", base->method->name,
            strut_study_step(base, text));
-  const strut_work_precision diagram = {
-      .title = title,
-      .cost = {cost, "", true, (double)NAN, (double)NAN},
-      .error = {error, "", true, (double)NAN, (double)NAN},
-      .group_count = p->group_count,
-      .count = p->count,
-      .groups = p->groups,
-      .bargains = p->bargains};
+  const strut_work_precision diagram = {.title = title,
+                                        .cost = {cost, "", true, (double)NAN, (double)NAN},
+                                        .error = {error, "", true, (double)NAN, (double)NAN},
+                                        .group_count = p->group_count,
+                                        .count = p->count,
+                                        .groups = p->groups,
+                                        .bargains = p->bargains};
   return strut_draw_work_precision(canvas, box, &diagram);
 }
 
@@ -142,7 +141,8 @@ static strut_status draw(const char *path, double width, const strut_tradeoff *r
   double height = (two ? 2 * box.height + BETWEEN : box.height) + 2 * EDGE;
   strut_status status = strut_canvas_open(path, width, height, r->name, &canvas, error);
   if (status != STRUT_OK) return status;
-  status = draw_panel(canvas, box, &panels[0], "Methods: the scene's own model (beyond 1000 %: diverged)", names[0], r);
+  status = draw_panel(canvas, box, &panels[0],
+                      "Methods: the scene's own model (beyond 1000 %: diverged)", names[0], r);
   box.y += box.height + BETWEEN;
   if (two && status == STRUT_OK)
     status = draw_panel(canvas, box, &panels[1], "Models: the best of the methods for each",

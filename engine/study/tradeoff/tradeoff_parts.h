@@ -14,11 +14,11 @@ typedef struct study_setting {
 
 /** What one run gave. */
 typedef struct study_outcome {
-  strut_status status;  /* STRUT_OK, or STRUT_DIVERGED for all that goes wrong on the way */
-  bool cannot;          /* the method cannot run this model at all; error holds the reason */
+  strut_status status; /* STRUT_OK, or STRUT_DIVERGED for all that goes wrong on the way */
+  bool cannot;         /* the method cannot run this model at all; error holds the reason */
   int64_t evaluations;
-  double seconds;       /* CPU time of the stepping alone */
-  double step_limit;    /* [s] */
+  double seconds;    /* CPU time of the stepping alone */
+  double step_limit; /* [s] */
 } study_outcome;
 
 typedef struct study {
@@ -26,12 +26,12 @@ typedef struct study {
   const strut_tradeoff_options *options;
   strut_tradeoff *result;
   strut_error *error;
-  double began;       /* CPU clock [s] */
-  double budget;      /* [s] */
+  double began;         /* CPU clock [s] */
+  double budget;        /* [s] */
   double *size, *scale; /* (points) [m], [m/s] */
-  double *scratch;    /* (max(points, values)) */
+  double *scratch;      /* (max(points, values)) */
   study_setting base;
-  double limit;       /* of the base's method [s]; 0 where there is none */
+  double limit; /* of the base's method [s]; 0 where there is none */
   double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
   size_t row_room;
 } study;
@@ -76,9 +76,9 @@ strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene 
 typedef struct study_reference {
   int fidelity;
   const strut_integrator *method[2];
-  double limit;        /* [s] first step of the first method */
-  int *level, *idle;   /* (points) next level; levels in a row that did not help */
-  double last_cost;    /* CPU time of the latest level of one point [s] */
+  double limit;            /* [s] first step of the first method */
+  int *level, *idle;       /* (points) next level; levels in a row that did not help */
+  double last_cost;        /* CPU time of the latest level of one point [s] */
   double *latest, *before; /* (2, values), (points, 2, values) */
 } study_reference;
 

@@ -29,7 +29,7 @@ static study_setting setting_of(const study *s, const study_reference *r, int wh
 
 /* The best method that can run it, other than `not`; its step limit into r->limit. */
 static strut_status choose(const study *s, study_reference *r, int which,
-                           const strut_integrator *not) {
+                           const strut_integrator * not ) {
   bool tried[64] = {false};
   for (;;) {
     const strut_integrator *best = NULL;
@@ -37,7 +37,7 @@ static strut_status choose(const study *s, study_reference *r, int which,
     for (size_t i = 0; i < 64 && strut_integrator_at(i); i++) {
       const strut_integrator *method = strut_integrator_at(i);
       bool wanted = which == 0 ? !strut_study_adaptive(method)
-                               : method != not && (!best || !strut_study_adaptive(best));
+                               : method != not &&(!best || !strut_study_adaptive(best));
       if (tried[i] || !wanted || !strut_study_able(s, method, r->fidelity)) continue;
       bool better = !best || (which == 1 && strut_study_adaptive(method)) ||
                     merit(s, method) > merit(s, best);
@@ -47,8 +47,8 @@ static strut_status choose(const study *s, study_reference *r, int which,
     tried[at] = true;
     r->method[which] = best;
     study_outcome outcome;
-    strut_status status = strut_study_run(s, 0, r->fidelity, setting_of(s, r, which, 0),
-                                          r->latest, &outcome);
+    strut_status status =
+        strut_study_run(s, 0, r->fidelity, setting_of(s, r, which, 0), r->latest, &outcome);
     if (status != STRUT_OK) return status;
     if (which == 0 && outcome.step_limit > 0 && !outcome.cannot)
       r->limit = isfinite(outcome.step_limit) ? 0.5 * outcome.step_limit : s->base.step;
@@ -110,8 +110,7 @@ static double doubt(const study *s, const study_reference *r, size_t p) {
   if (r->level[p] == 0) return HUGE_VAL;
   double apart = strut_study_distance(s, p, now, now + count);
   for (size_t k = 0; k < 2; k++)
-    apart = fmax(apart,
-                 0.1 * strut_study_distance(s, p, now + k * count, before + k * count));
+    apart = fmax(apart, 0.1 * strut_study_distance(s, p, now + k * count, before + k * count));
   return apart;
 }
 

@@ -106,9 +106,10 @@ static void add_spread(strut_buffer *csv, const strut_spread *spread) {
 char *strut_tradeoff_csv(const strut_tradeoff *r) {
   strut_buffer csv = {0};
   char a[STRUT_STUDY_WORDS];
-  strut_buffer_add(&csv, "model,group,method,refine,step [s],tolerance,evaluations,cpu,seconds [s],"
-                         "error median,error 90 %%,error worst,total median,total 90 %%,"
-                         "total worst,diverged,points,front,base\n");
+  strut_buffer_add(&csv,
+                   "model,group,method,refine,step [s],tolerance,evaluations,cpu,seconds [s],"
+                   "error median,error 90 %%,error worst,total median,total 90 %%,"
+                   "total worst,diverged,points,front,base\n");
   for (size_t i = 0; i < r->row_count; i++) {
     const strut_tradeoff_row *row = &r->rows[i];
     strut_buffer_add(&csv, "\"%s\",\"%s\",%s", r->fidelities[row->fidelity].name,
@@ -214,8 +215,7 @@ char *strut_tradeoff_json(const strut_tradeoff *r, const strut_scene *const *sce
   strut_json_text(&json, json.root, "measure", strut_study_measure(r->measure));
   if (r->periods > 0) strut_json_number(&json, json.root, "periods", r->periods);
   strut_json_number(&json, json.root, "duration", r->duration);
-  if (r->measure == STRUT_TRADEOFF_VELOCITY)
-    strut_json_number(&json, json.root, "scale", r->scale);
+  if (r->measure == STRUT_TRADEOFF_VELOCITY) strut_json_number(&json, json.root, "scale", r->scale);
   strut_json_integer(&json, json.root, "base_setting", (int64_t)r->base);
   strut_json_integer(&json, json.root, "base_evaluations", r->base_evaluations);
   strut_json_number(&json, json.root, "base_seconds", r->base_seconds);

@@ -13,8 +13,7 @@
  */
 STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
 /** scenes: the operating points, whose parameters are told. */
-STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result,
-                                    const strut_scene *const *scenes);
+STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_scene *const *scenes);
 /** One row per setting, the spreads over the operating points; diverged: "inf". */
 STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 

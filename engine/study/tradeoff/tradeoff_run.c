@@ -81,8 +81,7 @@ static void take_values(const study *s, const strut_summary *summary, double *va
     case STRUT_TRADEOFF_ENERGY:
       value[0] = summary->energy.moved > 0 ? summary->energy.residual / summary->energy.moved : 0;
       break;
-    default:
-      value[0] = summary->velocity;
+    default: value[0] = summary->velocity;
   }
 }
 

@@ -44,8 +44,8 @@ static void find_fronts(strut_tradeoff *r) {
     for (size_t k = 0; k < r->row_count && a->front; k++) {
       const strut_tradeoff_row *b = &r->rows[k];
       if (b->fidelity != a->fidelity || !isfinite(b->error_spread.worst)) continue;
-      bool no_worse = b->evaluations <= a->evaluations &&
-                      b->error_spread.worst <= a->error_spread.worst;
+      bool no_worse =
+          b->evaluations <= a->evaluations && b->error_spread.worst <= a->error_spread.worst;
       bool better =
           b->evaluations < a->evaluations || b->error_spread.worst < a->error_spread.worst;
       a->front = !(no_worse && better);

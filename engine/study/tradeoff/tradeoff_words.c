@@ -97,9 +97,9 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int fideli
                    strut_study_percent(change, a));
   if (row >= 0) {
     int own = strut_tradeoff_best(r, 0, level);
-    strut_buffer_add(text, "; a bargain for %s: %s, %s costs %.2g, ",
-                     strut_study_percent(level, a), r->rows[row].method->name,
-                     strut_study_step(&r->rows[row], b), r->rows[row].evaluations);
+    strut_buffer_add(text, "; a bargain for %s: %s, %s costs %.2g, ", strut_study_percent(level, a),
+                     r->rows[row].method->name, strut_study_step(&r->rows[row], b),
+                     r->rows[row].evaluations);
     if (own >= 0)
       strut_buffer_add(text, "the scene's own model %.2g\n", r->rows[own].evaluations);
     else
@@ -113,10 +113,10 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int fideli
 }
 
 void strut_study_advise(strut_buffer *text, const strut_tradeoff *r) {
-  strut_buffer_add(text, "Advice: the cheapest that keep an error, there and at all finer "
-                         "settings that were run\n");
-  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++)
-    advise_level(text, r, strut_tradeoff_level(i));
+  strut_buffer_add(text,
+                   "Advice: the cheapest that keep an error, there and at all finer "
+                   "settings that were run\n");
+  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) advise_level(text, r, strut_tradeoff_level(i));
   if (r->fidelity_count > 1)
     strut_buffer_add(text, "\nOther models, converged, against the scene's own\n");
   for (size_t i = 1; i < r->fidelity_count; i++) advise_model(text, r, (int)i);
