@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
@@ -19,8 +20,6 @@
 #include "parser/cli/terminal.h"
 
 enum { MOST_MEMBERS = 40, MOST_BANDS = 10, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
-
-static const double TURN = 6.283185307179586476925;
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
@@ -68,7 +67,7 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
     printf("  no run             some node that can move has no mass: statics only\n");
     return;
   }
-  double step = scene->experiment.step, hertz = plan->largest_frequency / TURN;
+  double step = scene->experiment.step, hertz = plan->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
          plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
   bool bound = plan->limits.bound;
@@ -190,7 +189,7 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene
   strut_json_integer(json, root, "bytes", (int64_t)plan->bytes);
   strut_json_bool(json, root, "runnable", plan->runnable);
   strut_json_number(json, root, "largest_frequency",
-                    plan->runnable ? plan->largest_frequency / TURN : (double)NAN);
+                    plan->runnable ? plan->largest_frequency / STRUT_TAU : (double)NAN);
   strut_json_number(json, root, "step", scene->experiment.step);
   strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
   strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);

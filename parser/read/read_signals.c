@@ -3,9 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/read/reader.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* What the values of a signal under construction measure. */
 typedef struct meaning {
@@ -72,7 +71,7 @@ static bool read_wave(strut_reader *reader, strut_section room, const strut_tree
     } else if (strcmp(name, "frequency") == 0) {
       signal->frequency = slot->number[0];
     } else if (strcmp(name, "phase") == 0) {
-      signal->phase = slot->number[0] / TWO_PI;
+      signal->phase = slot->number[0] / STRUT_TAU;
     } else if (strcmp(name, "start") == 0) {
       signal->start = slot->number[0];
     } else {

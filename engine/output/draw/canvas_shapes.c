@@ -3,9 +3,10 @@
 #include <cairo.h>
 #include <math.h>
 
+#include "engine/base/vec.h"
 #include "engine/output/draw/canvas_parts.h"
 
-static const double HATCH_DISTANCE = 4.0, HATCH_WIDTH = 0.6, PI = 3.14159265358979323846;
+static const double HATCH_DISTANCE = 4.0, HATCH_WIDTH = 0.6;
 
 static void set_pen(strut_canvas *c, const strut_pen *pen) {
   int dashes = 0;
@@ -66,7 +67,7 @@ static void hatch_dots(strut_canvas *c) {
   cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
   for (double j = floor(y1 / HATCH_DISTANCE); j * HATCH_DISTANCE <= y2; j++)
     for (double i = floor(x1 / HATCH_DISTANCE); i * HATCH_DISTANCE <= x2; i++) {
-      cairo_arc(c->cairo, i * HATCH_DISTANCE, j * HATCH_DISTANCE, HATCH_WIDTH, 0, 2 * PI);
+      cairo_arc(c->cairo, i * HATCH_DISTANCE, j * HATCH_DISTANCE, HATCH_WIDTH, 0, 2 * STRUT_PI);
       cairo_fill(c->cairo);
     }
 }
@@ -119,7 +120,7 @@ void strut_draw_box(strut_canvas *c, strut_box box, const strut_fill *fill, cons
 void strut_draw_circle(strut_canvas *c, double x, double y, double radius, const strut_fill *fill,
                        const strut_pen *pen) {
   cairo_new_path(c->cairo);
-  cairo_arc(c->cairo, strut_canvas_near(x), strut_canvas_near(y), radius, 0, 2 * PI);
+  cairo_arc(c->cairo, strut_canvas_near(x), strut_canvas_near(y), radius, 0, 2 * STRUT_PI);
   cairo_close_path(c->cairo);
   paint(c, fill, pen);
 }

@@ -5,11 +5,12 @@
 #include <pango/pangocairo.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/output/draw/canvas_parts.h"
 
 /* One family by name, so that pictures look alike on every machine that has it. */
 static const char *const FAMILY = "DejaVu Sans, Liberation Sans, sans-serif";
-static const double SIZE = 8.0, HALO = 2.4, PI = 3.14159265358979323846;
+static const double SIZE = 8.0, HALO = 2.4;
 
 PangoLayout *strut_canvas_layout_create(cairo_t *cairo) {
   PangoLayout *layout = pango_cairo_create_layout(cairo);
@@ -79,7 +80,7 @@ void strut_draw_text(strut_canvas *c, double x, double y, const char *text, stru
   pango_layout_get_extents(c->layout, NULL, &logical);
   cairo_save(c->cairo);
   cairo_translate(c->cairo, strut_canvas_near(x), strut_canvas_near(y));
-  if (font.upwards) cairo_rotate(c->cairo, -0.5 * PI);
+  if (font.upwards) cairo_rotate(c->cairo, -0.5 * STRUT_PI);
   cairo_move_to(c->cairo, -font.across * width - (double)logical.x / PANGO_SCALE,
                 -font.down * height);
   if (font.halo.alpha > 0) {

@@ -4,13 +4,14 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure_parts.h"
 
 enum { DIRECTIONS = 16, MOST_NAMED = 60 };
 
-static const double PI = 3.14159265358979323846, GAP = 3.6, SIZE = 7.5, MOST_WIDTH = 90;
+static const double GAP = 3.6, SIZE = 7.5, MOST_WIDTH = 90;
 static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 
 /* Everything that names should keep away from. */
@@ -58,7 +59,7 @@ static strut_font name_font(void) {
 /* The box of a name of this size around `at`, in one of the directions. */
 static strut_box beside(const double at[2], int direction, double gap, double width,
                         double height) {
-  double angle = 2 * PI * direction / DIRECTIONS;
+  double angle = 2 * STRUT_PI * direction / DIRECTIONS;
   double x = at[0] + (gap + 0.5 * width) * cos(angle),
          y = at[1] - (gap + 0.5 * height) * sin(angle);
   return (strut_box){x - 0.5 * width, y - 0.5 * height, width, height};

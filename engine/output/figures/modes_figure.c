@@ -7,6 +7,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
@@ -14,7 +15,6 @@
 
 enum { NAMED = 12, SWUNG = 40, LED = 200, TITLE = 200 }; /* of nodes, members, nodes; bytes */
 
-static const double TURN = 6.283185307179586476925;
 static const double GAP = 12.0, EDGE = 4.0, MARGIN = 13.0; /* [pt] */
 static const double NARROWEST = 112.0;                     /* panel, for its title [pt] */
 static const double TALLEST = 190.0;                       /* drawing inside a panel [pt] */
@@ -163,7 +163,7 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
   strut_c_locale locale = strut_c_locale_enter();
   if (mode->kind == STRUT_MODE_ELASTIC) {
     int used = snprintf(title, TITLE, "mode %zu: %s", number,
-                        strut_drawn_quantity(mode->angular_frequency / TURN, 4, "Hz").text);
+                        strut_drawn_quantity(mode->angular_frequency / STRUT_TAU, 4, "Hz").text);
     if (isfinite(mode->damping_ratio) && mode->damping_ratio > 0 && used > 0)
       snprintf(title + used, TITLE - (size_t)used, ", \xCE\xB6 = %.2g", mode->damping_ratio);
   } else if (mode->kind == STRUT_MODE_UNSTABLE) {

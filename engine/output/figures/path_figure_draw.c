@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "engine/base/vec.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
@@ -12,7 +13,6 @@
 enum { NAMED = 12, LABEL = 200, DIRECTIONS = 12 };
 
 static const double MARKER = 2.7, LETTER = 8.5, MARGIN = 15.0, ARROW = 22.0; /* [pt] */
-static const double PI = 3.14159265358979323846;
 
 static double from_segment(const double p[2], const double a[2], const double b[2]) {
   double along[2] = {b[0] - a[0], b[1] - a[1]}, square = along[0] * along[0] + along[1] * along[1];
@@ -39,7 +39,7 @@ static void draw_letters(strut_path_picture *p, strut_box inside, const double (
     double best = -HUGE_VAL;
     if (!p->stops[i].letter[0]) continue;
     for (int k = 0; k < DIRECTIONS; k++) {
-      double angle = 2 * PI * (k + 0.5) / DIRECTIONS, free = LETTER;
+      double angle = 2 * STRUT_PI * (k + 0.5) / DIRECTIONS, free = LETTER;
       const double at[2] = {points[i][0] + LETTER * cos(angle), points[i][1] - LETTER * sin(angle)};
       for (size_t j = 0; j + 1 < p->count; j++)
         free = fmin(free, from_segment(at, p->points[j], p->points[j + 1]));

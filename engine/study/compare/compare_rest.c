@@ -3,12 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare_parts.h"
-
-static const double TURN = 6.283185307179586476925;
 
 static void put_counts(strut_compare_work *work, const strut_rigidity *r) {
   const strut_mechanisms *m = &r->mechanisms;
@@ -179,7 +178,7 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
     for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
       if (modes.list[i].kind == STRUT_MODE_ELASTIC)
         strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
-                          modes.list[i].angular_frequency / TURN);
+                          modes.list[i].angular_frequency / STRUT_TAU);
   } else {
     status = strut_compare_leave_failed(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
                                         &error, status, false);

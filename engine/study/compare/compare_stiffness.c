@@ -6,6 +6,7 @@
  */
 #include <math.h>
 
+#include "engine/model/pose.h"
 #include "engine/statics/rigid_motions.h"
 #include "engine/statics/rigidity/linear_matrices.h"
 #include "engine/study/compare/compare_parts.h"
@@ -36,7 +37,7 @@ static void hold_contacts(stiff *s, const strut_model *model, const double *q,
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     uint32_t at = c->at[i];
-    if (!(q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1] < 0)) continue;
+    if (!(strut_contact_gap(c, i, q) < 0)) continue;
     for (uint32_t a = 0; a < 2; a++)
       for (uint32_t b = 0; b < 2; b++)
         if (row_of[at + a] >= 0 && row_of[at + b] >= 0)
