@@ -7,14 +7,14 @@
 #include <string.h>
 
 static const strut_key table[] = {
-#define STRUT_KEY_ROW(room, id, name, type, measure, range, ...)                                   \
-  {STRUT_ROOM_##room,   name,       STRUT_TYPE_##type, STRUT_MEASURE_##measure,                    \
-   STRUT_RANGE_##range, __VA_ARGS__},
+#define STRUT_KEY_ROW(section, id, name, type, measure, range, ...)                                \
+  {STRUT_SECTION_##section, name,       STRUT_TYPE_##type, STRUT_MEASURE_##measure,                \
+   STRUT_RANGE_##range,     __VA_ARGS__},
     STRUT_KEY_TABLE(STRUT_KEY_ROW)
 #undef STRUT_KEY_ROW
 };
 
-/* First key of each room, and one more that ends the last; a test compares it with the table. */
+/* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_NODE_POSITION,
                             STRUT_KEY_MEMBER_GROUP,
@@ -45,26 +45,27 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_FIGURE_KIND,
                             STRUT_KEY_COUNT};
 
-static const char *const room_names[] = {
+static const char *const section_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
     "initial", "settle", "equilibria", "solver",    "run",      "measure", "quantity",
     "steady",  "output", "study",      "range",     "variant",  "check",   "figure"};
 
-_Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
-_Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");
+_Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
+_Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
+               "one for each section");
 
 const strut_key *strut_key_at(int key) {
   assert(key >= 0 && key < STRUT_KEY_COUNT);
   return &table[key];
 }
 
-int strut_section_first(strut_section room) { return first[room]; }
-int strut_section_size(strut_section room) { return first[room + 1] - first[room]; }
-const char *strut_section_name(strut_section room) { return room_names[room]; }
+int strut_section_first(strut_section section) { return first[section]; }
+int strut_section_size(strut_section section) { return first[section + 1] - first[section]; }
+const char *strut_section_name(strut_section section) { return section_names[section]; }
 
-int strut_key_find(strut_section room, const char *name) {
-  for (int key = first[room]; key < first[room + 1]; key++)
+int strut_key_find(strut_section section, const char *name) {
+  for (int key = first[section]; key < first[section + 1]; key++)
     if (strcmp(table[key].name, name) == 0) return key;
   return -1;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The language as one table: which mapping (room) has which keys, of which type, dimension, range
+ * The language as one table: which mapping (section) has which keys, of which type, dimension, range
  * and default. The reader, its messages and the reference page all come from it.
  */
 #ifndef STRUT_PARSER_LANGUAGE_KEYS_H
@@ -15,35 +15,35 @@
 
 /** The mappings of the language. */
 typedef enum strut_section {
-  STRUT_ROOM_SCENE,
-  STRUT_ROOM_NODE,
-  STRUT_ROOM_MEMBER,
-  STRUT_ROOM_GROUND,
-  STRUT_ROOM_FRICTION,
-  STRUT_ROOM_CONTACT,
-  STRUT_ROOM_ACTUATOR,
-  STRUT_ROOM_LOAD,
-  STRUT_ROOM_SIGNAL,
-  STRUT_ROOM_SINE,
-  STRUT_ROOM_HALF_SINE,
-  STRUT_ROOM_SQUARE,
-  STRUT_ROOM_RAMP,
-  STRUT_ROOM_CONFIGURATION,
-  STRUT_ROOM_INITIAL,
-  STRUT_ROOM_SETTLE,
-  STRUT_ROOM_EQUILIBRIA,
-  STRUT_ROOM_SOLVER,
-  STRUT_ROOM_RUN,
-  STRUT_ROOM_MEASURE,
-  STRUT_ROOM_QUANTITY,
-  STRUT_ROOM_STEADY,
-  STRUT_ROOM_OUTPUT,
-  STRUT_ROOM_STUDY,
-  STRUT_ROOM_RANGE,
-  STRUT_ROOM_VARIANT,
-  STRUT_ROOM_CHECK,
-  STRUT_ROOM_FIGURE,
-  STRUT_ROOM_COUNT
+  STRUT_SECTION_SCENE,
+  STRUT_SECTION_NODE,
+  STRUT_SECTION_MEMBER,
+  STRUT_SECTION_GROUND,
+  STRUT_SECTION_FRICTION,
+  STRUT_SECTION_CONTACT,
+  STRUT_SECTION_ACTUATOR,
+  STRUT_SECTION_LOAD,
+  STRUT_SECTION_SIGNAL,
+  STRUT_SECTION_SINE,
+  STRUT_SECTION_HALF_SINE,
+  STRUT_SECTION_SQUARE,
+  STRUT_SECTION_RAMP,
+  STRUT_SECTION_CONFIGURATION,
+  STRUT_SECTION_INITIAL,
+  STRUT_SECTION_SETTLE,
+  STRUT_SECTION_EQUILIBRIA,
+  STRUT_SECTION_SOLVER,
+  STRUT_SECTION_RUN,
+  STRUT_SECTION_MEASURE,
+  STRUT_SECTION_QUANTITY,
+  STRUT_SECTION_STEADY,
+  STRUT_SECTION_OUTPUT,
+  STRUT_SECTION_STUDY,
+  STRUT_SECTION_RANGE,
+  STRUT_SECTION_VARIANT,
+  STRUT_SECTION_CHECK,
+  STRUT_SECTION_FIGURE,
+  STRUT_SECTION_COUNT
 } strut_section;
 
 typedef enum strut_key_type {
@@ -68,7 +68,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_KEEP,          /* a list of the key's words and of quantities */
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
-  STRUT_TYPE_MAP,           /* the keys of the room that has the key's name */
+  STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
   STRUT_TYPE_THINGS         /* a mapping from names to what `words` says */
 } strut_key_type;
 
@@ -97,7 +97,7 @@ typedef enum strut_key_range {
 
 /** One line of the table. */
 typedef struct strut_key {
-  strut_section room;
+  strut_section section;
   const char *name;
   strut_key_type type;
   strut_measure measure;
@@ -107,24 +107,24 @@ typedef struct strut_key {
   const char *fallback, *words, *description;
 } strut_key;
 
-/** STRUT_KEY_MEMBER_STIFFNESS and so on: the keys of one room follow each other. */
+/** STRUT_KEY_MEMBER_STIFFNESS and so on: the keys of one section follow each other. */
 enum {
-#define STRUT_KEY_ENUM(room, id, ...) STRUT_KEY_##room##_##id,
+#define STRUT_KEY_ENUM(section, id, ...) STRUT_KEY_##section##_##id,
   STRUT_KEY_TABLE(STRUT_KEY_ENUM)
 #undef STRUT_KEY_ENUM
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 24 }; /* of one room */
+enum { STRUT_MOST_KEYS = 24 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
-/** First key and number of keys of a room. */
-STRUT_API int strut_section_first(strut_section room);
-STRUT_API int strut_section_size(strut_section room);
-/** The key of that name in a room, or -1. */
-STRUT_API int strut_key_find(strut_section room, const char *name);
+/** First key and number of keys of a section. */
+STRUT_API int strut_section_first(strut_section section);
+STRUT_API int strut_section_size(strut_section section);
+/** The key of that name in a section, or -1. */
+STRUT_API int strut_key_find(strut_section section, const char *name);
 /** "node", "half_sine", ... */
-STRUT_API const char *strut_section_name(strut_section room);
+STRUT_API const char *strut_section_name(strut_section section);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */

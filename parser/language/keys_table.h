@@ -2,7 +2,7 @@
 /**
  * The table of the language: one line for each key. See keys.h for what is made of it.
  *
- * X(room, id, name, type, measure, range, need, set, default, words, description)
+ * X(section, id, name, type, measure, range, need, set, default, words, description)
  * Of the keys of one set (not 0) a mapping may give one only. Words are separated by '|'.
  */
 #ifndef STRUT_PARSER_LANGUAGE_KEYS_TABLE_H

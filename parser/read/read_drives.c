@@ -9,7 +9,7 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
   strut_dimension length = STRUT_DIM_LENGTH;
   bool fine = strut_read_name(reader, key, "actuator");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_ACTUATOR, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_ACTUATOR, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
   const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_SIGNAL);
@@ -46,7 +46,7 @@ static bool read_load(strut_reader *reader, const strut_tree *key, strut_load *l
   strut_dimension factor = STRUT_DIM_NONE;
   bool fine = strut_read_name(reader, key, "load");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_LOAD, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_LOAD, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *node = strut_slot_of(&fields, STRUT_KEY_LOAD_NODE);
   const strut_slot *force = strut_slot_of(&fields, STRUT_KEY_LOAD_FORCE);

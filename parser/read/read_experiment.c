@@ -32,7 +32,7 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
         strut_found(reader, slot->value));
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_SETTLE, slot->value, owner, &reader->settle);
+  strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
   settle->speed = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_SPEED, settle->speed);
   settle->acceleration =
       strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
@@ -87,8 +87,8 @@ static void read_equilibrium(strut_reader *reader) {
 }
 
 void strut_read_initial(strut_reader *reader) {
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
-                          &reader->initial))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_SECTION_INITIAL,
+                          "the initial state", &reader->initial))
     return;
   read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
@@ -204,7 +204,7 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
         strut_found(reader, slot->value));
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_STEADY, slot->value, owner, &reader->steady);
+  strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
   steady->tolerance =
       strut_number_or(&reader->steady, STRUT_KEY_STEADY_TOLERANCE, steady->tolerance);
   steady->floor = strut_number_or(&reader->steady, STRUT_KEY_STEADY_FLOOR, steady->floor);
@@ -224,15 +224,15 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
 static void read_run(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   strut_owner owner = {"the measurement", NULL};
-  reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run))
+  reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, "the run", &reader->run))
     return;
   read_of(reader);
   e->duration = strut_number_or(&reader->run, STRUT_KEY_RUN_DURATION, 0.0);
   e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
-    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value,
+    strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
                       (strut_owner){"the measurement", NULL}, &reader->measure);
     const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
     if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
@@ -274,7 +274,7 @@ static void read_integrator(strut_reader *reader) {
 void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   read_run(reader);
-  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
+  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, "the solver",
                          &reader->solver)) {
     e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
     e->tolerance = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_TOLERANCE, e->tolerance);
@@ -285,7 +285,7 @@ void strut_read_experiment(strut_reader *reader) {
     read_integrator(reader);
   }
   choose_settling_step(reader);
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, "the output",
                           &reader->output))
     return;
   e->output_every = strut_number_or(&reader->output, STRUT_KEY_OUTPUT_EVERY, 0.0);

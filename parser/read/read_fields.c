@@ -6,8 +6,8 @@
 #include "parser/read/reader.h"
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
-  assert(strut_key_at(key)->room == fields->room);
-  return &fields->slot[key - strut_section_first(fields->room)];
+  assert(strut_key_at(key)->section == fields->section);
+  return &fields->slot[key - strut_section_first(fields->section)];
 }
 
 double strut_number_or(strut_fields *fields, int key, double fallback) {
@@ -16,41 +16,41 @@ double strut_number_or(strut_fields *fields, int key, double fallback) {
 }
 
 void strut_suppress_missing(strut_fields *fields) {
-  for (int i = 0; i < strut_section_size(fields->room); i++)
+  for (int i = 0; i < strut_section_size(fields->section); i++)
     if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
 }
 
-/* The keys of some rooms, one after the other, for suggestions. */
-typedef struct rooms_context {
-  const strut_section *rooms;
+/* The keys of some sections, one after the other, for suggestions. */
+typedef struct sections_context {
+  const strut_section *sections;
   size_t count;
-} rooms_context;
+} sections_context;
 
-static int key_of_rooms(const rooms_context *rooms, size_t i) {
-  for (size_t r = 0; r < rooms->count; r++) {
-    size_t size = (size_t)strut_section_size(rooms->rooms[r]);
-    if (i < size) return strut_section_first(rooms->rooms[r]) + (int)i;
+static int key_of_sections(const sections_context *sections, size_t i) {
+  for (size_t r = 0; r < sections->count; r++) {
+    size_t size = (size_t)strut_section_size(sections->sections[r]);
+    if (i < size) return strut_section_first(sections->sections[r]) + (int)i;
     i -= size;
   }
   return -1;
 }
 
-static const char *name_of_rooms(const void *context, size_t i) {
-  int key = key_of_rooms(context, i);
+static const char *name_of_sections(const void *context, size_t i) {
+  int key = key_of_sections(context, i);
   return key < 0 ? NULL : strut_key_at(key)->name;
 }
 
-int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *rooms,
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner) {
-  rooms_context context = {rooms, count};
+  sections_context context = {sections, count};
   const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
                          ? NULL
-                         : strut_did_you_mean(key->text, name_of_rooms, &context);
+                         : strut_did_you_mean(key->text, name_of_sections, &context);
   strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s",
                      strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-  for (int i = 0; near && key_of_rooms(&context, (size_t)i) >= 0; i++) {
-    int meant = key_of_rooms(&context, (size_t)i);
+  for (int i = 0; near && key_of_sections(&context, (size_t)i) >= 0; i++) {
+    int meant = key_of_sections(&context, (size_t)i);
     if (strcmp(strut_key_at(meant)->name, near) == 0) return meant;
   }
   return -1;
@@ -175,7 +175,7 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
       return strut_read_number(reader, value, key->name, owner, dimension, key->range,
                                &slot->number[0]);
     case STRUT_TYPE_PAIR:
-      if (key->room == STRUT_ROOM_SCENE) return true; /* its parameters are not read yet */
+      if (key->section == STRUT_SECTION_SCENE) return true; /* its parameters are not read yet */
       return strut_read_pair(reader, value, key->name, owner, dimension, slot->number);
     case STRUT_TYPE_WORD: return read_word(reader, key, value, owner, &slot->word);
     case STRUT_TYPE_WORDS: return read_words(reader, key, value, owner, &slot->word);
@@ -195,8 +195,8 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
 
 /* Another key of the same set that the mapping itself gives, or NULL. */
 static const strut_tree *rival(const strut_fields *fields, int key) {
-  int first = strut_section_first(fields->room), set = strut_key_at(key)->set;
-  for (int i = 0; set && i < strut_section_size(fields->room); i++)
+  int first = strut_section_first(fields->section), set = strut_key_at(key)->set;
+  for (int i = 0; set && i < strut_section_size(fields->section); i++)
     if (first + i != key && strut_key_at(first + i)->set == set && fields->slot[i].key)
       return fields->slot[i].key;
   return NULL;
@@ -204,9 +204,9 @@ static const strut_tree *rival(const strut_fields *fields, int key) {
 
 static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const strut_tree *key_tree,
                              strut_owner owner) {
-  int key = strut_key_find(fields->room, key_tree->text);
+  int key = strut_key_find(fields->section, key_tree->text);
   if (key < 0) {
-    int meant = strut_unknown_key(reader, key_tree, &fields->room, 1, owner);
+    int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, owner);
     fields->broken = true;
     if (meant >= 0 && strut_slot_of(fields, meant)->state == STRUT_ABSENT)
       strut_slot_of(fields, meant)->state = STRUT_BROKEN;
@@ -236,9 +236,9 @@ static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner
   fields->broken = true;
 }
 
-void strut_read_fields(strut_reader *reader, strut_section room, const strut_tree *map,
+void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
                        strut_owner owner, strut_fields *fields) {
-  *fields = (strut_fields){.room = room, .map = map};
+  *fields = (strut_fields){.section = section, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
     strut_report_error(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
                        strut_owner_text(reader, owner), strut_found(reader, map));
@@ -248,13 +248,13 @@ void strut_read_fields(strut_reader *reader, strut_section room, const strut_tre
   }
   for (const strut_tree *k = map->first; k; k = k->next->next)
     read_pair_of_map(reader, fields, k, owner);
-  if (room == STRUT_ROOM_FRICTION) check_rivals(reader, fields, owner);
+  if (section == STRUT_SECTION_FRICTION) check_rivals(reader, fields, owner);
 }
 
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place) {
-  int first = strut_section_first(fields->room);
-  for (int i = 0; i < strut_section_size(fields->room); i++) {
+  int first = strut_section_first(fields->section);
+  for (int i = 0; i < strut_section_size(fields->section); i++) {
     char expected[300];
     strut_slot *slot = &fields->slot[i];
     if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
@@ -267,13 +267,13 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
   }
 }
 
-bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
+bool strut_read_section(strut_reader *reader, int key, strut_section section, const char *owner,
                         strut_fields *fields) {
   const strut_slot *slot = strut_slot_of(&reader->top, key);
-  *fields = (strut_fields){.room = room, .broken = slot->state == STRUT_BROKEN};
+  *fields = (strut_fields){.section = section, .broken = slot->state == STRUT_BROKEN};
   if (fields->broken) strut_suppress_missing(fields);
   if (slot->state != STRUT_GIVEN) return false;
-  strut_read_fields(reader, room, slot->value, (strut_owner){owner, NULL}, fields);
+  strut_read_fields(reader, section, slot->value, (strut_owner){owner, NULL}, fields);
   return true;
 }
 

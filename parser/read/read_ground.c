@@ -96,7 +96,7 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
   if (own->state != STRUT_GIVEN || own->from) return;
   strut_fields nested;
   strut_owner mine = {"the friction of contact", owner.name};
-  strut_read_fields(reader, STRUT_ROOM_FRICTION, own->value, mine, &nested);
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, own->value, mine, &nested);
   add_layer(layers, &nested, mine);
 }
 
@@ -110,7 +110,7 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   contact->dissipation = defaults->dissipation;
   if (key) {
     strut_fields fields;
-    strut_read_fields(reader, STRUT_ROOM_CONTACT, key->next, owner, &fields);
+    strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
     contact->stiffness = strut_number_or(&fields, STRUT_KEY_CONTACT_STIFFNESS, defaults->stiffness);
     contact->damping = strut_number_or(&fields, STRUT_KEY_CONTACT_DAMPING, defaults->damping);
@@ -195,7 +195,7 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
 void strut_read_ground(strut_reader *reader) {
   strut_fields *fields = &reader->ground;
   strut_owner owner = {"the ground", NULL};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
     return;
   strut_require(reader, fields, owner,
                 strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place);
@@ -215,7 +215,7 @@ void strut_read_ground(strut_reader *reader) {
   if (friction->state == STRUT_GIVEN) {
     strut_fields nested;
     strut_owner mine = {"the friction of the ground", NULL};
-    strut_read_fields(reader, STRUT_ROOM_FRICTION, friction->value, mine, &nested);
+    strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
     add_layer(&defaults.friction, &nested, mine);
   }
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN)

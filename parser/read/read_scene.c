@@ -50,15 +50,15 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
 
 /* The mappings of which there is one: before they are read, and where they are not there. */
 static void prepare(strut_reader *reader) {
-  reader->ground.room = STRUT_ROOM_GROUND;
-  reader->initial.room = STRUT_ROOM_INITIAL;
-  reader->settle.room = STRUT_ROOM_SETTLE;
-  reader->search.room = STRUT_ROOM_EQUILIBRIA;
-  reader->solver.room = STRUT_ROOM_SOLVER;
-  reader->run.room = STRUT_ROOM_RUN;
-  reader->measure.room = STRUT_ROOM_MEASURE;
-  reader->steady.room = STRUT_ROOM_STEADY;
-  reader->output.room = STRUT_ROOM_OUTPUT;
+  reader->ground.section = STRUT_SECTION_GROUND;
+  reader->initial.section = STRUT_SECTION_INITIAL;
+  reader->settle.section = STRUT_SECTION_SETTLE;
+  reader->search.section = STRUT_SECTION_EQUILIBRIA;
+  reader->solver.section = STRUT_SECTION_SOLVER;
+  reader->run.section = STRUT_SECTION_RUN;
+  reader->measure.section = STRUT_SECTION_MEASURE;
+  reader->steady.section = STRUT_SECTION_STEADY;
+  reader->output.section = STRUT_SECTION_OUTPUT;
 }
 
 /* Does the file say anything about a run? */
@@ -84,7 +84,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
                        "this is a study, expected a model; 'strut sweep' runs studies");
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
+  strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
   if (reader->purpose == STRUT_FOR_ANY)
@@ -188,7 +188,7 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   reader->diagnostics = diagnostics;
   prepare(reader);
   reader->document.root = source->document.root;
-  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root,
+  strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root,
                     (strut_owner){"the scene", NULL}, &reader->top);
   if (reader->document.root->kind == STRUT_TREE_MAP) strut_read_parameters(reader, NULL, 0);
   strut_status status = reader->failed ? STRUT_BAD_SCENE : keep_declared(reader, source);

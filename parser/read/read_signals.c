@@ -56,16 +56,16 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
   return true;
 }
 
-/* A sine, half-sine, square or ramp. The keys of their rooms have the same names. */
-static bool read_wave(strut_reader *reader, strut_section room, const strut_tree *map,
+/* A sine, half-sine, square or ramp. The keys of their sections have the same names. */
+static bool read_wave(strut_reader *reader, strut_section section, const strut_tree *map,
                       strut_owner owner, meaning *m, strut_signal *signal) {
   strut_fields fields;
-  strut_read_fields(reader, room, map, owner, &fields);
+  strut_read_fields(reader, section, map, owner, &fields);
   strut_require(reader, &fields, owner, map->place);
   bool fine = !fields.broken;
-  for (int i = 0; i < strut_section_size(room); i++) {
+  for (int i = 0; i < strut_section_size(section); i++) {
     const strut_slot *slot = &fields.slot[i];
-    const char *name = strut_key_at(strut_section_first(room) + i)->name;
+    const char *name = strut_key_at(strut_section_first(section) + i)->name;
     if (slot->state != STRUT_GIVEN) continue;
     if (strcmp(name, "amplitude") == 0) {
       fine = read_value(reader, slot->value, name, owner, m, &signal->amplitude) && fine;
@@ -134,11 +134,12 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
-  static const strut_section rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
-                                        STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
+  static const strut_section sections[] = {STRUT_SECTION_SIGNAL, STRUT_SECTION_SINE,
+                                           STRUT_SECTION_HALF_SINE, STRUT_SECTION_SQUARE,
+                                           STRUT_SECTION_RAMP};
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
   if (map->count != 1 && !fields.broken)
     strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
                        strut_owner_text(reader, owner), (unsigned)map->count);
@@ -155,7 +156,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal);
   else
-    fine = read_wave(reader, rooms[chosen], value, owner, &m, &signal);
+    fine = read_wave(reader, sections[chosen], value, owner, &m, &signal);
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }

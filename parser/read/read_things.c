@@ -31,7 +31,7 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
     return false;
   }
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_NODE, value, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *position = strut_slot_of(&fields, STRUT_KEY_NODE_POSITION);
@@ -91,7 +91,7 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   strut_owner owner = {"member", member->name};
   bool fine = strut_read_name(reader, key, "member");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_MEMBER, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_MEMBER, key->next, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_MEMBER_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   if (!read_ends(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member->node)) {

@@ -37,17 +37,17 @@ typedef struct strut_slot {
 
 /** The keys of one mapping. */
 typedef struct strut_fields {
-  strut_section room;
+  strut_section section;
   bool broken;           /* some value, or the mapping itself, could not be read */
   const strut_tree *map; /* NULL: there is none */
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
-/** One key of a group, and what it is called in the rooms that may use the group. */
+/** One key of a group, and what it is called in the sections that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
   int key[3];           /* in member, node, contact; -1: not there */
-  bool refused[3];      /* it has been reported that the room has no such key */
+  bool refused[3];      /* it has been reported that the section has no such key */
   bool found;           /* a finding has been reported here */
   strut_fields *nested; /* of a mapping: friction */
 } strut_group_item;
@@ -194,7 +194,7 @@ const char *strut_keep_text(strut_reader *reader, const char *text);
 /* read_fields.c: mappings */
 
 /** Reads a mapping by the table. A value that is not a mapping is reported. */
-void strut_read_fields(strut_reader *reader, strut_section room, const strut_tree *map,
+void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
                        strut_owner owner, strut_fields *fields);
 /** Reports what is required and absent, at the place given. */
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
@@ -202,17 +202,17 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
 /** Reads a value by the table's line for the key. */
 void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
                      const strut_tree *value, strut_owner owner, strut_slot *slot);
-/** The slot of a key: fields->room must be the key's. */
+/** The slot of a key: fields->section must be the key's. */
 strut_slot *strut_slot_of(strut_fields *fields, int key);
-/** Reports an unknown key; returns the key of the rooms that was probably meant, or -1. */
-int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *rooms,
+/** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner);
 /** Number in a field, or the fallback where it is absent or broken. */
 double strut_number_or(strut_fields *fields, int key, double fallback);
 /** Marks every absent key as broken, so that nothing is said to be missing. */
 void strut_suppress_missing(strut_fields *fields);
 /** True where the mapping behind a key of the scene is there and could be read. */
-bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
+bool strut_read_section(strut_reader *reader, int key, strut_section section, const char *owner,
                         strut_fields *fields);
 /** The mapping of things behind a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);

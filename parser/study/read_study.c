@@ -160,8 +160,8 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
   study->description = description ? description : "";
   study->trajectories = files->state == STRUT_GIVEN && files->word == 1;
   if (check->state == STRUT_GIVEN) {
-    strut_read_fields(r->reader, STRUT_ROOM_CHECK, check->value, (strut_owner){"the check", NULL},
-                      &fields);
+    strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value,
+                      (strut_owner){"the check", NULL}, &fields);
     const strut_slot *half = strut_slot_of(&fields, STRUT_KEY_CHECK_HALF_STEP);
     study->half_step = half->state == STRUT_GIVEN && half->word == 1;
     study->check_accuracy = strut_number_or(&fields, STRUT_KEY_CHECK_ACCURACY, 0.0);
@@ -213,7 +213,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
                        "this is a model, expected a study, which names one");
     return STRUT_BAD_SCENE;
   }
-  strut_read_fields(reader, STRUT_ROOM_STUDY, file->document.root, study_owner, &top);
+  strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));
   read_rest(r, &top);

@@ -49,7 +49,7 @@ static void read_figure(strut_study_reader *r, const strut_tree *key, strut_stud
   strut_fields fields;
   strut_owner owner = {"figure", key->text};
   strut_read_name(r->reader, key, "figure");
-  strut_read_fields(r->reader, STRUT_ROOM_FIGURE, key->next, owner, &fields);
+  strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
   const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_FIGURE_KIND);
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_FIGURE_SCALE);
   figure->name = key->text;

@@ -146,7 +146,7 @@ static void every_key_stands_in_a_good_study(void **state) {
   (void)state;
   char *one = read_text(FOLDER "good/every-key.yaml"),
        *two = read_text(FOLDER "good/accuracy.yaml");
-  for (int key = strut_section_first(STRUT_ROOM_STUDY); key < STRUT_KEY_COUNT; key++) {
+  for (int key = strut_section_first(STRUT_SECTION_STUDY); key < STRUT_KEY_COUNT; key++) {
     char with_colon[60];
     snprintf(with_colon, sizeof with_colon, "%s:", strut_key_at(key)->name);
     if (!strstr(one, with_colon) && !strstr(two, with_colon))

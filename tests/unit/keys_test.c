@@ -14,33 +14,34 @@
 #include "parser/language/keys.h"
 #include "parser/write/keys_page.h"
 
-static void rooms_divide_the_table(void **state) {
+static void sections_divide_the_table(void **state) {
   (void)state;
   int key = 0;
-  for (int room = 0; room < STRUT_ROOM_COUNT; room++) {
-    assert_int_equal(strut_section_first((strut_section)room), key);
-    assert_true(strut_section_size((strut_section)room) >= 1);
-    assert_true(strut_section_size((strut_section)room) <= STRUT_MOST_KEYS);
-    for (int i = 0; i < strut_section_size((strut_section)room); i++, key++) {
-      assert_int_equal(strut_key_at(key)->room, room);
-      assert_int_equal(strut_key_find((strut_section)room, strut_key_at(key)->name), key);
+  for (int section = 0; section < STRUT_SECTION_COUNT; section++) {
+    assert_int_equal(strut_section_first((strut_section)section), key);
+    assert_true(strut_section_size((strut_section)section) >= 1);
+    assert_true(strut_section_size((strut_section)section) <= STRUT_MOST_KEYS);
+    for (int i = 0; i < strut_section_size((strut_section)section); i++, key++) {
+      assert_int_equal(strut_key_at(key)->section, section);
+      assert_int_equal(strut_key_find((strut_section)section, strut_key_at(key)->name), key);
       assert_true(strlen(strut_key_at(key)->description) > 3);
     }
   }
   assert_int_equal(key, STRUT_KEY_COUNT);
-  assert_int_equal(strut_key_find(STRUT_ROOM_MEMBER, "positions"), -1);
+  assert_int_equal(strut_key_find(STRUT_SECTION_MEMBER, "positions"), -1);
 }
 
-/* A group's key is read once for all rooms that have it: it must mean the same in each. */
+/* A group's key is read once for all sections that have it: it must mean the same in each. */
 static void shared_keys_of_groups_agree(void **state) {
   (void)state;
-  static const strut_section rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
+  static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
+                                           STRUT_SECTION_CONTACT};
   int shared = 0;
   for (size_t a = 0; a < 3; a++)
     for (size_t b = 0; b < a; b++)
-      for (int i = 0; i < strut_section_size(rooms[a]); i++) {
-        const strut_key *key = strut_key_at(strut_section_first(rooms[a]) + i);
-        int other = strut_key_find(rooms[b], key->name);
+      for (int i = 0; i < strut_section_size(sections[a]); i++) {
+        const strut_key *key = strut_key_at(strut_section_first(sections[a]) + i);
+        int other = strut_key_find(sections[b], key->name);
         if (other < 0) continue;
         shared++;
         assert_int_equal(strut_key_at(other)->type, key->type);
@@ -85,7 +86,7 @@ static void no_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rooms_divide_the_table),
+      cmocka_unit_test(sections_divide_the_table),
       cmocka_unit_test(shared_keys_of_groups_agree),
       cmocka_unit_test(words),
       cmocka_unit_test(the_page_in_docs_is_this_one),
