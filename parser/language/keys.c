@@ -6,13 +6,29 @@
 #include <stdio.h>
 #include <string.h>
 
-static const strut_key table[] = {
-#define STRUT_KEY_ROW(section, id, name, type, measure, range, ...)                                \
-  {STRUT_SECTION_##section, name,       STRUT_TYPE_##type, STRUT_MEASURE_##measure,                \
-   STRUT_RANGE_##range,     __VA_ARGS__},
-    STRUT_KEY_TABLE(STRUT_KEY_ROW)
-#undef STRUT_KEY_ROW
-};
+#include "engine/scene/study.h"
+
+/* clang-format off */
+#define STRUT_LIMITS_ANY {STRUT_RANGE_ANY, 0.0, 0.0}
+#define STRUT_LIMITS_NOT_NEGATIVE {STRUT_RANGE_NOT_NEGATIVE, 0.0, 0.0}
+#define STRUT_LIMITS_ABOVE_ZERO {STRUT_RANGE_ABOVE_ZERO, 0.0, 0.0}
+#define STRUT_LIMITS_WHOLE(least, most) {STRUT_RANGE_WHOLE, least, most}
+
+/* A field of a type that is not listed does not compile. */
+#define STRUT_KIND_OF(lvalue) _Generic((lvalue), \
+  double: STRUT_FIELD_DOUBLE, int32_t: STRUT_FIELD_INT32, uint32_t: STRUT_FIELD_UINT32, \
+  int64_t: STRUT_FIELD_INT64, uint64_t: STRUT_FIELD_UINT64, bool: STRUT_FIELD_BOOL, \
+  double *: STRUT_FIELD_DOUBLE_PAIR, bool *: STRUT_FIELD_BOOL_PAIR, const char *: STRUT_FIELD_TEXT)
+#define STRUT_FIELD_OF_BY_HAND {STRUT_FIELD_BY_HAND, 0, 0}
+#define STRUT_FIELD_OF_FIELD(object, member) \
+  {STRUT_KIND_OF(((object *)0)->member), offsetof(object, member), sizeof(object)}
+
+#define STRUT_KEY_ROW(section, id, name, type, measure, range, fallback, need, set, words, field, \
+                      description) \
+  {STRUT_SECTION_##section, name, STRUT_TYPE_##type, STRUT_MEASURE_##measure, \
+   STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, STRUT_FIELD_OF_##field, description},
+static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
+/* clang-format on */
 
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {STRUT_KEY_SCENE_VERSION,
@@ -60,7 +76,10 @@ const strut_key *strut_key_at(int key) {
   return &table[key];
 }
 
-int strut_section_first(strut_section section) { return first[section]; }
+int strut_section_first(strut_section section) {
+  assert((unsigned)section < STRUT_SECTION_COUNT);
+  return first[section];
+}
 int strut_section_size(strut_section section) { return first[section + 1] - first[section]; }
 const char *strut_section_name(strut_section section) { return section_names[section]; }
 
@@ -68,6 +87,22 @@ int strut_key_find(strut_section section, const char *name) {
   for (int key = first[section]; key < first[section + 1]; key++)
     if (strcmp(table[key].name, name) == 0) return key;
   return -1;
+}
+
+int strut_rest_key(strut_rest_kind kind) {
+  static const int keys[] = {STRUT_KEY_MEMBER_REST_LENGTH_RATIO, STRUT_KEY_MEMBER_REST_LENGTH,
+                             STRUT_KEY_MEMBER_PRETENSION, STRUT_KEY_MEMBER_FORCE_DENSITY};
+  assert((unsigned)kind < sizeof keys / sizeof keys[0]);
+  return keys[kind];
+}
+
+strut_section strut_wave_section(strut_signal_kind kind) {
+  assert(kind >= STRUT_SINE && kind <= STRUT_RAMP);
+  return (strut_section)(STRUT_SECTION_SINE + (kind - STRUT_SINE));
+}
+
+bool strut_key_is_bound(const strut_key *key) {
+  return key->field.kind != STRUT_FIELD_BY_HAND && key->measure != STRUT_MEASURE_CONTEXT;
 }
 
 strut_dimension strut_measure_dimension(strut_measure measure) {

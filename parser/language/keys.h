@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * The language as one table: which mapping (section) has which keys, of which type, dimension, range
- * and default. The reader, its messages and the reference page all come from it.
+ * and default, and in which field of which struct the value is kept. The reader, its messages, the
+ * writer and the reference page all come from it.
  */
 #ifndef STRUT_PARSER_LANGUAGE_KEYS_H
 #define STRUT_PARSER_LANGUAGE_KEYS_H
@@ -10,6 +11,7 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/scene.h"
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
@@ -92,22 +94,63 @@ typedef enum strut_measure {
 typedef enum strut_key_range {
   STRUT_RANGE_ANY,
   STRUT_RANGE_NOT_NEGATIVE,
-  STRUT_RANGE_ABOVE_ZERO
+  STRUT_RANGE_ABOVE_ZERO,
+  STRUT_RANGE_WHOLE /* a whole number from least to most */
 } strut_key_range;
 
-/** One line of the table. */
+typedef struct strut_key_limits {
+  strut_key_range range;
+  double least, most; /* of WHOLE */
+} strut_key_limits;
+
+typedef enum strut_key_need {
+  STRUT_OPTIONAL, /* written only where it differs from the default */
+  STRUT_WRITTEN,  /* may be left out, but is always written */
+  STRUT_REQUIRED
+} strut_key_need;
+
+/** How a field keeps its value. */
+typedef enum strut_field_kind {
+  STRUT_FIELD_BY_HAND, /* no field: the section's reader and writer have code for the key */
+  STRUT_FIELD_DOUBLE,
+  STRUT_FIELD_INT32,
+  STRUT_FIELD_UINT32, /* enumerations and bits too */
+  STRUT_FIELD_INT64,
+  STRUT_FIELD_UINT64,
+  STRUT_FIELD_BOOL,
+  STRUT_FIELD_DOUBLE_PAIR,
+  STRUT_FIELD_BOOL_PAIR,
+  STRUT_FIELD_TEXT /* const char *; of a WORD, the word itself */
+} strut_field_kind;
+
+/** Where a key's value is kept in the object of its section. */
+typedef struct strut_field {
+  strut_field_kind kind;
+  size_t offset, object_size;
+} strut_field;
+
+/** The object of the section `ground`: its line, and the contact that every node starts from. */
+typedef struct strut_ground_section {
+  strut_ground ground;
+  strut_contact contact;
+} strut_ground_section;
+
+/** One row of the table. */
 typedef struct strut_key {
   strut_section section;
   const char *name;
   strut_key_type type;
   strut_measure measure;
-  strut_key_range range;
-  bool required;
-  int set; /* of the keys with the same set (not 0) a mapping has one */
-  const char *fallback, *words, *description;
+  strut_key_limits limits;
+  const char *fallback; /* the default, as the reference page shows it */
+  strut_key_need need;
+  int set; /* a mapping may give only one of the keys with the same set (not 0) */
+  const char *words;
+  strut_field field;
+  const char *description;
 } strut_key;
 
-/** STRUT_KEY_MEMBER_STIFFNESS and so on: the keys of one section follow each other. */
+/** STRUT_KEY_MEMBER_STIFFNESS, ...; the keys of one section follow each other. */
 enum {
 #define STRUT_KEY_ENUM(section, id, ...) STRUT_KEY_##section##_##id,
   STRUT_KEY_TABLE(STRUT_KEY_ENUM)
@@ -125,6 +168,13 @@ STRUT_API int strut_section_size(strut_section section);
 STRUT_API int strut_key_find(strut_section section, const char *name);
 /** "node", "half_sine", ... */
 STRUT_API const char *strut_section_name(strut_section section);
+
+/** The key of a member that gives its rest length in this way. */
+STRUT_API int strut_rest_key(strut_rest_kind kind);
+/** The section of a wave: sine, half_sine, square or ramp. */
+STRUT_API strut_section strut_wave_section(strut_signal_kind kind);
+/** True for a key whose value is kept in a field without code of its own. */
+STRUT_API bool strut_key_is_bound(const strut_key *key);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */

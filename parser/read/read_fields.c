@@ -10,11 +10,6 @@ strut_slot *strut_slot_of(strut_fields *fields, int key) {
   return &fields->slot[key - strut_section_first(fields->section)];
 }
 
-double strut_number_or(strut_fields *fields, int key, double fallback) {
-  const strut_slot *slot = strut_slot_of(fields, key);
-  return slot->state == STRUT_GIVEN ? slot->number[0] : fallback;
-}
-
 void strut_suppress_missing(strut_fields *fields) {
   for (int i = 0; i < strut_section_size(fields->section); i++)
     if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
@@ -172,7 +167,11 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
     case STRUT_TYPE_VERSION: return read_version(reader, value);
     case STRUT_TYPE_NUMBER:
       if (key->measure == STRUT_MEASURE_CONTEXT) return true;
-      return strut_read_number(reader, value, key->name, owner, dimension, key->range,
+      if (key->limits.range == STRUT_RANGE_WHOLE)
+        return strut_read_number(reader, value, key->name, owner, dimension, STRUT_RANGE_ANY,
+                                 &slot->number[0]) &&
+               strut_check_whole(reader, value, key, owner, slot->number[0]);
+      return strut_read_number(reader, value, key->name, owner, dimension, key->limits.range,
                                &slot->number[0]);
     case STRUT_TYPE_PAIR:
       if (key->section == STRUT_SECTION_SCENE) return true; /* its parameters are not read yet */
@@ -191,6 +190,50 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
   bool fine = shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
                                          : refuse(reader, key, value, owner);
   slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
+}
+
+static const char *store_text(strut_reader *reader, strut_arena *arena, const strut_key *key,
+                              const strut_slot *slot) {
+  char word[40] = "";
+  if (key->type == STRUT_TYPE_WORD) strut_word_at(key->words, slot->word, word, sizeof word);
+  const char *text = key->type == STRUT_TYPE_WORD ? word : slot->value->text;
+  const char *copy = strut_arena_text(arena, text, strlen(text));
+  if (copy) return copy;
+  reader->out_of_memory = true;
+  return "";
+}
+
+static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
+                        const strut_slot *slot, void *field) {
+  bool word = key->type == STRUT_TYPE_WORD || key->type == STRUT_TYPE_WORDS;
+  double number = word ? (double)slot->word : slot->number[0];
+  switch (key->field.kind) {
+    case STRUT_FIELD_DOUBLE: *(double *)field = number; break;
+    case STRUT_FIELD_INT32: *(int32_t *)field = (int32_t)number; break;
+    case STRUT_FIELD_UINT32: *(uint32_t *)field = (uint32_t)number; break;
+    case STRUT_FIELD_INT64: *(int64_t *)field = (int64_t)number; break;
+    case STRUT_FIELD_UINT64: *(uint64_t *)field = (uint64_t)number; break;
+    case STRUT_FIELD_BOOL: *(bool *)field = slot->word == 1; break;
+    case STRUT_FIELD_DOUBLE_PAIR: memcpy(field, slot->number, sizeof slot->number); break;
+    case STRUT_FIELD_BOOL_PAIR:
+      for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
+      break;
+    case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
+    default: assert(false);
+  }
+}
+
+void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
+                        void *object, size_t object_size) {
+  int first = strut_section_first(fields->section);
+  if (strut_diagnostics_full(reader->diagnostics)) return; /* the object will not be used */
+  for (int i = 0; i < strut_section_size(fields->section); i++) {
+    const strut_key *key = strut_key_at(first + i);
+    if (fields->slot[i].state != STRUT_GIVEN || !strut_key_is_bound(key)) continue;
+    assert(key->field.object_size == object_size);
+    store_value(reader, arena, key, &fields->slot[i], (char *)object + key->field.offset);
+  }
+  (void)object_size;
 }
 
 /* Another key of the same set that the mapping itself gives, or NULL. */
@@ -257,7 +300,7 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
   for (int i = 0; i < strut_section_size(fields->section); i++) {
     char expected[300];
     strut_slot *slot = &fields->slot[i];
-    if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
+    if (slot->state != STRUT_ABSENT || strut_key_at(first + i)->need != STRUT_REQUIRED) continue;
     if (!reader->holes)
       strut_report_error(reader, place, "%s lacks '%s', expected %s",
                          strut_owner_text(reader, owner), strut_key_at(first + i)->name,

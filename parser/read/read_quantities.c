@@ -351,8 +351,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
     return;
   }
   bool known = of && read_expression(reader, of, owner, d, &dimension);
-  const strut_slot *take = strut_slot_of(&fields, STRUT_KEY_QUANTITY_TAKE);
-  if (take->state == STRUT_GIVEN) d->take = (strut_reduction)take->word;
+  strut_store_fields(reader, &fields, &reader->scene->arena, d, sizeof *d);
   if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
                 known, d);

@@ -7,27 +7,19 @@
 #include "engine/base/c_locale.h"
 #include "parser/read/reader.h"
 
-/* A text of the scene, in its own memory; "" where there is none. */
-static const char *keep_text(strut_reader *reader, int key) {
-  const strut_slot *slot = strut_slot_of(&reader->top, key);
-  if (slot->state != STRUT_GIVEN) return "";
-  return strut_keep_text(reader, slot->value->text);
-}
-
+/* The scene's own numbers may use parameters, which are read before them but after its other keys. */
 static void read_head(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
-  scene->name = keep_text(reader, STRUT_KEY_SCENE_NAME);
-  scene->description = keep_text(reader, STRUT_KEY_SCENE_DESCRIPTION);
-  scene->source = keep_text(reader, STRUT_KEY_SCENE_SOURCE);
-  const strut_slot *model = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MASS_MODEL);
-  const strut_slot *bars = strut_slot_of(&reader->top, STRUT_KEY_SCENE_BARS);
-  strut_slot *gravity = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GRAVITY);
-  if (model->state == STRUT_GIVEN) scene->mass_model = (strut_mass_model)model->word;
-  if (bars->state == STRUT_GIVEN) scene->bar_model = (strut_bar_model)bars->word;
-  if (gravity->state == STRUT_GIVEN &&
-      !strut_read_pair(reader, gravity->value, "gravity", (strut_owner){"the scene", NULL},
-                       STRUT_DIM_ACCELERATION, scene->gravity))
-    gravity->state = STRUT_BROKEN;
+  strut_owner owner = {"the scene", NULL};
+  for (int i = 0; i < strut_section_size(STRUT_SECTION_SCENE); i++) {
+    strut_slot *slot = &reader->top.slot[i];
+    int key = strut_section_first(STRUT_SECTION_SCENE) + i;
+    if (slot->state != STRUT_GIVEN || strut_key_at(key)->type != STRUT_TYPE_PAIR) continue;
+    bool fine = strut_read_pair(reader, slot->value, strut_key_at(key)->name, owner,
+                                strut_measure_dimension(strut_key_at(key)->measure), slot->number);
+    if (!fine) slot->state = STRUT_BROKEN;
+  }
+  strut_store_fields(reader, &reader->top, &reader->scene->arena, reader->scene,
+                     sizeof *reader->scene);
 }
 
 /* Stops behind the section in which the diagnostics became full. */

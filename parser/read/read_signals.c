@@ -56,7 +56,7 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
   return true;
 }
 
-/* A sine, half-sine, square or ramp. The keys of their sections have the same names. */
+/* A sine, half-sine, square or ramp: its amplitude measures what the user of the signal needs. */
 static bool read_wave(strut_reader *reader, strut_section section, const strut_tree *map,
                       strut_owner owner, meaning *m, strut_signal *signal) {
   strut_fields fields;
@@ -65,20 +65,14 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
   bool fine = !fields.broken;
   for (int i = 0; i < strut_section_size(section); i++) {
     const strut_slot *slot = &fields.slot[i];
-    const char *name = strut_key_at(strut_section_first(section) + i)->name;
+    const strut_key *key = strut_key_at(strut_section_first(section) + i);
     if (slot->state != STRUT_GIVEN) continue;
-    if (strcmp(name, "amplitude") == 0) {
-      fine = read_value(reader, slot->value, name, owner, m, &signal->amplitude) && fine;
-    } else if (strcmp(name, "frequency") == 0) {
-      signal->frequency = slot->number[0];
-    } else if (strcmp(name, "phase") == 0) {
-      signal->phase = slot->number[0] / TWO_PI;
-    } else if (strcmp(name, "start") == 0) {
-      signal->start = slot->number[0];
-    } else {
-      signal->stop = slot->number[0];
-    }
+    if (key->measure == STRUT_MEASURE_CONTEXT)
+      fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
+    else if (key->measure == STRUT_MEASURE_ANGLE)
+      signal->phase = slot->number[0] / TWO_PI; /* kept in turns */
   }
+  strut_store_fields(reader, &fields, &reader->scene->arena, signal, sizeof *signal);
   return fine;
 }
 
@@ -134,9 +128,6 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
-  static const strut_section sections[] = {STRUT_SECTION_SIGNAL, STRUT_SECTION_SINE,
-                                           STRUT_SECTION_HALF_SINE, STRUT_SECTION_SQUARE,
-                                           STRUT_SECTION_RAMP};
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
@@ -156,7 +147,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal);
   else
-    fine = read_wave(reader, sections[chosen], value, owner, &m, &signal);
+    fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal);
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }

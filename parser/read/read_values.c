@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Messages of the reader, and single values: numbers, pairs, references. See reader.h. */
+#include <assert.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -174,6 +176,22 @@ static bool in_range(strut_reader *reader, const strut_tree *value, const char *
   strut_report_error(
       reader, value->place, "'%s' of %s must %s, found %g", key, strut_owner_text(reader, owner),
       range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
+  return false;
+}
+
+bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
+                       strut_owner owner, double number) {
+  strut_key_limits limits = key->limits;
+  assert(limits.range == STRUT_RANGE_WHOLE && limits.least >= 0.0);
+  if (limits.least == 0.0 &&
+      !in_range(reader, value, key->name, owner, STRUT_RANGE_NOT_NEGATIVE, number))
+    return false;
+  if (number == floor(number) && number >= limits.least && number <= limits.most) return true;
+  char least[40] = "";
+  if (limits.least > 0.0) snprintf(least, sizeof least, "from %.0f ", limits.least);
+  strut_report_error(reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g",
+                     key->name, strut_owner_text(reader, owner), least, *least ? "to" : "up to",
+                     limits.most, number);
   return false;
 }
 

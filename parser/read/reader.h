@@ -164,10 +164,13 @@ bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const ch
 /** The same of an expression of columns, whose program the compiler makes. */
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);
-/** A number of the given dimension in SI. */
+/** A number of the given dimension in SI; `range` is not WHOLE. */
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, strut_dimension dimension, strut_key_range range,
                        double *number);
+/** Is the number within the limits of a WHOLE key? If not, that is reported. */
+bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
+                       strut_owner owner, double number);
 /** A list of two numbers. */
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
                      strut_owner owner, strut_dimension dimension, double number[2]);
@@ -207,8 +210,12 @@ strut_slot *strut_slot_of(strut_fields *fields, int key);
 /** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner);
-/** Number in a field, or the fallback where it is absent or broken. */
-double strut_number_or(strut_fields *fields, int key, double fallback);
+/**
+ * Copies every value that could be read into its field of the section's object, texts into the arena.
+ * Keys without a field, and numbers whose unit depends on the context, are left to the section's reader.
+ */
+void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
+                        void *object, size_t object_size);
 /** Marks every absent key as broken, so that nothing is said to be missing. */
 void strut_suppress_missing(strut_fields *fields);
 /** True where the mapping behind a key of the scene is there and could be read. */

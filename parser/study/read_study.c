@@ -151,20 +151,14 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
 
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
-  const strut_slot *files = strut_slot_of(top, STRUT_KEY_STUDY_TRAJECTORIES);
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   strut_fields fields;
-  const char *name = strut_study_text(r, top, STRUT_KEY_STUDY_NAME);
-  const char *description = strut_study_text(r, top, STRUT_KEY_STUDY_DESCRIPTION);
-  study->name = name ? name : "";
-  study->description = description ? description : "";
-  study->trajectories = files->state == STRUT_GIVEN && files->word == 1;
+  study->name = study->description = "";
+  strut_store_fields(r->reader, top, &r->file->arena, study, sizeof *study);
   if (check->state == STRUT_GIVEN) {
     strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value,
                       (strut_owner){"the check", NULL}, &fields);
-    const strut_slot *half = strut_slot_of(&fields, STRUT_KEY_CHECK_HALF_STEP);
-    study->half_step = half->state == STRUT_GIVEN && half->word == 1;
-    study->check_accuracy = strut_number_or(&fields, STRUT_KEY_CHECK_ACCURACY, 0.0);
+    strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
   }
   strut_study_read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }

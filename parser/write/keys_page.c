@@ -78,6 +78,20 @@ static void put_unit(strut_writer *writer, const strut_key *key) {
   strut_put(writer, "]");
 }
 
+static void put_limits(strut_writer *writer, strut_key_limits limits) {
+  switch (limits.range) {
+    case STRUT_RANGE_NOT_NEGATIVE: strut_put(writer, ", not negative"); break;
+    case STRUT_RANGE_ABOVE_ZERO: strut_put(writer, ", above zero"); break;
+    case STRUT_RANGE_WHOLE:
+      strut_put(writer, " from ");
+      strut_put_number(writer, limits.least);
+      strut_put(writer, " to ");
+      strut_put_number(writer, limits.most);
+      break;
+    default: break;
+  }
+}
+
 static void put_type(strut_writer *writer, const strut_key *key) {
   static const char *const types[] = {
       [STRUT_TYPE_TEXT] = "text",
@@ -105,6 +119,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
     strut_put(writer, ")");
     return;
   }
+  if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   if (types[key->type]) strut_put(writer, types[key->type]);
   if (key->type == STRUT_TYPE_THINGS) {
     strut_put(writer, key->words);
@@ -112,8 +127,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
     put_words(writer, key->words);
   }
   put_unit(writer, key);
-  if (key->range == STRUT_RANGE_NOT_NEGATIVE) strut_put(writer, ", not negative");
-  if (key->range == STRUT_RANGE_ABOVE_ZERO) strut_put(writer, ", above zero");
+  put_limits(writer, key->limits);
 }
 
 static void put_section(strut_writer *writer, strut_section section) {
@@ -129,9 +143,9 @@ static void put_section(strut_writer *writer, strut_section section) {
     strut_put(writer, key->name);
     strut_put(writer, "` | ");
     put_type(writer, key);
-    strut_put(writer, key->required    ? " | required"
-                      : *key->fallback ? words ? " | " : " | `"
-                                       : " |");
+    strut_put(writer, key->need == STRUT_REQUIRED ? " | required"
+                      : *key->fallback            ? words ? " | " : " | `"
+                                                  : " |");
     strut_put(writer, key->fallback);
     strut_put(writer, *key->fallback && !words ? "` | " : " | ");
     strut_put(writer, key->description);
