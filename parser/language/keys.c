@@ -105,6 +105,39 @@ bool strut_key_is_bound(const strut_key *key) {
   return key->field.kind != STRUT_FIELD_BY_HAND && key->measure != STRUT_MEASURE_CONTEXT;
 }
 
+/* Former names stay readable for one version of strut at least; docs and models use the current ones. */
+static const strut_spelling spellings[] = {
+    {STRUT_SECTION_MEMBER, "kind", "strut", "bar", false},
+    {STRUT_SECTION_MEMBER, "kind", "string", "cable", false},
+    {STRUT_SECTION_GROUND, "damping_law", "printed", "approach_only", true},
+    {STRUT_SECTION_STEADY, NULL, "floor", "absolute_tolerance", true},
+    {STRUT_SECTION_STEADY, NULL, "successive", "repetitions", true}};
+
+_Static_assert(sizeof spellings / sizeof spellings[0] <= 32, "a reader has one bit for each");
+
+const strut_spelling *strut_spelling_find(strut_section section, const char *key, const char *text,
+                                          int *index) {
+  for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
+    const strut_spelling *s = &spellings[i];
+    if (s->section != section || !s->key != !key || (key && strcmp(s->key, key) != 0)) continue;
+    if (strcmp(s->other, text) != 0) continue;
+    if (index) *index = (int)i;
+    return s;
+  }
+  return NULL;
+}
+
+const char *strut_key_current(strut_section section, const char *name) {
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, name, NULL);
+  return spelling ? spelling->current : name;
+}
+
+strut_section strut_section_find(const char *name) {
+  int section = 0;
+  while (section < STRUT_SECTION_COUNT && strcmp(section_names[section], name) != 0) section++;
+  return (strut_section)section;
+}
+
 strut_dimension strut_measure_dimension(strut_measure measure) {
   switch (measure) {
     case STRUT_MEASURE_LENGTH: return STRUT_DIM_LENGTH;

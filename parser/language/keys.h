@@ -166,6 +166,21 @@ STRUT_API int strut_section_first(strut_section section);
 STRUT_API int strut_section_size(strut_section section);
 /** The key of that name in a section, or -1. */
 STRUT_API int strut_key_find(strut_section section, const char *name);
+/** Another spelling of a key, or of a word of a key. */
+typedef struct strut_spelling {
+  strut_section section;
+  const char *key; /* the key whose word it is; NULL: a key itself */
+  const char *other, *current;
+  bool old; /* a former name, accepted with a note; else a synonym */
+} strut_spelling;
+
+/** The other spelling of a key (`key` NULL) or of a word, or NULL; `index` (may be NULL): its number. */
+STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
+                                                    const char *text, int *index);
+/** The current name of a key: `name` itself, unless it is a former one. */
+STRUT_API const char *strut_key_current(strut_section section, const char *name);
+/** The section of that name, or STRUT_SECTION_COUNT. */
+STRUT_API strut_section strut_section_find(const char *name);
 /** "node", "half_sine", ... */
 STRUT_API const char *strut_section_name(strut_section section);
 

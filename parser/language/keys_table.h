@@ -56,7 +56,7 @@
   X(GROUND, BELT_SPEED, "belt_speed", NUMBER, VELOCITY, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.belt_speed), "Speed of the surface along itself, towards +x.") \
   X(GROUND, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_ground_section, contact.stiffness), "Force for each depth of a node below the line.") \
   X(GROUND, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, contact.damping), "Force for each speed of a node that moves into the ground.") \
-  X(GROUND, DAMPING_LAW, "damping_law", WORD, NONE, ANY, "printed", OPTIONAL, 0, "printed|hunt_crossley", FIELD(strut_ground_section, ground.damping_law), "`printed`: stiffness * depth + damping * speed inwards, which jumps at touchdown. `hunt_crossley`: stiffness * depth * (1 + dissipation * speed inwards), never pulling, without a jump.") \
+  X(GROUND, DAMPING_LAW, "damping_law", WORD, NONE, ANY, "approach_only", OPTIONAL, 0, "approach_only|hunt_crossley", FIELD(strut_ground_section, ground.damping_law), "`approach_only`: stiffness * depth + damping * speed inwards, without damping while the node moves out (the paper's law, which jumps at touchdown). `hunt_crossley`: stiffness * depth * (1 + dissipation * speed inwards), never pulling, without a jump.") \
   X(GROUND, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, contact.dissipation), "Of the Hunt-Crossley law, instead of `damping`.") \
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Friction of every contact. Without it there is none.") \
   X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "Which nodes may touch the ground: `all`, or a list.") \
@@ -137,8 +137,8 @@
   X(QUANTITY, TAKE, "take", WORD, NONE, ANY, "mean", OPTIONAL, 0, "mean|min|max|range|rms|final|change|rate", FIELD(strut_quantity_definition, take), "What the window makes of it: its `mean` over the time, `min`, `max`, `range` (max - min), `rms`, its `final` value at the window's end, its `change` over the window, or the `rate` of that, change / time.") \
   X(QUANTITY, ACCURACY, "accuracy", NUMBER, CONTEXT, ABOVE_ZERO, "that of the solver", OPTIONAL, 0, "", BY_HAND, "Wanted of it: relative if without a unit, such as 1 %, else in its own unit, such as 0.1 mm.") \
   X(STEADY, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "0.5 %", WRITTEN, 0, "", FIELD(strut_steady, tolerance), "Of the velocity, relative to it.") \
-  X(STEADY, FLOOR, "floor", NUMBER, VELOCITY, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_steady, floor), "Differences of the velocity below this count as none.") \
-  X(STEADY, SUCCESSIVE, "successive", NUMBER, NONE, WHOLE(2, 16), "5", WRITTEN, 0, "", FIELD(strut_steady, successive), "So many repetitions in a row must agree.") \
+  X(STEADY, ABSOLUTE_TOLERANCE, "absolute_tolerance", NUMBER, VELOCITY, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_steady, floor), "Differences of the velocity below this count as none.") \
+  X(STEADY, REPETITIONS, "repetitions", NUMBER, NONE, WHOLE(2, 16), "5", WRITTEN, 0, "", FIELD(strut_steady, successive), "So many repetitions in a row must agree.") \
   X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_steady, shooting), "Finish a periodic motion by Newton's method on its period, and give the Floquet multipliers; of structures with up to 48 free coordinates.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "a thousandth", OPTIONAL, 0, "", FIELD(strut_experiment, output_every), "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, "the whole run", OPTIONAL, 0, "", FIELD(strut_experiment, output_last), "Record the last so many periods, or the last so much time.") \

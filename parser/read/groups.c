@@ -34,7 +34,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
   strut_group_item item = {.key = {-1, -1, -1}};
   int found = -1;
   for (size_t r = 0; r < SECTIONS; r++) {
-    item.key[r] = strut_key_find(sections[r], key->text);
+    item.key[r] = strut_key_named(reader, sections[r], key);
     if (found < 0) found = item.key[r];
   }
   if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {

@@ -51,6 +51,25 @@ int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_s
   return -1;
 }
 
+/* A former name is noted where it is met first. */
+static void note_spelling(strut_reader *reader, const strut_spelling *spelling, int index,
+                          strut_place place) {
+  unsigned bit = 1u << index;
+  if (!spelling->old || reader->spellings & bit) return;
+  reader->spellings |= bit;
+  strut_note(reader->diagnostics, place, "'%s' is now called '%s'", spelling->other,
+             spelling->current);
+}
+
+int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key) {
+  int found = strut_key_find(section, key->text), index;
+  if (found >= 0) return found;
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, key->text, &index);
+  if (!spelling) return -1;
+  note_spelling(reader, spelling, index, key->place);
+  return strut_key_find(section, spelling->current);
+}
+
 /* The words of a key, each with its end, for suggestions. */
 typedef struct words_context {
   char word[32][24];
@@ -67,6 +86,16 @@ static bool read_word(strut_reader *reader, const strut_key *key, const strut_tr
   char expected[400];
   if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
     return true; /* scenes of a study are read by the million */
+  int index;
+  const strut_spelling *other =
+      value->kind == STRUT_TREE_SCALAR
+          ? strut_spelling_find(key->section, key->name, value->text, &index)
+          : NULL;
+  if (other) {
+    note_spelling(reader, other, index, value->place);
+    *word = strut_word_find(key->words, other->current);
+    return true;
+  }
   bool may_switch = value->kind == STRUT_TREE_SCALAR && !value->quoted;
   if (may_switch && strcmp(key->words, "no|yes") == 0 &&
       (*word = strut_switch_find(value->text)) >= 0)
@@ -247,7 +276,7 @@ static const strut_tree *rival(const strut_fields *fields, int key) {
 
 static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const strut_tree *key_tree,
                              strut_owner owner) {
-  int key = strut_key_find(fields->section, key_tree->text);
+  int key = strut_key_named(reader, fields->section, key_tree);
   if (key < 0) {
     int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, owner);
     fields->broken = true;
@@ -256,7 +285,7 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
     return;
   }
   strut_slot *slot = strut_slot_of(fields, key);
-  const strut_tree *other = rival(fields, key);
+  const strut_tree *other = slot->key ? slot->key : rival(fields, key); /* or by its former name */
   strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
   if (other) {
     strut_report_error(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",

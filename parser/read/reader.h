@@ -121,6 +121,7 @@ typedef struct strut_reader {
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
   const strut_tree *asking; /* the value whose expression is being evaluated */
   const char *asking_set;   /* or the parameter whose setting is */
+  unsigned spellings;       /* one bit for each former name that was noted */
   size_t suggestions;       /* names compared so far, to bound the effort */
   bool holes;               /* the text lacks what was refused in it: nothing is missing */
   bool ends_unknown;        /* some member or load could not be tied to its nodes */
@@ -205,6 +206,8 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
 /** Reads a value by the table's line for the key. */
 void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
                      const strut_tree *value, strut_owner owner, strut_slot *slot);
+/** The key of that name in a section, or -1; a former name is accepted with a note. */
+int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key);
 /** The slot of a key: fields->section must be the key's. */
 strut_slot *strut_slot_of(strut_fields *fields, int key);
 /** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */

@@ -249,6 +249,12 @@ const char *strut_study_messages(strut_study_file *file, size_t most) {
   return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
 }
 
+const char *strut_study_notes(strut_study_file *file) {
+  const char *own = strut_diagnostics_render_notes(&file->diagnostics);
+  const char *model = strut_diagnostics_render_notes(&file->model_diagnostics);
+  return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
+}
+
 /* The model of a point: that of its variant. */
 static const strut_scene_source *source_of(const strut_study_file *file,
                                            const strut_study_value *values) {
@@ -300,18 +306,18 @@ strut_status strut_study_scene(const strut_study_file *file, const strut_study_v
 }
 
 /* "frequency = 10 Hz, start = I" */
-static void tell_values(const strut_study_file *file, const strut_study_value *values, char *text,
-                        size_t room) {
+static void format_values(const strut_study_file *file, const strut_study_value *values, char *text,
+                          size_t size) {
   size_t used = 0;
   *text = '\0';
-  for (size_t i = 0; i < file->column_count && used < room; i++) {
+  for (size_t i = 0; i < file->column_count && used < size; i++) {
     char number[STRUT_NUMBER_TEXT];
     const char *unit =
         file->columns[i].bare ? "1" : strut_dimension_unit(file->columns[i].dimension);
     bool plain = values[i].word || strcmp(unit, "1") == 0;
     strut_number_text(values[i].number, number);
     int n =
-        snprintf(text + used, room - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
+        snprintf(text + used, size - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
                  values[i].word ? values[i].word : number, plain ? "" : " ", plain ? "" : unit);
     used += n > 0 ? (size_t)n : 0;
   }
@@ -322,9 +328,9 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
   char text[300];
   strut_status status = read_point(file, values, &file->model_diagnostics, &scene);
   if (status == STRUT_OK) strut_scene_free(&scene);
-  if (status != STRUT_BAD_SCENE) return status;
-  tell_values(file, values, text, sizeof text);
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
+  if (status != STRUT_BAD_SCENE) return status;
+  format_values(file, values, text, sizeof text);
   strut_diagnose(&file->diagnostics, (strut_place){0}, "there is no model to run at %s", text);
   return status;
 }
