@@ -17,10 +17,11 @@ static strut_status read_word(const strut_command *command, const strut_argument
     if (!(words[i] = strut_word_at(strut_key_at(key)->words, i, text[i], LONGEST))) break;
   const char *given = strut_option_text(arguments, id);
   const strut_spelling *other =
-      given ? strut_spelling_find(strut_key_at(key)->section, strut_key_at(key)->name, given, NULL)
+      given ? strut_spelling_find(strut_key_at(key)->section, strut_key_at(key)->name, given)
             : NULL;
-  if (!other) return strut_option_word(command, arguments, id, words, word);
-  if (other->old)
+  if (!other || other->kind == STRUT_SPELLING_MISTAKE)
+    return strut_option_word(command, arguments, id, words, word);
+  if (other->kind == STRUT_SPELLING_FORMER)
     fprintf(stderr, "strut %s: note: '%s' is now called '%s'\n", command->name, other->other,
             other->current);
   *word = strut_word_find(strut_key_at(key)->words, other->current);

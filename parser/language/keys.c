@@ -107,29 +107,49 @@ bool strut_key_is_bound(const strut_key *key) {
 
 /* Former names stay readable for one version of strut at least; docs and models use the current ones. */
 static const strut_spelling spellings[] = {
-    {STRUT_SECTION_MEMBER, "kind", "strut", "bar", false},
-    {STRUT_SECTION_MEMBER, "kind", "string", "cable", false},
-    {STRUT_SECTION_GROUND, "damping_law", "printed", "approach_only", true},
-    {STRUT_SECTION_STEADY, NULL, "floor", "absolute_tolerance", true},
-    {STRUT_SECTION_STEADY, NULL, "successive", "repetitions", true}};
+    {STRUT_SECTION_GROUND, "damping_law", "printed", "approach_only", STRUT_SPELLING_FORMER},
+    {STRUT_SECTION_STEADY, NULL, "floor", "absolute_tolerance", STRUT_SPELLING_FORMER},
+    {STRUT_SECTION_STEADY, NULL, "successive", "repetitions", STRUT_SPELLING_FORMER},
+    {STRUT_SECTION_MEMBER, "kind", "strut", "bar", STRUT_SPELLING_SYNONYM},
+    {STRUT_SECTION_MEMBER, "kind", "string", "cable", STRUT_SPELLING_SYNONYM},
+    {STRUT_SECTION_SCENE, NULL, "elements", "members", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SCENE, NULL, "points", "nodes", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SCENE, NULL, "forces", "loads", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "coordinates", "position", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "pos", "position", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "support", "fixed", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "type", "kind", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "EA", "axial_stiffness", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "prestress", "pretension", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "length", "rest_length", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_GROUND, NULL, "angle", "slope", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_FRICTION, NULL, "coefficient", "mu", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "timestep", "step", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "time_step", "step", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "dt", "step", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "method", "integrator", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_RUN, NULL, "time", "duration", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_RUN, NULL, "length", "duration", STRUT_SPELLING_MISTAKE}};
 
-_Static_assert(sizeof spellings / sizeof spellings[0] <= 32, "a reader has one bit for each");
-
-const strut_spelling *strut_spelling_find(strut_section section, const char *key, const char *text,
-                                          int *index) {
+const strut_spelling *strut_spelling_find(strut_section section, const char *key,
+                                          const char *text) {
   for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
     const strut_spelling *s = &spellings[i];
     if (s->section != section || !s->key != !key || (key && strcmp(s->key, key) != 0)) continue;
-    if (strcmp(s->other, text) != 0) continue;
-    if (index) *index = (int)i;
-    return s;
+    if (strcmp(s->other, text) == 0) return s;
   }
   return NULL;
 }
 
+int strut_spelling_index(const strut_spelling *spelling) {
+  int index = (int)(spelling - spellings);
+  assert(index >= 0 && (index < 32 || spelling->kind != STRUT_SPELLING_FORMER));
+  return index;
+}
+
 const char *strut_key_current(strut_section section, const char *name) {
-  const strut_spelling *spelling = strut_spelling_find(section, NULL, name, NULL);
-  return spelling ? spelling->current : name;
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, name);
+  return spelling && spelling->kind != STRUT_SPELLING_MISTAKE ? spelling->current : name;
 }
 
 strut_section strut_section_find(const char *name) {

@@ -166,17 +166,25 @@ STRUT_API int strut_section_first(strut_section section);
 STRUT_API int strut_section_size(strut_section section);
 /** The key of that name in a section, or -1. */
 STRUT_API int strut_key_find(strut_section section, const char *name);
+typedef enum strut_spelling_kind {
+  STRUT_SPELLING_SYNONYM, /* accepted */
+  STRUT_SPELLING_FORMER,  /* a former name, accepted with a note */
+  STRUT_SPELLING_MISTAKE  /* not accepted: what a message suggests for it */
+} strut_spelling_kind;
+
 /** Another spelling of a key, or of a word of a key. */
 typedef struct strut_spelling {
   strut_section section;
   const char *key; /* the key whose word it is; NULL: a key itself */
   const char *other, *current;
-  bool old; /* a former name, accepted with a note; else a synonym */
+  strut_spelling_kind kind;
 } strut_spelling;
 
-/** The other spelling of a key (`key` NULL) or of a word, or NULL; `index` (may be NULL): its number. */
+/** The other spelling of a key (`key` NULL) or of a word, or NULL. */
 STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
-                                                    const char *text, int *index);
+                                                    const char *text);
+/** Its number: below 32 for former names. */
+STRUT_API int strut_spelling_index(const strut_spelling *spelling);
 /** The current name of a key: `name` itself, unless it is a former one. */
 STRUT_API const char *strut_key_current(strut_section section, const char *name);
 /** The section of that name, or STRUT_SECTION_COUNT. */

@@ -35,38 +35,58 @@ static const char *name_of_sections(const void *context, size_t i) {
   return key < 0 ? NULL : strut_key_at(key)->name;
 }
 
+/* What was probably meant by a key that no section has; NULL: nothing is near. */
+static const char *nearest_key(strut_reader *reader, const char *text,
+                               const sections_context *context) {
+  for (size_t i = 0; i < context->count; i++) {
+    const strut_spelling *spelling = strut_spelling_find(context->sections[i], NULL, text);
+    if (spelling) return spelling->current;
+  }
+  if (strlen(text) > 64 || !strut_hints_left(reader)) return NULL;
+  return strut_did_you_mean(text, name_of_sections, context);
+}
+
+/* Advice for keys that YAML made of something else: `mass:1 kg`, and `1,5 kg` within braces. */
+static const char *punctuation_advice(const strut_tree *key) {
+  bool number = key->text[0] >= '0' && key->text[0] <= '9';
+  if (key->quoted || !strut_is_null(key->next)) return NULL;
+  if (strut_lacks_space(key)) return "; write a space after the colon";
+  return number ? "; within {...} a comma separates keys, and the decimal mark is a point" : NULL;
+}
+
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner) {
   sections_context context = {sections, count};
-  const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
-                         ? NULL
-                         : strut_did_you_mean(key->text, name_of_sections, &context);
-  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s",
+  const char *advice = punctuation_advice(key);
+  const char *near = advice ? NULL : nearest_key(reader, key->text, &context);
+  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s%s",
                      strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
-                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-  for (int i = 0; near && key_of_sections(&context, (size_t)i) >= 0; i++) {
+                     advice ? advice : "", near ? "; did you mean '" : "", near ? near : "",
+                     near ? "'?" : "");
+  for (int i = 0; key_of_sections(&context, (size_t)i) >= 0; i++) {
     int meant = key_of_sections(&context, (size_t)i);
-    if (strcmp(strut_key_at(meant)->name, near) == 0) return meant;
+    const char *name = strut_key_at(meant)->name;
+    if (near ? strcmp(name, near) == 0 : strut_lacks_space_after(key, name)) return meant;
   }
   return -1;
 }
 
 /* A former name is noted where it is met first. */
-static void note_spelling(strut_reader *reader, const strut_spelling *spelling, int index,
-                          strut_place place) {
-  unsigned bit = 1u << index;
-  if (!spelling->old || reader->spellings & bit) return;
+static void note_spelling(strut_reader *reader, const strut_spelling *spelling, strut_place place) {
+  if (spelling->kind != STRUT_SPELLING_FORMER) return;
+  unsigned bit = 1u << strut_spelling_index(spelling);
+  if (reader->spellings & bit) return;
   reader->spellings |= bit;
   strut_note(reader->diagnostics, place, "'%s' is now called '%s'", spelling->other,
              spelling->current);
 }
 
 int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key) {
-  int found = strut_key_find(section, key->text), index;
+  int found = strut_key_find(section, key->text);
   if (found >= 0) return found;
-  const strut_spelling *spelling = strut_spelling_find(section, NULL, key->text, &index);
-  if (!spelling) return -1;
-  note_spelling(reader, spelling, index, key->place);
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, key->text);
+  if (!spelling || spelling->kind == STRUT_SPELLING_MISTAKE) return -1;
+  note_spelling(reader, spelling, key->place);
   return strut_key_find(section, spelling->current);
 }
 
@@ -86,13 +106,11 @@ static bool read_word(strut_reader *reader, const strut_key *key, const strut_tr
   char expected[400];
   if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
     return true; /* scenes of a study are read by the million */
-  int index;
-  const strut_spelling *other =
-      value->kind == STRUT_TREE_SCALAR
-          ? strut_spelling_find(key->section, key->name, value->text, &index)
-          : NULL;
-  if (other) {
-    note_spelling(reader, other, index, value->place);
+  const strut_spelling *other = value->kind == STRUT_TREE_SCALAR
+                                    ? strut_spelling_find(key->section, key->name, value->text)
+                                    : NULL;
+  if (other && other->kind != STRUT_SPELLING_MISTAKE) {
+    note_spelling(reader, other, value->place);
     *word = strut_word_find(key->words, other->current);
     return true;
   }
@@ -144,9 +162,10 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
 
 static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
   char expected[300];
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
                      strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                     strut_owner_text(reader, owner), strut_found(reader, value));
+                     strut_owner_text(reader, owner), strut_found(reader, value),
+                     strut_lacks_space(value) ? "; write a space after the colon" : "");
   return false;
 }
 
@@ -312,8 +331,10 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
                        strut_owner owner, strut_fields *fields) {
   *fields = (strut_fields){.section = section, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, map));
+    strut_report_error(reader, map->place,
+                       "expected a mapping {key: value, ...} for %s, found %s%s",
+                       strut_owner_text(reader, owner), strut_found(reader, map),
+                       strut_lacks_space(map) ? "; write a space after the colon" : "");
     fields->broken = true;
     strut_suppress_missing(fields);
     return;

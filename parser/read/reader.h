@@ -67,7 +67,8 @@ typedef struct strut_parameter_state {
   const strut_tree *key, *value;
   enum { STRUT_UNREAD, STRUT_READING, STRUT_READ, STRUT_FAILED } state;
   bool text;
-  bool used; /* something refers to it */
+  bool used;      /* something refers to it */
+  bool ambiguous; /* it has been reported that a unit has its name */
   strut_quantity quantity;
 } strut_parameter_state;
 
@@ -156,6 +157,10 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
                                size_t first, size_t depth);
 /** True for a plain empty scalar, ~ and null. */
 bool strut_is_null(const strut_tree *value);
+/** True for a plain text such as `mass:1 kg`, which lacks the space that would make it a key. */
+bool strut_lacks_space(const strut_tree *value);
+/** The same of a text whose key would be `name`. */
+bool strut_lacks_space_after(const strut_tree *value, const char *name);
 /** Is it a scalar that is not null? If not, that is reported. */
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected);
