@@ -22,10 +22,17 @@ typedef struct strut_quantity {
   bool varies; /* it is made of columns of the motion: it has no value yet */
 } strut_quantity;
 
+/** A part of the text that is being read. */
+typedef struct strut_piece {
+  const char *text;
+  size_t length;
+} strut_piece;
+
 /** Where an expression went wrong: code point offset and length within the text, and why. */
 typedef struct strut_expression_error {
   size_t offset, length;
   char message[300];
+  strut_piece parameter; /* the parameter that is called like a unit, if that is why */
 } strut_expression_error;
 
 /**
@@ -55,12 +62,6 @@ STRUT_API bool strut_expression_evaluate(const char *text, const strut_scope *sc
 typedef struct strut_refusal {
   char text[300];
 } strut_refusal;
-
-/** A part of the text that is being read. */
-typedef struct strut_piece {
-  const char *text;
-  size_t length;
-} strut_piece;
 
 /**
  * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node" or "member"

@@ -68,6 +68,16 @@ static bool fail_with_hint(strut_expression_reader *r, size_t begin, size_t leng
                                near ? "'?" : "");
 }
 
+/* Bytes of the first of two units that the word joins, as in Ns for N s; 0: it is no such word. */
+static size_t first_of_two_units(const char *word, size_t length) {
+  for (size_t first = length; first-- > 1;) {
+    const strut_unit *a = strut_unit_find(word, first);
+    const strut_unit *b = strut_unit_find(word + first, length - first);
+    if (a && b && !strut_dimension_equal(a->dimension, b->dimension)) return first;
+  }
+  return 0;
+}
+
 static bool is_word(const strut_expression_reader *r, size_t begin, size_t length,
                     const char *word) {
   return strlen(word) == length && memcmp(r->text + begin, word, length) == 0;
@@ -80,6 +90,12 @@ bool strut_expression_unknown_unit(strut_expression_reader *r, size_t begin, siz
     return strut_expression_fail(r, begin, begin + length,
                                  "expected an operator before '%.*s'; write '*' to multiply",
                                  (int)length, r->text + begin);
+  size_t first = first_of_two_units(r->text + begin, length);
+  if (first)
+    return strut_expression_fail(r, begin, begin + length,
+                                 "unknown unit '%.*s'; did you mean '%.*s %.*s'?", (int)length,
+                                 r->text + begin, (int)first, r->text + begin,
+                                 (int)(length - first), r->text + begin + first);
   return fail_with_hint(r, begin, length, "unit", false, false, true);
 }
 

@@ -85,8 +85,10 @@ static int read_joint(strut_expression_reader *r, size_t *length) {
   strut_quantity ignored;
   if (operation && strut_expression_lookup(r, r->text + r->at, *length, &ignored) != 0) {
     strut_expression_fail(r, r->at, r->at + *length,
-                          "'%.*s' is a unit and a parameter; write '%c (%.*s)' for the parameter",
+                          "'%.*s' is a unit and a parameter; rename the parameter, or write "
+                          "'%c (%.*s)' for it",
                           (int)*length, r->text + r->at, c, (int)*length, r->text + r->at);
+    r->error->parameter = (strut_piece){r->text + r->at, *length};
     return 2;
   }
   return c == '/' ? -1 : 1;

@@ -33,7 +33,7 @@ static bool thing_place(strut_reader *reader, const strut_source *source, const 
 /* The value of a key in a mapping that there is once, else the key of the whole section. */
 static strut_place field_place(strut_reader *reader, strut_fields *fields, const char *key,
                                int section) {
-  int found = key ? strut_key_find(fields->room, key) : -1;
+  int found = key ? strut_key_find(fields->section, key) : -1;
   const strut_slot *slot = found < 0 ? NULL : strut_slot_of(fields, found);
   if (slot && slot->value) return slot->value->place;
   const strut_tree *whole = strut_slot_of(&reader->top, section)->key;
@@ -60,7 +60,7 @@ static bool contact_place(strut_reader *reader, const strut_finding *finding, st
   strut_place before = *place, mine;
   bool fresh = thing_place(reader, source, finding->key, &mine);
   bool ground = mine.line == source->key->place.line && mine.column == source->key->place.column &&
-                finding->key && strut_key_find(STRUT_ROOM_GROUND, finding->key) >= 0;
+                finding->key && strut_key_find(STRUT_SECTION_GROUND, finding->key) >= 0;
   *place = ground ? before : mine;
   return fresh;
 }
@@ -126,8 +126,9 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
       broken = fields->broken || reader->run.broken;
       break;
     default:
-      broken = key && strut_key_find(STRUT_ROOM_SCENE, key) >= 0 &&
-               strut_slot_of(fields, strut_key_find(STRUT_ROOM_SCENE, key))->state == STRUT_BROKEN;
+      broken =
+          key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
+          strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;
   }
   if (!broken) *place = field_place(reader, fields, key, section);
   return !broken;

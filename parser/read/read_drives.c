@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What signals drive: actuators and loads. See reader.h. */
-#include <string.h>
-
 #include "parser/read/reader.h"
 
 static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_actuator *actuator) {
@@ -9,7 +7,7 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
   strut_dimension length = STRUT_DIM_LENGTH;
   bool fine = strut_read_name(reader, key, "actuator");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_ACTUATOR, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_ACTUATOR, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
   const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_SIGNAL);
@@ -46,10 +44,9 @@ static bool read_load(strut_reader *reader, const strut_tree *key, strut_load *l
   strut_dimension factor = STRUT_DIM_NONE;
   bool fine = strut_read_name(reader, key, "load");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_LOAD, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_LOAD, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *node = strut_slot_of(&fields, STRUT_KEY_LOAD_NODE);
-  const strut_slot *force = strut_slot_of(&fields, STRUT_KEY_LOAD_FORCE);
   const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_LOAD_SIGNAL);
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
   if (node->state == STRUT_GIVEN && known)
@@ -57,7 +54,7 @@ static bool read_load(strut_reader *reader, const strut_tree *key, strut_load *l
         strut_read_reference(reader, node->value, "node", owner, "node", &reader->node_names,
                              strut_node_name, reader->scene->node_count);
   if (load->node < 0) reader->ends_unknown = true;
-  if (force->state == STRUT_GIVEN) memcpy(load->force, force->number, sizeof load->force);
+  strut_store_fields(reader, &fields, &reader->scene->arena, load, sizeof *load);
   if (signal->state == STRUT_GIVEN) {
     load->signal = strut_read_signal(reader, signal->value, "signal", owner, &factor);
     if (load->signal < 0) fine = false;

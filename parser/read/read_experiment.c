@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The initial state; solver, run and output. See reader.h. */
-#include <math.h>
 #include <string.h>
 
 #include "parser/read/reader.h"
@@ -32,16 +31,8 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
         strut_found(reader, slot->value));
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_SETTLE, slot->value, owner, &reader->settle);
-  settle->speed = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_SPEED, settle->speed);
-  settle->acceleration =
-      strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
-  settle->limit = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_LIMIT, settle->limit);
-  settle->evaluations = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_EVALUATIONS, 0.0);
-  const strut_slot *perturb = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_PERTURB);
-  settle->perturb = perturb->state == STRUT_GIVEN && perturb->word == 1;
-  const strut_slot *friction = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_FRICTION);
-  settle->friction = friction->state == STRUT_GIVEN && friction->word == 1;
+  strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
+  strut_store_fields(reader, &reader->settle, &reader->scene->arena, settle, sizeof *settle);
 }
 
 /* Positions and velocities: the general first, then what is said of single nodes. */
@@ -87,8 +78,8 @@ static void read_equilibrium(strut_reader *reader) {
 }
 
 void strut_read_initial(strut_reader *reader) {
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
-                          &reader->initial))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_SECTION_INITIAL,
+                          "the initial state", &reader->initial))
     return;
   read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
@@ -204,35 +195,21 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
         strut_found(reader, slot->value));
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_STEADY, slot->value, owner, &reader->steady);
-  steady->tolerance =
-      strut_number_or(&reader->steady, STRUT_KEY_STEADY_TOLERANCE, steady->tolerance);
-  steady->floor = strut_number_or(&reader->steady, STRUT_KEY_STEADY_FLOOR, steady->floor);
-  double successive =
-      strut_number_or(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE, steady->successive);
-  const strut_slot *shooting = strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SHOOTING);
-  steady->shooting = shooting->state == STRUT_GIVEN && shooting->word == 1;
-  bool whole = successive == floor(successive) && successive >= 2.0 && successive <= 16.0;
-  if (whole)
-    steady->successive = (int32_t)successive;
-  else
-    strut_report_error(reader,
-                       strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE)->value->place,
-                       "expected a whole number from 2 to 16 for 'successive' of the steady state");
+  strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
+  strut_store_fields(reader, &reader->steady, &reader->scene->arena, steady, sizeof *steady);
 }
 
 static void read_run(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   strut_owner owner = {"the measurement", NULL};
-  reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run))
+  reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, "the run", &reader->run))
     return;
   read_of(reader);
-  e->duration = strut_number_or(&reader->run, STRUT_KEY_RUN_DURATION, 0.0);
-  e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
+  strut_store_fields(reader, &reader->run, &reader->scene->arena, e, sizeof *e);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
-    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value,
+    strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
                       (strut_owner){"the measurement", NULL}, &reader->measure);
     const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
     if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
@@ -262,35 +239,17 @@ static void choose_settling_step(strut_reader *reader) {
   settle->step = given > 0.0 ? given : -1.0;
 }
 
-static void read_integrator(strut_reader *reader) {
-  const strut_slot *slot = strut_slot_of(&reader->solver, STRUT_KEY_SOLVER_INTEGRATOR);
-  char name[32];
-  if (slot->state != STRUT_GIVEN) return;
-  if (strut_word_at(strut_key_at(STRUT_KEY_SOLVER_INTEGRATOR)->words, slot->word, name,
-                    sizeof name))
-    reader->scene->experiment.integrator = strut_keep_text(reader, name);
-}
-
 void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = &reader->scene->experiment;
   read_run(reader);
-  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
-                         &reader->solver)) {
-    e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
-    e->tolerance = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_TOLERANCE, e->tolerance);
-    e->refine = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE, 0.0);
-    e->refine_time = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE_TIME, 0.0);
-    e->accuracy = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_ACCURACY, 0.0);
-    e->budget = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_BUDGET, e->budget);
-    read_integrator(reader);
-  }
+  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, "the solver",
+                         &reader->solver))
+    strut_store_fields(reader, &reader->solver, &reader->scene->arena, e, sizeof *e);
   choose_settling_step(reader);
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, "the output",
                           &reader->output))
     return;
-  e->output_every = strut_number_or(&reader->output, STRUT_KEY_OUTPUT_EVERY, 0.0);
+  strut_store_fields(reader, &reader->output, &reader->scene->arena, e, sizeof *e);
   read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, (strut_owner){"the output", NULL},
             &e->output_last);
-  const strut_slot *channels = strut_slot_of(&reader->output, STRUT_KEY_OUTPUT_CHANNELS);
-  if (channels->state == STRUT_GIVEN) e->channels = (unsigned)channels->word;
 }

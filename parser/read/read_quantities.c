@@ -336,12 +336,12 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   strut_owner owner = {"quantity", key->text};
   char unit[STRUT_SUFFIX_TEXT];
   strut_dimension dimension = STRUT_DIM_NONE;
-  strut_fields fields = {.room = STRUT_ROOM_QUANTITY};
+  strut_fields fields = {.section = STRUT_SECTION_QUANTITY};
   const strut_tree *of = key->next;
   bool map = of->kind == STRUT_TREE_MAP;
   if (ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, owner)) return;
   if (map) {
-    strut_read_fields(reader, STRUT_ROOM_QUANTITY, of, owner, &fields);
+    strut_read_fields(reader, STRUT_SECTION_QUANTITY, of, owner, &fields);
     strut_require(reader, &fields, owner, key->place);
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_QUANTITY_OF);
     of = slot->state == STRUT_GIVEN ? slot->value : NULL;
@@ -351,8 +351,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
     return;
   }
   bool known = of && read_expression(reader, of, owner, d, &dimension);
-  const strut_slot *take = strut_slot_of(&fields, STRUT_KEY_QUANTITY_TAKE);
-  if (take->state == STRUT_GIVEN) d->take = (strut_reduction)take->word;
+  strut_store_fields(reader, &fields, &reader->scene->arena, d, sizeof *d);
   if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
                 known, d);

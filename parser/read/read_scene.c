@@ -7,27 +7,19 @@
 #include "engine/base/c_locale.h"
 #include "parser/read/reader.h"
 
-/* A text of the scene, in its own memory; "" where there is none. */
-static const char *keep_text(strut_reader *reader, int key) {
-  const strut_slot *slot = strut_slot_of(&reader->top, key);
-  if (slot->state != STRUT_GIVEN) return "";
-  return strut_keep_text(reader, slot->value->text);
-}
-
+/* The scene's own numbers may use parameters, which are read before them but after its other keys. */
 static void read_head(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
-  scene->name = keep_text(reader, STRUT_KEY_SCENE_NAME);
-  scene->description = keep_text(reader, STRUT_KEY_SCENE_DESCRIPTION);
-  scene->source = keep_text(reader, STRUT_KEY_SCENE_SOURCE);
-  const strut_slot *model = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MASS_MODEL);
-  const strut_slot *bars = strut_slot_of(&reader->top, STRUT_KEY_SCENE_BARS);
-  strut_slot *gravity = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GRAVITY);
-  if (model->state == STRUT_GIVEN) scene->mass_model = (strut_mass_model)model->word;
-  if (bars->state == STRUT_GIVEN) scene->bar_model = (strut_bar_model)bars->word;
-  if (gravity->state == STRUT_GIVEN &&
-      !strut_read_pair(reader, gravity->value, "gravity", (strut_owner){"the scene", NULL},
-                       STRUT_DIM_ACCELERATION, scene->gravity))
-    gravity->state = STRUT_BROKEN;
+  strut_owner owner = {"the scene", NULL};
+  for (int i = 0; i < strut_section_size(STRUT_SECTION_SCENE); i++) {
+    strut_slot *slot = &reader->top.slot[i];
+    int key = strut_section_first(STRUT_SECTION_SCENE) + i;
+    if (slot->state != STRUT_GIVEN || strut_key_at(key)->type != STRUT_TYPE_PAIR) continue;
+    bool fine = strut_read_pair(reader, slot->value, strut_key_at(key)->name, owner,
+                                strut_measure_dimension(strut_key_at(key)->measure), slot->number);
+    if (!fine) slot->state = STRUT_BROKEN;
+  }
+  strut_store_fields(reader, &reader->top, &reader->scene->arena, reader->scene,
+                     sizeof *reader->scene);
 }
 
 /* Stops behind the section in which the diagnostics became full. */
@@ -50,15 +42,15 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
 
 /* The mappings of which there is one: before they are read, and where they are not there. */
 static void prepare(strut_reader *reader) {
-  reader->ground.room = STRUT_ROOM_GROUND;
-  reader->initial.room = STRUT_ROOM_INITIAL;
-  reader->settle.room = STRUT_ROOM_SETTLE;
-  reader->search.room = STRUT_ROOM_EQUILIBRIA;
-  reader->solver.room = STRUT_ROOM_SOLVER;
-  reader->run.room = STRUT_ROOM_RUN;
-  reader->measure.room = STRUT_ROOM_MEASURE;
-  reader->steady.room = STRUT_ROOM_STEADY;
-  reader->output.room = STRUT_ROOM_OUTPUT;
+  reader->ground.section = STRUT_SECTION_GROUND;
+  reader->initial.section = STRUT_SECTION_INITIAL;
+  reader->settle.section = STRUT_SECTION_SETTLE;
+  reader->search.section = STRUT_SECTION_EQUILIBRIA;
+  reader->solver.section = STRUT_SECTION_SOLVER;
+  reader->run.section = STRUT_SECTION_RUN;
+  reader->measure.section = STRUT_SECTION_MEASURE;
+  reader->steady.section = STRUT_SECTION_STEADY;
+  reader->output.section = STRUT_SECTION_OUTPUT;
 }
 
 /* Does the file say anything about a run? */
@@ -84,7 +76,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
                        "this is a study, expected a model; 'strut sweep' runs studies");
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
+  strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
   if (reader->purpose == STRUT_FOR_ANY)
@@ -188,7 +180,7 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   reader->diagnostics = diagnostics;
   prepare(reader);
   reader->document.root = source->document.root;
-  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root,
+  strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root,
                     (strut_owner){"the scene", NULL}, &reader->top);
   if (reader->document.root->kind == STRUT_TREE_MAP) strut_read_parameters(reader, NULL, 0);
   strut_status status = reader->failed ? STRUT_BAD_SCENE : keep_declared(reader, source);

@@ -31,17 +31,10 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
     return false;
   }
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_NODE, value, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
-  const strut_slot *position = strut_slot_of(&fields, STRUT_KEY_NODE_POSITION);
-  const strut_slot *fixed = strut_slot_of(&fields, STRUT_KEY_NODE_FIXED);
-  const strut_slot *mass = strut_slot_of(&fields, STRUT_KEY_NODE_MASS);
-  if (position->state == STRUT_GIVEN)
-    memcpy(node->position, position->number, sizeof node->position);
-  if (fixed->state == STRUT_GIVEN)
-    for (int c = 0; c < 2; c++) node->fixed[c] = (fixed->word >> c & 1) != 0;
-  if (mass->state == STRUT_GIVEN) node->mass = mass->number[0];
+  strut_store_fields(reader, &fields, &reader->scene->arena, node, sizeof *node);
   return fine && !fields.broken;
 }
 
@@ -76,11 +69,10 @@ static bool read_ends(strut_reader *reader, const strut_slot *slot, strut_owner 
   return node[0] >= 0 && node[1] >= 0;
 }
 
-static void take_rest(strut_fields *fields, strut_member *member) {
-  static const int keys[] = {STRUT_KEY_MEMBER_REST_LENGTH_RATIO, STRUT_KEY_MEMBER_REST_LENGTH,
-                             STRUT_KEY_MEMBER_PRETENSION, STRUT_KEY_MEMBER_FORCE_DENSITY};
+/* Four keys, of which a member has one at most, say the rest length in different ways. */
+static void store_rest_length(strut_fields *fields, strut_member *member) {
   for (int kind = STRUT_REST_RATIO; kind <= STRUT_REST_FORCE_DENSITY; kind++) {
-    const strut_slot *slot = strut_slot_of(fields, keys[kind]);
+    const strut_slot *slot = strut_slot_of(fields, strut_rest_key((strut_rest_kind)kind));
     if (slot->state != STRUT_GIVEN) continue;
     member->rest_kind = (strut_rest_kind)kind;
     member->rest_value = slot->number[0];
@@ -91,22 +83,17 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   strut_owner owner = {"member", member->name};
   bool fine = strut_read_name(reader, key, "member");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_MEMBER, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_MEMBER, key->next, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_MEMBER_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   if (!read_ends(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member->node)) {
     reader->ends_unknown = true;
     fine = false;
   }
-  const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_MEMBER_KIND);
-  if (kind->state == STRUT_GIVEN) member->kind = (strut_member_kind)kind->word;
-  member->stiffness = strut_number_or(&fields, STRUT_KEY_MEMBER_STIFFNESS, 0.0);
-  member->axial_stiffness = strut_number_or(&fields, STRUT_KEY_MEMBER_AXIAL_STIFFNESS, 0.0);
-  member->damping = strut_number_or(&fields, STRUT_KEY_MEMBER_DAMPING, 0.0);
-  member->mass = strut_number_or(&fields, STRUT_KEY_MEMBER_MASS, 0.0);
+  strut_store_fields(reader, &fields, &reader->scene->arena, member, sizeof *member);
   if (strut_slot_of(&fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
     reader->masses_unknown = true;
-  take_rest(&fields, member);
+  store_rest_length(&fields, member);
   return fine && !fields.broken;
 }
 

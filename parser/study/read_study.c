@@ -151,20 +151,14 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
 
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
-  const strut_slot *files = strut_slot_of(top, STRUT_KEY_STUDY_TRAJECTORIES);
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   strut_fields fields;
-  const char *name = strut_study_text(r, top, STRUT_KEY_STUDY_NAME);
-  const char *description = strut_study_text(r, top, STRUT_KEY_STUDY_DESCRIPTION);
-  study->name = name ? name : "";
-  study->description = description ? description : "";
-  study->trajectories = files->state == STRUT_GIVEN && files->word == 1;
+  study->name = study->description = "";
+  strut_store_fields(r->reader, top, &r->file->arena, study, sizeof *study);
   if (check->state == STRUT_GIVEN) {
-    strut_read_fields(r->reader, STRUT_ROOM_CHECK, check->value, (strut_owner){"the check", NULL},
-                      &fields);
-    const strut_slot *half = strut_slot_of(&fields, STRUT_KEY_CHECK_HALF_STEP);
-    study->half_step = half->state == STRUT_GIVEN && half->word == 1;
-    study->check_accuracy = strut_number_or(&fields, STRUT_KEY_CHECK_ACCURACY, 0.0);
+    strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value,
+                      (strut_owner){"the check", NULL}, &fields);
+    strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
   }
   strut_study_read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
@@ -213,7 +207,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
                        "this is a model, expected a study, which names one");
     return STRUT_BAD_SCENE;
   }
-  strut_read_fields(reader, STRUT_ROOM_STUDY, file->document.root, study_owner, &top);
+  strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));
   read_rest(r, &top);
@@ -252,6 +246,12 @@ const char *strut_study_messages(strut_study_file *file, size_t most) {
   const char *own = strut_diagnostics_render(&file->diagnostics, most);
   const char *model =
       file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
+  return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
+}
+
+const char *strut_study_notes(strut_study_file *file) {
+  const char *own = strut_diagnostics_render_notes(&file->diagnostics);
+  const char *model = strut_diagnostics_render_notes(&file->model_diagnostics);
   return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
 }
 
@@ -306,18 +306,18 @@ strut_status strut_study_scene(const strut_study_file *file, const strut_study_v
 }
 
 /* "frequency = 10 Hz, start = I" */
-static void tell_values(const strut_study_file *file, const strut_study_value *values, char *text,
-                        size_t room) {
+static void format_values(const strut_study_file *file, const strut_study_value *values, char *text,
+                          size_t size) {
   size_t used = 0;
   *text = '\0';
-  for (size_t i = 0; i < file->column_count && used < room; i++) {
+  for (size_t i = 0; i < file->column_count && used < size; i++) {
     char number[STRUT_NUMBER_TEXT];
     const char *unit =
         file->columns[i].bare ? "1" : strut_dimension_unit(file->columns[i].dimension);
     bool plain = values[i].word || strcmp(unit, "1") == 0;
     strut_number_text(values[i].number, number);
     int n =
-        snprintf(text + used, room - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
+        snprintf(text + used, size - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
                  values[i].word ? values[i].word : number, plain ? "" : " ", plain ? "" : unit);
     used += n > 0 ? (size_t)n : 0;
   }
@@ -328,9 +328,9 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
   char text[300];
   strut_status status = read_point(file, values, &file->model_diagnostics, &scene);
   if (status == STRUT_OK) strut_scene_free(&scene);
-  if (status != STRUT_BAD_SCENE) return status;
-  tell_values(file, values, text, sizeof text);
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
+  if (status != STRUT_BAD_SCENE) return status;
+  format_values(file, values, text, sizeof text);
   strut_diagnose(&file->diagnostics, (strut_place){0}, "there is no model to run at %s", text);
   return status;
 }

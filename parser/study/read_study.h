@@ -39,6 +39,8 @@ STRUT_API strut_status strut_study_open(const char *path, const strut_override *
                                         strut_error *error);
 /** All messages as printed text, at most `most` of each file; NULL: memory is out. */
 STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
+/** All notes of the points tried, such as on former names of keys; NULL: memory is out. */
+STRUT_API const char *strut_study_notes(strut_study_file *file);
 /**
  * The scene where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
  * finding with its place. Safe from several threads.

@@ -110,7 +110,7 @@ static bool read_range(strut_study_reader *r, along *a) {
   double step = 0.0;
   if (a->parameter->text)
     return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
-  strut_read_fields(r->reader, STRUT_ROOM_RANGE, a->value, owner_of(a), &fields);
+  strut_read_fields(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields);
   if (!fields.broken) strut_require(r->reader, &fields, owner_of(a), a->value->place);
   if (fields.broken) return false;
   const strut_slot *by = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP);

@@ -5,15 +5,6 @@
 
 #include "parser/study/study_reader.h"
 
-const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int key) {
-  const strut_slot *slot = strut_slot_of(fields, key);
-  if (slot->state != STRUT_GIVEN) return NULL;
-  const char *copy =
-      strut_arena_text(&r->file->arena, slot->value->text, strlen(slot->value->text));
-  if (!copy) r->reader->out_of_memory = true;
-  return copy;
-}
-
 static bool wanted(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
                    const char *kind, const char *name, const char *text) {
   if (text || fields->broken) return true;
@@ -49,23 +40,9 @@ static void read_figure(strut_study_reader *r, const strut_tree *key, strut_stud
   strut_fields fields;
   strut_owner owner = {"figure", key->text};
   strut_read_name(r->reader, key, "figure");
-  strut_read_fields(r->reader, STRUT_ROOM_FIGURE, key->next, owner, &fields);
-  const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_FIGURE_KIND);
-  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_FIGURE_SCALE);
-  figure->name = key->text;
-  figure->kind = kind->state == STRUT_GIVEN ? (strut_study_figure_kind)kind->word : 0;
-  figure->x = strut_study_text(r, &fields, STRUT_KEY_FIGURE_AT_X);
-  figure->y = strut_study_text(r, &fields, STRUT_KEY_FIGURE_AT_Y);
-  figure->series = strut_study_text(r, &fields, STRUT_KEY_FIGURE_SERIES);
-  figure->color = strut_study_text(r, &fields, STRUT_KEY_FIGURE_COLOR);
-  figure->panels = strut_study_text(r, &fields, STRUT_KEY_FIGURE_PANELS);
-  figure->band = strut_study_text(r, &fields, STRUT_KEY_FIGURE_BAND);
-  figure->only = strut_study_text(r, &fields, STRUT_KEY_FIGURE_ONLY);
-  figure->difference = strut_study_text(r, &fields, STRUT_KEY_FIGURE_DIFFERENCE);
-  figure->title = strut_study_text(r, &fields, STRUT_KEY_FIGURE_TITLE);
-  figure->from = strut_number_or(&fields, STRUT_KEY_FIGURE_FROM, -HUGE_VAL);
-  figure->to = strut_number_or(&fields, STRUT_KEY_FIGURE_TO, HUGE_VAL);
-  for (int d = 0; d < 2 && scale->state == STRUT_GIVEN; d++) figure->scale[d] = scale->number[d];
+  strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
+  *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
+  strut_store_fields(r->reader, &fields, &r->file->arena, figure, sizeof *figure);
   read_times(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_TIMES), owner, figure);
   require(r, &fields, key, figure);
 }

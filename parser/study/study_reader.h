@@ -20,8 +20,6 @@ typedef struct strut_study_reader {
 
 /** The parameter of the model that a key names; NULL where that was reported. */
 const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key);
-/** A text that a key gives, in the study's arena; NULL where there is none. */
-const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int key);
 /**
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.

@@ -82,7 +82,7 @@ static strut_status open_variants(strut_study_reader *r, strut_fields *top,
     strut_fields fields;
     strut_owner owner = {"variant", key->text};
     check_name(r, key);
-    strut_read_fields(r->reader, STRUT_ROOM_VARIANT, key->next, owner, &fields);
+    strut_read_fields(r->reader, STRUT_SECTION_VARIANT, key->next, owner, &fields);
     r->variant_names[r->variant_count++] = key->text;
     status = open_source(r, top, &fields);
   }

@@ -69,12 +69,22 @@ void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const cha
       (strut_diagnostic){.place = place, .order = order, .message = copy};
 }
 
+static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
+  for (size_t i = 0; i < diagnostics->note_count; i++) {
+    const strut_diagnostic *note = &diagnostics->notes[i];
+    if (note->place.line == place.line && note->place.column == place.column &&
+        strcmp(note->message, message) == 0)
+      return true;
+  }
+  return false;
+}
+
 void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   const char *copy = compose(diagnostics, format, arguments);
   va_end(arguments);
-  if (!copy ||
+  if (!copy || has_note(diagnostics, place, copy) ||
       !make_room(&diagnostics->notes, diagnostics->note_count, &diagnostics->note_capacity))
     return;
   diagnostics->notes[diagnostics->note_count++] =

@@ -10,6 +10,7 @@ static const struct rule {
   const char *message;
   const char *begun; /* what began in the context's line, appended; or NULL */
   bool at_context;   /* the place is where the context begins */
+  bool is_key;       /* the place is that of a key without a value */
   bool at_margin;    /* true only where the line begins; elsewhere something is left over */
 } rules[] = {
     {.problem = "mapping values are not allowed",
@@ -29,6 +30,7 @@ static const struct rule {
      .message = "expected ',' or '}'"},
     {.problem = "could not find expected ':'",
      .at_context = true,
+     .is_key = true,
      .message = "expected ':' and a value behind this key"},
     {.problem = "expected key",
      .begun = "the mapping begun",
@@ -94,6 +96,16 @@ static bool behind_something(const strut_diagnostics *diagnostics, strut_place p
   return false;
 }
 
+/* Does a word at the place have a colon and no space behind it, as in `mass:1 kg`? */
+static bool lacks_space(const strut_diagnostics *diagnostics, strut_place place) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_line(&cursor, place.line);
+  while (cursor.column < place.column && strut_cursor_step(&cursor)) continue;
+  const char *text = cursor.text + cursor.offset, *end = diagnostics->text + diagnostics->length;
+  while (text < end && *text && !strchr(": \t\r\n", *text)) text++;
+  return text + 1 < end && text[0] == ':' && !strchr(" \t\r\n", text[1]);
+}
+
 bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
                                  strut_diagnostics *diagnostics) {
   if (parser->error == YAML_MEMORY_ERROR) return false;
@@ -113,6 +125,10 @@ bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *
     const struct rule *rule = &rules[i];
     if (!has(parser->problem, rule->problem) || !has(parser->context, rule->context)) continue;
     if (rule->at_context) place = place_at(diagnostics, parser->context_mark, &here);
+    if (rule->is_key && lacks_space(diagnostics, place)) {
+      strut_diagnose(diagnostics, place, "this key needs a space after its colon");
+      return true;
+    }
     if (rule->at_margin && behind_something(diagnostics, place))
       strut_diagnose(diagnostics, place, "unexpected text behind a value");
     else if (rule->begun)

@@ -36,6 +36,7 @@ static void malformed_numbers_are_named(void **state) {
 static void wrong_units_are_named(void **state) {
   (void)state;
   expect_error("10 mmm", 3, 3, "unknown unit 'mmm'; did you mean 'mm'?");
+  expect_error("1 Ns/m", 2, 2, "unknown unit 'Ns'; did you mean 'N s'?");
   expect_error("10 hz", 3, 2, "unknown unit 'hz'; did you mean 'Hz'?");
   expect_error("10 parsec", 3, 6, "unknown unit 'parsec'");
   expect_error("2 pi", 2, 2, "expected an operator before 'pi'; write '*' to multiply");
@@ -43,8 +44,10 @@ static void wrong_units_are_named(void **state) {
   expect_error("2 sin(1)", 2, 3, "expected an operator before 'sin'; write '*' to multiply");
   expect_error("2*a + mm", 6, 2, "the unit 'mm' needs a number before it, such as '1 mm'");
   expect_error("1/Hz", 2, 2, "the unit 'Hz' needs a number before it, such as '1 Hz'");
-  expect_error("10 N*t", 5, 1, "'t' is a unit and a parameter; write '* (t)' for the parameter");
-  expect_error("10 N / t", 7, 1, "'t' is a unit and a parameter; write '/ (t)' for the parameter");
+  expect_error("10 N*t", 5, 1,
+               "'t' is a unit and a parameter; rename the parameter, or write '* (t)' for it");
+  expect_error("10 N / t", 7, 1,
+               "'t' is a unit and a parameter; rename the parameter, or write '/ (t)' for it");
   const char *power = "the power of a unit is a whole number such as 2";
   expect_error("1 m^0.5", 4, 2, power);
   expect_error("1 m^(2)", 4, 0, power);
