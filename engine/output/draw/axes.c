@@ -1,13 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/axes.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/output/draw/palette.h"
 
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TITLE_SIZE = 8.5, TICK = 2.5, GAP = 2.5;
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
+
+/* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's size. */
+static const double ROUNDING = 1e-12, LEAST_LENGTH = 1e-13;
+
+bool strut_is_noise(double *low, double *high, const char *unit) {
+  double size = fmax(fabs(*low), fabs(*high));
+  bool length = unit && (strcmp(unit, "m") == 0 || strcmp(unit, "m/s") == 0);
+  if (length && size < LEAST_LENGTH) *low = *high = 0;
+  return !(*high - *low > ROUNDING * size);
+}
 
 void strut_axis_include(strut_axis *axis, double value) {
   if (!isfinite(value) || (axis->logarithmic && !(value > 0))) return;
@@ -29,9 +41,10 @@ void strut_axis_settle(strut_axis *axis, double room) {
     axis->high = fmax(fmin(axis->high * wider, 1e300), 2 * axis->low);
     return;
   }
+  bool constant = strut_is_noise(&axis->low, &axis->high, axis->unit);
   double span = axis->high - axis->low;
   double size = fmax(fabs(axis->low), fabs(axis->high));
-  if (!(span > 1e-13 * size) || !isfinite(span)) { /* a constant stands in the middle */
+  if (constant || !isfinite(span)) { /* a constant stands in the middle */
     span = size > 1e-300 ? fmin(size, 1e300) : 1;
     room = isfinite(axis->high - axis->low) ? 0.1 : 0;
   }
@@ -71,7 +84,7 @@ static double widest_tick(strut_canvas *canvas, const strut_axis *axis, double h
 }
 
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y,
-                            const char *title) {
+                            const strut_axis *second, const char *title) {
   double width, line, label, above = 0.5 * TICK_SIZE;
   strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
   strut_text_size(canvas, "0", (strut_font){.size = LABEL_SIZE}, &width, &label);
@@ -85,10 +98,21 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   double height = fmax(box.height - above - below, 10);
   double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   double right = 10; /* half of the last tick's text */
+  if (second)
+    right = fmax(widest_tick(canvas, second, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   return (strut_axes){
       .x = x,
       .y = y,
+      .right = second ? *second : (strut_axis){0},
+      .has_right = second != NULL,
       .frame = {box.x + left, box.y + above, fmax(box.width - left - right, 10), height}};
+}
+
+strut_axes strut_axes_right(const strut_axes *axes) {
+  assert(axes->has_right);
+  strut_axes swapped = *axes;
+  swapped.y = axes->right;
+  return swapped;
 }
 
 static double place(const strut_axis *axis, double value) {
@@ -146,6 +170,31 @@ static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tic
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
 }
 
+/* The second y axis; the grid is that of the left one. */
+static void draw_right(strut_canvas *canvas, const strut_axes *axes) {
+  const strut_box *f = &axes->frame;
+  const strut_axes own = strut_axes_right(axes);
+  const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
+  double widest = LEAST_LEFT - TICK - GAP, edge = f->x + f->width, point[2];
+  strut_tick_set set;
+  strut_axis_ticks(&axes->right, ticks_along_y(f->height), &set);
+  for (size_t i = 0; i < set.count; i++) {
+    double width, line;
+    strut_axes_point(&own, own.x.low, set.at[i], point);
+    strut_draw_segment(canvas, edge, point[1], edge + TICK, point[1], tick);
+    strut_draw_text(canvas, edge + TICK + GAP, point[1], set.text[i],
+                    (strut_font){.size = TICK_SIZE, .down = 0.5});
+    strut_text_size(canvas, set.text[i], (strut_font){.size = TICK_SIZE}, &width, &line);
+    widest = fmax(widest, width);
+  }
+  for (size_t i = 0; i < set.minor_count; i++) {
+    strut_axes_point(&own, own.x.low, set.minor[i], point);
+    strut_draw_segment(canvas, edge, point[1], edge + 0.6 * TICK, point[1], tick);
+  }
+  strut_draw_text(canvas, edge + TICK + 2 * GAP + widest, f->y + 0.5 * f->height, set.label,
+                  (strut_font){.size = LABEL_SIZE, .across = 0.5, .upwards = true});
+}
+
 void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes) {
   const strut_box *f = &axes->frame;
   strut_tick_set set;
@@ -163,6 +212,7 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *t
   draw_x(canvas, axes, &set);
   strut_axis_ticks(&axes->y, ticks_along_y(f->height), &set);
   draw_y(canvas, axes, &set);
+  if (axes->has_right) draw_right(canvas, axes);
   strut_draw_box(canvas, *f, NULL, &frame);
   if (title && *title)
     strut_draw_text(

@@ -8,10 +8,13 @@
 static const double TEXT = 7.5, SAMPLE = 20, GAP = 4, ROW_GAP = 1.5, PADDING = 3;
 
 strut_pen strut_series_pen(size_t look) {
-  static const double dashes[][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
-                                     {3, 1.5}, {8, 2}, {2, 3}};
+  enum { DASHES = 7 };
+  static const double dashes[DASHES][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
+                                           {3, 1.5}, {8, 2}, {2, 3}};
   strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
-  for (int i = 0; i < 4; i++) pen.dash[i] = dashes[look % 7][i];
+  /* Where the colours come again, the dashes are others. */
+  size_t dash = (look + 3 * (look / STRUT_PALETTE_THINGS)) % DASHES;
+  for (int i = 0; i < 4; i++) pen.dash[i] = dashes[dash][i];
   pen.butt = pen.dash[0] > 0;
   return pen;
 }

@@ -66,10 +66,10 @@ void strut_ground_line(const strut_window *w, const strut_model *model, double e
 void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model) {
   const strut_ground *ground = &model->scene->ground;
   if (!ground->present) return;
-  const double depth = 7.0;
   double ends[4][2];
   strut_ground_line(w, model, ends);
-  const double down[2] = {depth * sin(ground->slope), depth * cos(ground->slope)};
+  const double down[2] = {STRUT_GROUND_DEPTH * sin(ground->slope),
+                          STRUT_GROUND_DEPTH * cos(ground->slope)};
   for (int d = 0; d < 2; d++) {
     ends[2][d] = ends[1][d] + down[d];
     ends[3][d] = ends[0][d] + down[d];

@@ -12,6 +12,8 @@ enum { DIRECTIONS = 16, MOST_NAMED = 60 };
 
 static const double PI = 3.14159265358979323846, GAP = 3.6, SIZE = 7.5, MOST_WIDTH = 90;
 static const double SUPPORT = 5.0; /* half the width of a support [pt] */
+static const double HATCHED = 2.0, FREE = 1.0,
+                    FAR = 6.0; /* cost, enough freedom, second try [pt] */
 
 /* Everything that names should keep away from. */
 typedef struct obstacles {
@@ -19,6 +21,8 @@ typedef struct obstacles {
   double (*ends)[2]; /* (2 member_count) [pt] */
   strut_box *labels; /* those placed so far */
   strut_box inside;  /* names stay in here */
+  bool ground;       /* its body lies below the segment `surface`, as deep as it is hatched */
+  double surface[2][2];
 } obstacles;
 
 /* Distance of a point from a segment. */
@@ -29,9 +33,22 @@ static double from_segment(const double p[2], const double a[2], const double b[
   return hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1]);
 }
 
+/* Whether a point is on the hatching below the ground's line. */
+static bool is_on_hatching(const obstacles *o, const double p[2]) {
+  const double *a = o->surface[0], *b = o->surface[1];
+  double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);
+  double depth = (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / length;
+  return o->ground && depth > 0 && depth < STRUT_GROUND_DEPTH;
+}
+
 /* How free a box is: its distance from what is drawn; below zero where it covers another name. */
 static double freedom(const obstacles *o, strut_box box) {
   double least = HUGE_VAL;
+  for (int i = 0; i <= 4; i++)
+    for (int k = 0; k <= 2; k++) {
+      const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
+      if (is_on_hatching(o, p)) least = -HATCHED;
+    }
   for (size_t j = 0; j < o->member_count; j++)
     for (int i = 0; i <= 4; i++)
       for (int k = 0; k <= 2; k++) {
@@ -71,10 +88,11 @@ static void place_name(strut_canvas *canvas, obstacles *o, const double at[2], d
   strut_box chosen = {0};
   name = strut_text_fit(canvas, name, name_font(), MOST_WIDTH, 0, fitted);
   strut_text_size(canvas, name, name_font(), &width, &height);
-  for (int k = 0; k < DIRECTIONS; k++) {
-    /* Up and to the right first, and far enough is good enough. */
+  for (int k = 0; k < 2 * DIRECTIONS; k++) {
+    /* Up and to the right first, and far enough is good enough; farther away where nothing near is. */
     int direction = (k + DIRECTIONS / 8) % DIRECTIONS;
-    strut_box box = beside(at, direction, gap, width, height);
+    if (k == DIRECTIONS && best > FREE) break;
+    strut_box box = beside(at, direction, gap + (k < DIRECTIONS ? 0 : FAR), width, height);
     double free = fmin(freedom(o, box), 4.0);
     if (free > best + 1e-9) {
       best = free;
@@ -110,6 +128,8 @@ static bool gather(const strut_window *w, const strut_model *model, const double
   for (size_t j = 0; j < members; j++) strut_member_ends(w, model, q, j, o->ends + 2 * j);
   if (model->scene->ground.present) { /* its line counts as one more member */
     strut_ground_line(w, model, o->ends + 2 * members);
+    memcpy(o->surface, o->ends + 2 * members, sizeof o->surface);
+    o->ground = true;
     o->member_count++;
   }
   add_supports(w, model, q, o);

@@ -10,6 +10,8 @@
 /** Where a member's two ends are on the page [pt]. */
 void strut_member_ends(const strut_window *window, const strut_model *model, const double *q,
                        size_t member, double ends[2][2]);
+/** Depth of the hatching below the ground's line [pt]. */
+#define STRUT_GROUND_DEPTH 7.0
 /** Where the ground's line enters and leaves the window's neighbourhood [pt]. */
 void strut_ground_line(const strut_window *window, const strut_model *model, double ends[2][2]);
 /** Triangles under pinned nodes, rolling ones under nodes held in one direction. */

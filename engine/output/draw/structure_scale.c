@@ -11,9 +11,8 @@ enum { CELLS = 60 };
 static const double BAR = 8, TEXT = 7, TICK = 2;
 
 static strut_colour colour_at(const strut_colour_scale *scale, double part) {
-  if (scale->sequence) return strut_palette_sequence(part);
-  double limit = fmax(fabs(scale->low), fabs(scale->high));
-  return strut_palette_signed((scale->low + part * (scale->high - scale->low)) / limit);
+  double value = scale->low + part * (scale->high - scale->low);
+  return strut_palette_at(scale->colours, value, scale->low, scale->high);
 }
 
 /* The strip: cells overlap, so that no viewer shows seams. */

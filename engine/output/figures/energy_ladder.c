@@ -118,7 +118,7 @@ strut_status strut_draw_ladder(strut_canvas *canvas, strut_box box, const strut_
       strut_axis_include(&y, strut_drawn_energy(all, (size_t)all->barriers[i].from) - zero +
                                  height_of(&all->barriers[i]));
   strut_axis_settle(&y, 0.2);
-  strut_axes axes = strut_axes_place(canvas, box, x, y, NULL);
+  strut_axes axes = strut_axes_place(canvas, box, x, y, NULL, NULL);
   axes.frame.height = box.y + box.height - axes.frame.y - 4; /* places have no numbers */
   strut_draw_vertical_axis(canvas, &axes);
   strut_canvas_clip(canvas, axes.frame);

@@ -222,8 +222,11 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
-  const strut_colour_scale scale = {
-      .name = "force", .unit = "N", .low = -p->force_limit, .high = p->force_limit};
+  const strut_colour_scale scale = {.name = "force",
+                                    .unit = "N",
+                                    .low = -p->force_limit,
+                                    .high = p->force_limit,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (p->force_limit > 0)
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
   return y + SCALE;

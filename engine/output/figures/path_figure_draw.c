@@ -122,7 +122,7 @@ static strut_axes place_axes(strut_path_picture *p, strut_box box, char labels[2
   strut_axis_settle(&motion, 0.05);
   strut_axis_settle(&height, 0.05);
   return strut_axes_place(p->canvas, box, p->upright ? height : motion,
-                          p->upright ? motion : height, NULL);
+                          p->upright ? motion : height, NULL, NULL);
 }
 
 void strut_path_draw_curve(strut_path_picture *p, strut_box box) {

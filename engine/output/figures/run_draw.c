@@ -61,6 +61,10 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
     const double foot[2] = {at[0] - length * contacts->normal[0],
                             at[1] + length * contacts->normal[1]};
     if (length > 1) avoid(run, foot, at);
+    length = force[2 * i + 1] / run->contact_limit * run->arrow;
+    const double tip[2] = {at[0] + length * contacts->tangent[0],
+                           at[1] - length * contacts->tangent[1]};
+    if (fabs(length) > 1) avoid(run, at, tip);
   }
 }
 
@@ -98,8 +102,11 @@ void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const stru
 }
 
 void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  const strut_colour_scale scale = {
-      .name = "force", .unit = "N", .low = -run->force_limit, .high = run->force_limit};
+  const strut_colour_scale scale = {.name = "force",
+                                    .unit = "N",
+                                    .low = -run->force_limit,
+                                    .high = run->force_limit,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (run->motion->force && run->force_limit > 0) strut_draw_colour_scale(canvas, box, &scale);
 }
 

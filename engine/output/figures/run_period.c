@@ -119,9 +119,10 @@ double strut_run_period_height(strut_run_scene *run) {
 
 static void describe(const strut_run_scene *run, const ways *w, char *text, size_t size) {
   strut_c_locale locale = strut_c_locale_enter();
-  double span = strut_run_time_from(run, w->first);
+  /* The period itself: the frames drawn of it span a whole number of samples. */
+  double span = run->period > 0 ? run->period : strut_run_time_from(run, w->first);
   snprintf(text, size, "%s%s%s%s, dark to bright",
-           run->figure->width < WIDE ? "" : "ways of the nodes over ",
+           run->figure->width < WIDE ? "" : "node trajectories over ",
            run->period > 0 ? "one period (" : "", strut_drawn_quantity(span, 4, "s").text,
            run->period > 0 ? ")" : "");
   strut_c_locale_leave(locale);
@@ -151,10 +152,10 @@ static void draw_note(const strut_run_scene *run, strut_canvas *canvas, const wa
 static void draw_time_scale(const strut_run_scene *run, strut_canvas *canvas, const ways *w,
                             strut_box box) {
   bool parts = run->period > 0;
-  const strut_colour_scale scale = {.name = parts ? "part of the period" : "time",
+  const strut_colour_scale scale = {.name = parts ? "phase" : "time",
                                     .unit = parts ? "" : "s",
                                     .high = parts ? 1 : strut_run_time_from(run, w->first),
-                                    .sequence = true};
+                                    .colours = STRUT_COLOURS_SEQUENTIAL};
   if (scale.high > 0) strut_draw_colour_scale(canvas, box, &scale);
 }
 

@@ -14,6 +14,8 @@ static const double TALLEST = 0.95;               /* all cells together, of the 
 static const double LEAST = 12, WIDE = 380, KEY_LINE = 12; /* [pt] */
 static const double COMMON = 2.2; /* shapes no further apart share a window, in their sizes */
 
+static const double RAISED =
+    1.5; /* so many times the largest shape a cell may grow for the ground */
 static const double SEEN = 2e-3; /* of the drawing: the measured point moves so much at least */
 
 /* How the cells stand, and what they show. */
@@ -22,6 +24,7 @@ typedef struct grid {
   bool moves;     /* the measured point, to be seen */
   bool common[2]; /* all show the same part of the plane along that axis */
   strut_bounds all;
+  double base;    /* lowest point of all shapes above the ground below their middle [m] */
   double size[2]; /* of that part, or of the largest shape [m] */
   double cell[2]; /* [pt] */
 } grid;
@@ -67,18 +70,42 @@ static size_t count_of(const strut_run_scene *run) {
   return count > 0 ? count : 1;
 }
 
+/* Bounds of all that a cell shows: both motions, and the ground where it is near. */
+static strut_bounds cell_bounds(const strut_run_scene *run, const grid *g, size_t i) {
+  strut_run_scene other;
+  size_t frame = frame_of(run, i, g->count);
+  strut_bounds b = strut_run_frame_bounds(run, frame);
+  if (strut_run_find_other(run, &other))
+    strut_bounds_add(&b, run->model, strut_run_positions(&other, beside(run, &other, frame)));
+  strut_run_add_ground(run, &b);
+  return b;
+}
+
+/* Height of the ground below the middle of bounds. */
+static double ground_below(const strut_run_scene *run, const strut_bounds *b) {
+  return strut_run_ground_at(run, 0.5 * (b->low[0] + b->high[0]));
+}
+
+/* Where cells do not show the same height range: room for shapes on the ground drawn at one height. */
+static void stand_on_ground(const strut_run_scene *run, grid *g) {
+  g->base = HUGE_VAL;
+  for (size_t i = 0; i < g->count; i++) {
+    strut_bounds b = cell_bounds(run, g, i);
+    g->base = fmin(g->base, b.low[1] - ground_below(run, &b));
+  }
+  double shape = g->size[1];
+  for (size_t i = 0; i < g->count; i++) {
+    strut_bounds b = cell_bounds(run, g, i);
+    double reach = b.high[1] - ground_below(run, &b) - g->base;
+    if (reach < RAISED * shape) g->size[1] = fmax(g->size[1], reach);
+  }
+}
+
 static void find_sizes(const strut_run_scene *run, grid *g) {
   double shape[2] = {0, 0};
-  strut_run_scene other;
-  bool compared = strut_run_find_other(run, &other);
   g->all = strut_bounds_none();
   for (size_t i = 0; i < g->count; i++) {
-    strut_bounds b = strut_run_frame_bounds(run, frame_of(run, i, g->count));
-    if (compared) {
-      size_t frame = beside(run, &other, frame_of(run, i, g->count));
-      strut_bounds_add(&b, run->model, strut_run_positions(&other, frame));
-    }
-    strut_run_add_ground(run, &b);
+    strut_bounds b = cell_bounds(run, g, i);
     for (int d = 0; d < 2; d++) {
       shape[d] = fmax(shape[d], b.high[d] - b.low[d]);
       g->all.low[d] = fmin(g->all.low[d], b.low[d]);
@@ -91,12 +118,15 @@ static void find_sizes(const strut_run_scene *run, grid *g) {
     double way = strut_run_measured(run, frame, 0) - strut_run_measured(run, first, 0);
     g->moves = g->moves || fabs(way) > SEEN * strut_run_extent(&g->all);
   }
+  const strut_ground *ground = &run->model->scene->ground;
   double most = COMMON * fmax(shape[0], shape[1]);
   for (int d = 0; d < 2; d++) {
     double together = g->all.high[d] - g->all.low[d];
     g->common[d] = together <= fmax(COMMON * shape[d], 0.5 * most);
+    if (d == 1 && ground->present && ground->slope != 0 && !g->common[0]) g->common[1] = false;
     g->size[d] = g->common[d] ? together : shape[d];
   }
+  if (ground->present && !g->common[1]) stand_on_ground(run, g);
 }
 
 /* What is left free below the shapes, for arrows [pt]. */
@@ -136,15 +166,17 @@ double strut_run_snapshots_height(strut_run_scene *run) {
   return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + (double)g.rows * g.cell[1] + foot_height(run);
 }
 
-static strut_window window_of(const strut_run_scene *run, const grid *g, size_t frame,
-                              strut_box cell) {
-  strut_bounds b = strut_run_frame_bounds(run, frame);
-  strut_run_add_ground(run, &b);
+static strut_window window_of(const strut_run_scene *run, const grid *g, size_t i, strut_box cell) {
+  strut_bounds b = cell_bounds(run, g, i);
+  double low = run->model->scene->ground.present ? ground_below(run, &b) + g->base : b.low[1];
+  bool grounded = run->model->scene->ground.present && !g->common[1] &&
+                  b.high[1] <= low + g->size[1] * (1 + 1e-9);
   for (int d = 0; d < 2; d++) {
     double middle = 0.5 * (b.low[d] + b.high[d]);
     b.low[d] = g->common[d] ? g->all.low[d] : middle - 0.5 * g->size[d];
     b.high[d] = g->common[d] ? g->all.high[d] : middle + 0.5 * g->size[d];
   }
+  if (grounded) b.low[1] = low, b.high[1] = low + g->size[1];
   /* What is below the shapes for arrows is no part of the window. */
   strut_box box = {cell.x, cell.y + LINE, cell.width, cell.height - LINE - below(run) + MARGIN};
   return strut_window_fit(box, b, MARGIN);
@@ -178,7 +210,7 @@ static int digits_of(const strut_run_scene *run, const grid *g) {
 static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, size_t i,
                      strut_box cell) {
   size_t frame = frame_of(run, i, g->count), first = frame_of(run, 0, g->count);
-  strut_window window = window_of(run, g, frame, cell);
+  strut_window window = window_of(run, g, i, cell);
   double *q = strut_run_shape(run, frame);
   double way = strut_run_measured(run, frame, 0) - strut_run_measured(run, first, 0);
   char text[200], fitted[STRUT_FITTED_TEXT];
@@ -205,8 +237,7 @@ static bool draw_one(strut_run_scene *run, strut_canvas *canvas, const grid *g, 
 }
 
 static void draw_foot(strut_run_scene *run, strut_canvas *canvas, const grid *g, strut_box foot) {
-  strut_window window =
-      window_of(run, g, frame_of(run, 0, g->count), (strut_box){foot.x, 0, g->cell[0], g->cell[1]});
+  strut_window window = window_of(run, g, 0, (strut_box){foot.x, 0, g->cell[0], g->cell[1]});
   char text[120];
   strut_key_item item;
   window.box.y = foot.y + foot.height - window.box.height;
@@ -231,11 +262,12 @@ strut_status strut_run_snapshots(strut_run_scene *run, strut_canvas *canvas) {
   char what[200];
   bool marked = g.common[0] && g.moves;
   double top = STRUT_RUN_EDGE + STRUT_RUN_TITLE;
-  snprintf(what, sizeof what, "%zu instant%s at one scale%s%s%s", g.count, g.count == 1 ? "" : "s",
-           marked        ? "; dashed: where "
+  snprintf(what, sizeof what, "%zu snapshot%s to the same scale%s%s", g.count,
+           g.count == 1 ? "" : "s",
+           marked        ? "; dashed: initial position of "
            : g.common[0] ? ""
-                         : "; each in the middle",
-           marked ? strut_run_measured_name(run) : "", marked ? " was at first" : "");
+                         : "; each centred",
+           marked ? strut_run_measured_name(run) : "");
   strut_run_describe_other(run, what, sizeof what);
   strut_run_draw_title(run, canvas, what, false);
   run->arrow = ARROW;

@@ -5,13 +5,16 @@
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_MAP_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_MAP_H
 
+#include "engine/output/draw/palette.h"
 #include "engine/output/figures/table_figure.h"
 
 /** Columns by number; STRUT_NO_COLUMN for none. */
 typedef struct strut_table_map_figure {
   const char *title;
-  double width;      /* [pt] */
-  int x, y, value;   /* value: texts are categories, numbers get a scale of colours */
+  double width;    /* [pt] */
+  int x, y, value; /* value: texts are categories, numbers get a scale of colours */
+  strut_table_axis x_axis, y_axis;
+  strut_colours colours;
   int panels, doubt; /* doubt: hatched where it is not empty, 0, false or no */
   strut_table_choice choice;
 } strut_table_map_figure;
@@ -27,6 +30,7 @@ STRUT_API strut_status strut_table_map(const char *path, const strut_table_map_f
 typedef struct strut_table_savings_figure {
   const char *title;
   double width;
+  strut_table_axis x_axis, y_axis;
   int x, y, by, label; /* by: the method; label: what stands beside points of the front */
 } strut_table_savings_figure;
 
