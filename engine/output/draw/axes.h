@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 #define STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 
-#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/palette.h"
 #include "engine/output/quantity_text.h"
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
@@ -74,5 +74,14 @@ typedef struct strut_tick_set {
 } strut_tick_set;
 /** Fills `set` for an axis that has room for about `wanted` of them. */
 STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
+
+/** A colour bar beside a drawing, with name, ticks and unit. */
+typedef struct strut_colour_scale {
+  const char *name, *unit;
+  double low, high; /* [unit]; ticks are chosen */
+  strut_colours colours;
+} strut_colour_scale;
+STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
+                                       const strut_colour_scale *scale);
 
 #endif

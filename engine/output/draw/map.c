@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 

@@ -7,7 +7,6 @@
 
 #include "engine/model/model.h"
 #include "engine/output/draw/canvas.h"
-#include "engine/output/draw/palette.h"
 
 /** A window onto the plane: the same scale in x and y, centred in its box. */
 typedef struct strut_window {
@@ -76,14 +75,5 @@ STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window
                                 const double (*positions)[2], size_t count, double width);
 /** A rod of known length with its name, such as "20 mm", in a lower corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
-
-/** A colour bar beside a drawing, with name, ticks and unit. */
-typedef struct strut_colour_scale {
-  const char *name, *unit;
-  double low, high; /* [unit]; ticks are chosen */
-  strut_colours colours;
-} strut_colour_scale;
-STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
-                                       const strut_colour_scale *scale);
 
 #endif

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 
 static const double MARKER = 2.4, STRIP = 18;

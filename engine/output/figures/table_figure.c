@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/output/draw/curves.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/figures/table_parts.h"
 #include "engine/output/figures/table_select.h"
 
