@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"

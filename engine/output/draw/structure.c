@@ -216,8 +216,7 @@ typedef struct obstacles {
   double surface[2][2];
 } obstacles;
 
-/* Distance of a point from a segment. */
-static double from_segment(const double p[2], const double a[2], const double b[2]) {
+double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]) {
   double along[2] = {b[0] - a[0], b[1] - a[1]}, square = along[0] * along[0] + along[1] * along[1];
   double t = square > 0 ? ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square : 0;
   t = fmax(0, fmin(1, t));
@@ -244,7 +243,7 @@ static double freedom(const obstacles *o, strut_box box) {
     for (int i = 0; i <= 4; i++)
       for (int k = 0; k <= 2; k++) {
         const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
-        least = fmin(least, from_segment(p, o->ends[2 * j], o->ends[2 * j + 1]));
+        least = fmin(least, strut_distance_to_segment(p, o->ends[2 * j], o->ends[2 * j + 1]));
       }
   for (size_t i = 0; i < o->label_count; i++) {
     const strut_box *other = &o->labels[i];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,6 @@
 #include "engine/output/draw/map.h"
 #include "engine/output/draw/work_precision.h"
 #include "engine/output/figures/table_parts.h"
-#include "engine/output/figures/table_select.h"
 
 static const double PANEL_WIDTH = 200, ASPECT = 0.8;
 enum { MOST_CELLS = 4000000 };
