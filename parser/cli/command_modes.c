@@ -2,7 +2,7 @@
 #include "parser/cli/command_modes.h"
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/modes_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/modes_report.h"
 #include "parser/cli/open_model.h"

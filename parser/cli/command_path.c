@@ -2,7 +2,7 @@
 #include "parser/cli/command_path.h"
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/path_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/path_report.h"
 #include "parser/cli/open_model.h"

@@ -2,7 +2,7 @@
 #include "parser/cli/command_rigidity.h"
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/rigidity_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/rigidity_report.h"
 #include "parser/cli/named_shape.h"

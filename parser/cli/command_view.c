@@ -18,11 +18,12 @@
 static const size_t ROOM = (size_t)1 << 24;
 
 static const char *const searches[] = {"all", "none", NULL};
-enum { SEARCH_ALL, SEARCH_NONE };
+enum { SEARCH_ALL, SEARCH_NONE, SEARCH_OF_MODEL };
 
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "FILE", "the page: FILE ends with .html"},
-    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH", "all shapes at rest, or none"},
+    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH",
+     "all or none (default: all of a MODEL, none of a RUN)"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a model's parameter another value"},
     {STRUT_OPTION_QUIET, "quiet", NULL, "do not say what was written"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -53,7 +54,7 @@ static strut_status find_equilibria(const strut_model *model, int search,
                                     const volatile sig_atomic_t *interrupt, strut_equilibria *all,
                                     strut_error *remark) {
   strut_equilibria_options wanted = {.interrupt = interrupt};
-  if (search == SEARCH_NONE) return STRUT_OK;
+  if (search != SEARCH_ALL) return STRUT_OK;
   strut_status status = strut_equilibria_find(model, &wanted, all, remark);
   return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
@@ -92,12 +93,13 @@ static strut_status show(const strut_arguments *arguments, const strut_opened *o
     if (!yaml) status = strut_fail(&error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK) {
-    strut_page page = {.model = opened->model,
-                       .motion = opened->run ? &opened->motion : NULL,
-                       .equilibria = remark.status == STRUT_OK ? &all : NULL,
-                       .remark = search == SEARCH_NONE ? "not looked for" : remark.message,
-                       .summary = opened->summary,
-                       .yaml = yaml};
+    strut_page page = {
+        .model = opened->model,
+        .motion = opened->run ? &opened->motion : NULL,
+        .equilibria = remark.status == STRUT_OK ? &all : NULL,
+        .remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message,
+        .summary = opened->summary,
+        .yaml = yaml};
     status = write_page(arguments, &page, interrupt, &error);
   }
   if (status != STRUT_OK) strut_print_error(&error);
@@ -108,13 +110,14 @@ static strut_status show(const strut_arguments *arguments, const strut_opened *o
 
 static strut_status run(const strut_arguments *arguments) {
   strut_opened opened = {0};
-  int search = SEARCH_ALL;
+  int search = SEARCH_OF_MODEL;
   strut_status status =
       strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
   if (status == STRUT_OK) status = check_output(arguments);
   if (status == STRUT_OK)
     status = strut_open_run(&strut_command_view, arguments, STRUT_OPEN_AS_RUN, ROOM, &opened);
   if (status != STRUT_OK) return status;
+  if (search == SEARCH_OF_MODEL && !opened.run) search = SEARCH_ALL;
   status = show(arguments, &opened, search);
   strut_opened_free(&opened);
   return status;
@@ -126,9 +129,9 @@ const strut_command strut_command_view = {
     .summary = "makes a page to play a run on, for any browser",
     .details =
         "\nRUN is a directory that 'strut run MODEL -o DIR' made: the page plays its motion,\n"
-        "with charts. Of a MODEL it shows the shape at the start. Both come with the shapes at\n"
-        "rest as cards and with the scene's text. The page is one file that needs no network;\n"
-        "frames are left out evenly where it would be larger than about 4 MB, and it says so.\n",
+        "with charts, parameters and summary; --equilibria all adds the equilibria as cards. Of\n"
+        "a MODEL it shows the shape at the start and the equilibria. The page is one file that\n"
+        "needs no network; beyond about 4 MB frames are left out evenly, and it says so.\n",
     .options = options,
     .run = run,
 };

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 #define STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 
-#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/palette.h"
 #include "engine/output/quantity_text.h"
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
@@ -17,10 +17,17 @@ typedef struct strut_axis {
 
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
-  strut_axis x, y; /* ranges settled */
+  strut_axis x, y;  /* ranges settled */
+  strut_axis right; /* a second y axis, on the right; where has_right */
+  bool has_right;
   strut_box frame; /* where data go [pt] */
 } strut_axes;
 
+/**
+ * Whether values from low to high [unit] differ by rounding noise only and are drawn as a constant; a
+ * length or velocity far below an atom's size becomes zero.
+ */
+STRUT_API bool strut_is_noise(double *low, double *high, const char *unit);
 /** Widens an axis whose range is from the data by a value; not finite ones do nothing. */
 STRUT_API void strut_axis_include(strut_axis *axis, double value);
 /**
@@ -29,17 +36,19 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
 /**
- * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL:
- * none); panels side by side line up when their boxes do.
+ * Lays out a frame for settled axes in `box`, leaving room for ticks, labels, a second y axis on the
+ * right (NULL: none) and a title (NULL: none); panels side by side line up when their boxes do.
  */
 STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
-                                      strut_axis y, const char *title);
+                                      strut_axis y, const strut_axis *right, const char *title);
 /** Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid. */
 STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
 /** The y axis alone, with its grid: where what stands along x has no numbers. */
 STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
-/** Where a pair of values is on the page. */
+/** Where a pair of values is on the page, y on the left axis. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
+/** The same axes with the right one as their y, to place what belongs to it. */
+STRUT_API strut_axes strut_axes_right(const strut_axes *axes);
 
 enum { STRUT_MOST_TICKS = 40 };
 /** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
@@ -65,5 +74,14 @@ typedef struct strut_tick_set {
 } strut_tick_set;
 /** Fills `set` for an axis that has room for about `wanted` of them. */
 STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
+
+/** A colour bar beside a drawing, with name, ticks and unit. */
+typedef struct strut_colour_scale {
+  const char *name, *unit;
+  double low, high; /* [unit]; ticks are chosen */
+  strut_colours colours;
+} strut_colour_scale;
+STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
+                                       const strut_colour_scale *scale);
 
 #endif

@@ -111,4 +111,8 @@ STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const c
 STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_font font,
                                double *width, double *height);
 
+struct strut_file;
+/** The file that a picture is written to, for tests that make writing fail. */
+struct strut_file *strut_canvas_file(strut_canvas *canvas);
+
 #endif

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/curves.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, INSET = 4;
@@ -31,26 +32,37 @@ static bool has_markers(const strut_curves *c, size_t i) {
   return s->points || s->no_line || c->series_count > 1;
 }
 
-static void settle_axes(const strut_curves *c, strut_axis *x, strut_axis *y) {
-  *x = c->x;
-  *y = c->y;
-  bool fit_x = isnan(x->low) || isnan(x->high), fit_y = isnan(y->low) || isnan(y->high);
+/* Settles axes = {x, y, right}: ranges that are not given come from the series. */
+static void settle_axes(const strut_curves *c, strut_axis axes[3]) {
+  bool fit[3];
+  axes[0] = c->x;
+  axes[1] = c->y;
+  axes[2] = c->right ? *c->right : (strut_axis){0};
+  for (int a = 0; a < 3; a++) fit[a] = isnan(axes[a].low) || isnan(axes[a].high);
   for (size_t i = 0; i < c->series_count; i++) {
     const strut_series *s = &c->series[i];
+    int y = s->right ? 2 : 1;
+    assert(!s->right || c->right);
     for (size_t k = 0; k < s->count; k++) {
       if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
-      if (fit_x) strut_axis_include(x, s->x[k]);
-      if (fit_y) strut_axis_include(y, s->y[k]);
+      if (fit[0]) strut_axis_include(&axes[0], s->x[k]);
+      if (fit[y]) strut_axis_include(&axes[y], s->y[k]);
     }
   }
   bool dots = c->series_count && (c->series[0].no_line || c->series[0].points);
-  strut_axis_settle(x, fit_x && dots ? 0.03 : 0);
-  strut_axis_settle(y, fit_y ? 0.06 : 0);
+  strut_axis_settle(&axes[0], fit[0] && dots ? 0.03 : 0);
+  for (int a = 1; a < 3; a++) strut_axis_settle(&axes[a], fit[a] ? 0.06 : 0);
+}
+
+/* The axes that a series is drawn on. */
+static strut_axes axes_of(const plotter *p, const strut_series *s) {
+  return s->right ? strut_axes_right(&p->axes) : p->axes;
 }
 
 /* The series on the page; where it is broken a point that is not a number. */
 static bool place_series(plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
+  const strut_axes axes = axes_of(p, s);
   size_t used = 0, start = 0;
   double(*points)[2] = strut_allocate(2 * s->count + 2, sizeof *points);
   p->points[i] = points;
@@ -58,7 +70,7 @@ static bool place_series(plotter *p, size_t i) {
   for (size_t k = 0; k <= s->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
     if (k < s->count && isfinite(s->x[k]) && isfinite(s->y[k]))
-      strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+      strut_axes_point(&axes, s->x[k], s->y[k], at);
     if (isfinite(at[0]) && isfinite(at[1])) {
       if (s->steps && used > start) { /* the corner before it */
         points[used][0] = at[0];
@@ -78,9 +90,10 @@ static bool place_series(plotter *p, size_t i) {
 }
 
 static bool place(plotter *p, strut_box box) {
-  strut_axis x, y;
-  settle_axes(p->curves, &x, &y);
-  p->axes = strut_axes_place(p->canvas, box, x, y, p->curves->title);
+  strut_axis axes[3];
+  settle_axes(p->curves, axes);
+  p->axes = strut_axes_place(p->canvas, box, axes[0], axes[1], p->curves->right ? &axes[2] : NULL,
+                             p->curves->title);
   bool good = true;
   for (size_t i = 0; i < p->curves->series_count && good; i++) {
     strut_release(p->points[i]);
@@ -105,6 +118,7 @@ static void draw_bands(const plotter *p) {
 
 static void draw_markers(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
+  const strut_axes axes = axes_of(p, s);
   size_t look = look_of(p->curves, i);
   bool all = s->count <= FEW_POINTS || s->points || s->no_line;
   /* Few, and not where the other curves have theirs. */
@@ -113,7 +127,7 @@ static void draw_markers(const plotter *p, size_t i) {
   for (size_t k = first; k < s->count; k += every) {
     double at[2];
     if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
-    strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+    strut_axes_point(&axes, s->x[k], s->y[k], at);
     strut_draw_marker(p->canvas, look, at[0], at[1], s->count > 200 && all ? 1.0 : MARKER);
   }
 }

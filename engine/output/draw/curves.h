@@ -13,6 +13,7 @@ typedef struct strut_series {
   const double *x, *y; /* (count) SI; where y is not finite the line is broken */
   int look;            /* colour, dashes and marker: series of one look belong together; -1: own */
   bool points, steps, no_line; /* markers at the points; a staircase; no line between */
+  bool right;                  /* y belongs to the right axis */
 } strut_series;
 
 /** A grey area from x = low to high, with a word for the legend or NULL. */
@@ -25,6 +26,7 @@ typedef struct strut_band {
 typedef struct strut_curves {
   const char *title; /* may be NULL */
   strut_axis x, y;
+  const strut_axis *right; /* a second y axis for series of another unit; NULL: none */
   size_t series_count, band_count;
   const strut_series *series;
   const strut_band *bands;

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 
@@ -37,29 +37,38 @@ typedef struct mapper {
   const strut_map *map;
   strut_axes axes;
   double low, high; /* of the values */
+  strut_colours colours;
   strut_legend_entry *entries;
   size_t entry_count;
 } mapper;
 
+/* Noise of the other sign, in parts of the largest value, makes no signed quantity. */
+static const double ONE_SIGN = 1e-9;
+
+/* The range of the colour bar; of a signed quantity with zero in the middle. */
 static void find_range(mapper *m) {
   const strut_map *map = m->map;
-  if (map->value_high > map->value_low) {
-    m->low = map->value_low;
-    m->high = map->value_high;
-    return;
-  }
-  m->low = HUGE_VAL;
-  m->high = -HUGE_VAL;
-  for (size_t k = 0; map->value && k < map->columns * map->rows; k++) {
+  bool given = map->value_high > map->value_low;
+  m->low = given ? map->value_low : HUGE_VAL;
+  m->high = given ? map->value_high : -HUGE_VAL;
+  for (size_t k = 0; !given && map->value && k < map->columns * map->rows; k++) {
     if (!isfinite(map->value[k])) continue;
     m->low = fmin(m->low, map->value[k]);
     m->high = fmax(m->high, map->value[k]);
   }
-  if (!(m->high > m->low)) { /* one value, or none */
+  if (!(m->high > m->low) || strut_is_noise(&m->low, &m->high, map->value_unit)) {
+    /* one value, or none */
     double middle = isfinite(m->low) ? m->low : 0;
     m->low = middle - (middle != 0 ? 0.5 * fabs(middle) : 0.5);
     m->high = 2 * middle - m->low;
   }
+  bool signs = m->low < -ONE_SIGN * m->high && m->high > -ONE_SIGN * m->low;
+  m->colours = map->colours != STRUT_COLOURS_AUTO ? map->colours
+               : signs                            ? STRUT_COLOURS_DIVERGING
+                                                  : STRUT_COLOURS_SEQUENTIAL;
+  if (m->colours != STRUT_COLOURS_DIVERGING) return;
+  m->high = fmax(fabs(m->low), fabs(m->high));
+  m->low = -m->high;
 }
 
 static bool has_answer(const strut_map *map, size_t k) {
@@ -70,8 +79,7 @@ static strut_fill fill_of(const mapper *m, size_t k) {
   const strut_map *map = m->map;
   if (!has_answer(map, k)) return (strut_fill){.colour = strut_grey(1)};
   if (map->category) return category_fill((size_t)map->category[k]);
-  return (strut_fill){.colour =
-                          strut_palette_sequence((map->value[k] - m->low) / (m->high - m->low))};
+  return (strut_fill){.colour = strut_palette_at(m->colours, map->value[k], m->low, m->high)};
 }
 
 /* The cell's box; a little too large, so that no viewer shows seams: the next one covers that. */
@@ -139,10 +147,14 @@ static void settle_axes(const strut_map *map, strut_axis *x, strut_axis *y) {
   *x = map->x;
   *y = map->y;
   x->logarithmic = y->logarithmic = false; /* cells reach half way: a linear matter */
-  x->low = edge(map->xs, map->columns, 0);
-  x->high = edge(map->xs, map->columns, map->columns);
-  y->low = edge(map->ys, map->rows, 0);
-  y->high = edge(map->ys, map->rows, map->rows);
+  if (!(x->low < x->high)) {
+    x->low = edge(map->xs, map->columns, 0);
+    x->high = edge(map->xs, map->columns, map->columns);
+  }
+  if (!(y->low < y->high)) {
+    y->low = edge(map->ys, map->rows, 0);
+    y->high = edge(map->ys, map->rows, map->rows);
+  }
 }
 
 strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map *map) {
@@ -157,7 +169,7 @@ strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map
   double width = fmax(box.width - right, 60);
   if (m.entry_count) strut_legend_size(canvas, m.entries, m.entry_count, width - 40, legend);
   strut_box inner = {box.x, box.y + legend[1], width, box.height - legend[1]};
-  m.axes = strut_axes_place(canvas, inner, x, y, map->title);
+  m.axes = strut_axes_place(canvas, inner, x, y, NULL, map->title);
   strut_draw_axes(canvas, &m.axes, map->title);
   strut_canvas_clip(canvas, m.axes.frame);
   draw_cells(&m);
@@ -172,7 +184,7 @@ strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map
                                       .unit = map->value_unit ? map->value_unit : "",
                                       .low = m.low,
                                       .high = m.high,
-                                      .sequence = true};
+                                      .colours = m.colours};
     strut_draw_colour_scale(canvas,
                             (strut_box){box.x + width + GAP, m.axes.frame.y - 8, SCALE_WIDTH - GAP,
                                         fmax(m.axes.frame.height, 60)},

@@ -6,10 +6,11 @@
 #define STRUT_ENGINE_OUTPUT_DRAW_MAP_H
 
 #include "engine/output/draw/axes.h"
+#include "engine/output/draw/palette.h"
 
 typedef struct strut_map {
   const char *title; /* may be NULL */
-  strut_axis x, y;
+  strut_axis x, y;   /* linear; an empty range: all cells */
   size_t columns, rows;
   const double *xs, *ys; /* (columns), (rows) ascending; cells reach half way to the next */
   const int *category;   /* (rows, columns) index into names, -1: no answer; or NULL */
@@ -18,6 +19,7 @@ typedef struct strut_map {
   const double *value;          /* (rows, columns) where category is NULL; NAN: no answer */
   double value_low, value_high; /* of the scale of colours; equal: from the values */
   const char *value_name, *value_unit;
+  strut_colours colours;
   const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
   const char *doubt;    /* what the hatching means, for the legend */
 } strut_map;

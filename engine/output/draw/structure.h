@@ -75,14 +75,7 @@ STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window
                                 const double (*positions)[2], size_t count, double width);
 /** A rod of known length with its name, such as "20 mm", in a lower corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
-
-/** The scale of colours beside a drawing, from -limit to limit or 0 to limit, named and in its unit. */
-typedef struct strut_colour_scale {
-  const char *name, *unit;
-  double low, high; /* [unit]; ticks are chosen */
-  bool sequence;    /* strut_palette_sequence instead of strut_palette_signed */
-} strut_colour_scale;
-STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
-                                       const strut_colour_scale *scale);
+/** Distance of a point from the segment from a to b. */
+double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]);
 
 #endif

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 
 static const double MARKER = 2.4, STRIP = 18;
@@ -38,16 +38,19 @@ static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_a
   *cost = w->cost;
   *error = w->error;
   cost->logarithmic = error->logarithmic = true;
-  cost->low = cost->high = error->low = error->high = (double)NAN;
+  bool fit_cost = !(cost->low < cost->high), fit_error = !(error->low < error->high);
+  if (fit_cost) cost->low = cost->high = (double)NAN;
+  if (fit_error) error->low = error->high = (double)NAN;
   for (size_t i = 0; i < w->count; i++) {
     const strut_saving *b = &w->bargains[i];
-    strut_axis_include(cost, b->cost);
+    if (fit_cost) strut_axis_include(cost, b->cost);
+    if (!fit_error) continue;
     strut_axis_include(error, b->error);
     strut_axis_include(error, b->low);
     strut_axis_include(error, b->high);
   }
-  strut_axis_settle(cost, 0.06);
-  strut_axis_settle(error, 0.08);
+  strut_axis_settle(cost, fit_cost ? 0.06 : 0);
+  strut_axis_settle(error, fit_error ? 0.08 : 0);
 }
 
 static void place(const diagram *d, const strut_saving *b, double at[2]) {
@@ -202,7 +205,7 @@ static void draw(diagram *d, strut_box box) {
   for (size_t i = 0; i < w->count; i++) some_diverged = some_diverged || diverged(&w->bargains[i]);
   double top = legend[1] + (some_diverged ? STRIP : 0);
   const strut_box below = {box.x, box.y + top, box.width, box.height - top};
-  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL);
+  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL, NULL);
   d->strip = d->axes.frame;
   d->strip.height = some_diverged ? STRIP : 0;
   d->strip.y -= d->strip.height;

@@ -17,7 +17,7 @@ typedef struct strut_saving {
 
 typedef struct strut_work_precision {
   const char *title;
-  strut_axis cost, error; /* logarithmic whatever they say */
+  strut_axis cost, error; /* made logarithmic; an empty range: from the data */
   size_t group_count, count;
   const char *const *groups;    /* (group_count) */
   const strut_saving *bargains; /* (count) */

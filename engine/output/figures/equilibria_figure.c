@@ -1,13 +1,147 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/equilibria_figure.h"
-
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
-#include "engine/output/figures/equilibria_parts.h"
+#include "engine/output/draw/structure.h"
+#include "engine/output/figures/statics_figures.h"
+
+static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
+
+/* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
+static const double *drawn_shape(const strut_equilibria *all, size_t i) {
+  const strut_equilibrium *e = &all->list[i];
+  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
+}
+
+/* Its energy there [J]. */
+static double drawn_energy(const strut_equilibria *all, size_t i) {
+  const strut_equilibrium *e = &all->list[i];
+  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
+}
+
+/* States as levels of energy, and what it takes from one to the other. */
+
+enum { ARC = 40, FEW = 4 };
+
+static const double LEVEL = 0.3; /* half the width of a level, in places */
+
+static int place_of(const size_t *chosen, size_t count, int32_t state) {
+  for (size_t k = 0; k < count; k++)
+    if ((int32_t)chosen[k] == state) return (int)k;
+  return -1;
+}
+
+/* The barrier's two ends among the chosen; false where it is of others. */
+static bool ends_of(const strut_barrier *b, const size_t *chosen, size_t count, int ends[2]) {
+  ends[0] = place_of(chosen, count, b->from);
+  ends[1] = place_of(chosen, count, b->to);
+  return ends[0] >= 0 && ends[1] >= 0 && ends[0] != ends[1];
+}
+
+/* What leads straight there where it is known, else the lowest way of all. */
+static double barrier_height(const strut_barrier *b) {
+  return isfinite(b->direct) ? b->direct : b->height;
+}
+
+static bool has_barriers(const strut_equilibria *all, const size_t *chosen, size_t count) {
+  int ends[2];
+  for (size_t i = 0; i < all->barrier_count; i++)
+    if (ends_of(&all->barriers[i], chosen, count, ends)) return true;
+  return false;
+}
+
+/* A smooth way from one level over the pass to the other. */
+static void draw_barrier(strut_canvas *canvas, const strut_axes *axes, const int ends[2],
+                         const double energy[2], double top) {
+  double points[ARC + 1][2];
+  bool neighbours = abs(ends[0] - ends[1]) == 1;
+  const strut_pen pen = {.colour = strut_grey(neighbours ? 0.35 : 0.65),
+                         .width = neighbours ? 0.9 : 0.6,
+                         .dash = {neighbours ? 0 : 2.5, 2}};
+  double side = ends[1] > ends[0] ? LEVEL : -LEVEL;
+  for (int i = 0; i <= ARC; i++) {
+    double t = (double)i / ARC, low = t < 0.5 ? energy[0] : energy[1];
+    double rise = 0.5 - 0.5 * cos(4 * acos(0) * t); /* 0, 1, 0 */
+    strut_axes_point(axes, ends[0] + side + t * (ends[1] - ends[0] - 2 * side),
+                     low + rise * (top - low), points[i]);
+  }
+  strut_draw_line(canvas, (const double(*)[2])points, ARC + 1, pen);
+}
+
+static void draw_barriers(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
+                          const size_t *chosen, size_t count, double zero) {
+  for (size_t i = 0; i < all->barrier_count; i++) {
+    const strut_barrier *b = &all->barriers[i];
+    int ends[2];
+    if (!ends_of(b, chosen, count, ends)) continue;
+    const double energy[2] = {drawn_energy(all, (size_t)b->from) - zero,
+                              drawn_energy(all, (size_t)b->to) - zero};
+    double top = energy[0] + barrier_height(b), at[2];
+    /* Among many only the ways between neighbours can be told apart. */
+    bool told = abs(ends[0] - ends[1]) == 1 || count <= FEW;
+    if (ends[0] < ends[1] && told) draw_barrier(canvas, axes, ends, energy, top);
+    if (abs(ends[0] - ends[1]) != 1) continue;
+    /* What it takes, beside the slope that it is taken on. */
+    char text[80];
+    bool right = ends[1] > ends[0];
+    snprintf(text, sizeof text, right ? "%s \xe2\x86\x92" : "\xe2\x86\x90 %s",
+             strut_drawn_quantity(barrier_height(b), 3, "J").text);
+    strut_axes_point(axes, 0.5 * (ends[0] + ends[1]), top, at);
+    strut_draw_text(canvas, at[0], at[1] - (right ? 2 : 11), text,
+                    (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
+  }
+}
+
+static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
+                        const size_t *chosen, size_t count, double zero) {
+  /* Many names stand in two lines in turn, each with the room of two. */
+  int lines = count <= FEW ? 1 : 2;
+  double room = lines * axes->frame.width / (double)count - 2;
+  for (size_t k = 0; k < count; k++) {
+    double left[2], right[2], energy = drawn_energy(all, chosen[k]) - zero;
+    char fitted[STRUT_FITTED_TEXT];
+    strut_font font = {
+        .size = count <= FEW ? 8 : 7, .bold = count <= FEW, .across = 0.5, .halo = strut_grey(1)};
+    strut_axes_point(axes, (double)k - LEVEL, energy, left);
+    strut_axes_point(axes, (double)k + LEVEL, energy, right);
+    strut_draw_segment(canvas, left[0], left[1], right[0], right[1],
+                       (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true});
+    strut_draw_text(canvas, 0.5 * (left[0] + right[0]), left[1] + 3 + (double)((int)k % lines) * 8,
+                    strut_text_fit(canvas, all->list[chosen[k]].name, font, room, 0, fitted), font);
+  }
+}
+
+static strut_status draw_ladder(strut_canvas *canvas, strut_box box, const strut_equilibria *all,
+                                const size_t *chosen, size_t count) {
+  strut_axis x = {.name = "", .unit = "", .low = -0.5, .high = (double)count - 0.5};
+  if (count > FEW) { /* names reach beyond their levels */
+    x.low -= 0.3;
+    x.high += 0.3;
+  }
+  const double any = (double)NAN;
+  strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = any, .high = any};
+  double zero = HUGE_VAL;
+  int ends[2];
+  for (size_t k = 0; k < count; k++) zero = fmin(zero, drawn_energy(all, chosen[k]));
+  for (size_t k = 0; k < count; k++) strut_axis_include(&y, drawn_energy(all, chosen[k]) - zero);
+  for (size_t i = 0; i < all->barrier_count; i++)
+    if (ends_of(&all->barriers[i], chosen, count, ends))
+      strut_axis_include(&y, drawn_energy(all, (size_t)all->barriers[i].from) - zero +
+                                 barrier_height(&all->barriers[i]));
+  strut_axis_settle(&y, 0.2);
+  strut_axes axes = strut_axes_place(canvas, box, x, y, NULL, NULL);
+  axes.frame.height = box.y + box.height - axes.frame.y - 4; /* places have no numbers */
+  strut_draw_vertical_axis(canvas, &axes);
+  strut_canvas_clip(canvas, axes.frame);
+  draw_barriers(canvas, &axes, all, chosen, count, zero);
+  draw_levels(canvas, &axes, all, chosen, count, zero);
+  strut_canvas_unclip(canvas);
+  return STRUT_OK;
+}
 
 static const double ARROW = 20; /* the longest force of the ground [pt] */
 static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110, SCALE = 34,
@@ -26,18 +160,6 @@ typedef struct plan {
   strut_arena arena;
 } plan;
 
-static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
-
-const double *strut_drawn_shape(const strut_equilibria *all, size_t i) {
-  const strut_equilibrium *e = &all->list[i];
-  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
-}
-
-double strut_drawn_energy(const strut_equilibria *all, size_t i) {
-  const strut_equilibrium *e = &all->list[i];
-  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
-}
-
 /* What rounding leaves of no energy at all is written as none. */
 static double told_energy(const plan *p, double energy) {
   return fabs(energy) > 1e-12 * p->largest_energy ? energy : 0;
@@ -47,7 +169,7 @@ static double told_energy(const plan *p, double energy) {
 static void by_energy(const strut_equilibria *all, size_t *index, size_t count) {
   for (size_t i = 1; i < count; i++) {
     size_t moved = index[i], k = i;
-    for (; k > 0 && strut_drawn_energy(all, index[k - 1]) > strut_drawn_energy(all, moved); k--)
+    for (; k > 0 && drawn_energy(all, index[k - 1]) > drawn_energy(all, moved); k--)
       index[k] = index[k - 1];
     index[k] = moved;
   }
@@ -78,7 +200,7 @@ static bool choose(plan *p) {
 
 static strut_bounds bounds_of(const plan *p, size_t i) {
   strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, p->model, strut_drawn_shape(p->all, i));
+  strut_bounds_add(&b, p->model, drawn_shape(p->all, i));
   return b;
 }
 
@@ -112,7 +234,7 @@ static void lay_out(plan *p) {
   p->cell[1] = LINES + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
   p->small_cell[0] = inner / (double)p->small_columns;
   p->small_cell[1] = 26 + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
-  p->ladder = p->cards > 1 && strut_ladder_wanted(p->all, p->standing, p->cards);
+  p->ladder = p->cards > 1 && has_barriers(p->all, p->standing, p->cards);
 }
 
 static double height_of(const plan *p) {
@@ -176,17 +298,16 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
-           strut_drawn_quantity(told_energy(p, strut_drawn_energy(p->all, i)), 6, "J").text,
-           e->verdict);
+           strut_drawn_quantity(told_energy(p, drawn_energy(p->all, i)), 6, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 4, cell.y + 11,
                   strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
-  strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
-  strut_draw_contact_forces(canvas, &window, p->model, strut_drawn_shape(p->all, i),
+  strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
+  strut_draw_contact_forces(canvas, &window, p->model, drawn_shape(p->all, i),
                             (const double(*)[2])force, p->contact_limit, ARROW);
-  bool good = cell.width <= 105 || draw_names(p, canvas, &window, strut_drawn_shape(p->all, i),
-                                              (const double(*)[2])force);
+  bool good = cell.width <= 105 ||
+              draw_names(p, canvas, &window, drawn_shape(p->all, i), (const double(*)[2])force);
   strut_canvas_unclip(canvas);
   return good;
 }
@@ -201,7 +322,7 @@ static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) 
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.45), .thinness = 0.4, .no_nodes = true};
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
-  strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
+  strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
   snprintf(text, sizeof text, "%s: %s",
            strut_drawn_quantity(told_energy(p, e->energy), 5, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
@@ -222,8 +343,11 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
-  const strut_colour_scale scale = {
-      .name = "force", .unit = "N", .low = -p->force_limit, .high = p->force_limit};
+  const strut_colour_scale scale = {.name = "force",
+                                    .unit = "N",
+                                    .low = -p->force_limit,
+                                    .high = p->force_limit,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (p->force_limit > 0)
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
   return y + SCALE;
@@ -246,8 +370,8 @@ static strut_status draw(plan *p, strut_canvas *canvas) {
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
     double wide = fmin(inner, 90.0 + 120.0 * (double)p->cards);
-    strut_status status = strut_draw_ladder(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8},
-                                            p->all, p->standing, p->cards);
+    strut_status status = draw_ladder(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8}, p->all,
+                                      p->standing, p->cards);
     if (status != STRUT_OK) return status;
     y += LADDER;
   }

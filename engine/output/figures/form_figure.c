@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/form_figure.h"
+#include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -72,7 +72,8 @@ static void draw(strut_canvas *canvas, const strut_model *model, const double *b
   strut_draw_structure(canvas, &window, model, model->start, &full);
   if (narrow) window.box.height += 14;
   strut_draw_yardstick(canvas, &window);
-  const strut_colour_scale scale = {.name = "force", .unit = "N", .low = -limit, .high = limit};
+  const strut_colour_scale scale = {
+      .name = "force", .unit = "N", .low = -limit, .high = limit, .colours = STRUT_COLOURS_SIGNED};
   const strut_box beside = {EDGE + inner - SCALE + 6, box.y + 4, SCALE - 6,
                             fmin(box.height - 8, 130)};
   const strut_box below = {EDGE, box.y + box.height + FOOT - 34, inner, 34};

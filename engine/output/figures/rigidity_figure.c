@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/rigidity_figure.h"
+#include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -195,8 +195,11 @@ static void draw(const plan *p, strut_canvas *canvas, const char *at) {
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
-  const strut_colour_scale scale = {
-      .name = "force, of the largest", .unit = "", .low = -1, .high = 1};
+  const strut_colour_scale scale = {.name = "force, of the largest",
+                                    .unit = "",
+                                    .low = -1,
+                                    .high = 1,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (p->forces + p->states > 0)
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
 }

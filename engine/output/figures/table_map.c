@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,6 @@
 #include "engine/output/draw/map.h"
 #include "engine/output/draw/work_precision.h"
 #include "engine/output/figures/table_parts.h"
-#include "engine/output/figures/table_select.h"
 
 static const double PANEL_WIDTH = 200, ASPECT = 0.8;
 enum { MOST_CELLS = 4000000 };
@@ -106,8 +105,8 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
   strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
   const strut_map map = {
       .title = title[0] ? title : NULL,
-      .x = {x->name, x->unit, false, (double)NAN, (double)NAN},
-      .y = {y->name, y->unit, false, (double)NAN, (double)NAN},
+      .x = strut_table_axis_of(&f->x_axis, x->name, x->unit, false),
+      .y = strut_table_axis_of(&f->y_axis, y->name, y->unit, false),
       .columns = m->columns,
       .rows = m->rows,
       .xs = m->xs,
@@ -120,6 +119,7 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
       .value_high = m->high,
       .value_name = value->name,
       .value_unit = value->unit,
+      .colours = f->colours,
       .doubtful = f->doubt == STRUT_NO_COLUMN ? NULL : c.doubtful,
       .doubt = f->doubt == STRUT_NO_COLUMN ? NULL : m->table->columns[f->doubt].name};
   return strut_draw_map(canvas, box, &map);
@@ -194,6 +194,9 @@ strut_status strut_table_map(const char *path, const strut_table_map_figure *fig
   if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
       !table->columns[figure->value].value)
     drawn.doubt = (int)chosen.table->column_count - 1;
+  if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
+      drawn.colours == STRUT_COLOURS_AUTO)
+    drawn.colours = STRUT_COLOURS_DIVERGING;
   if (status == STRUT_OK) status = draw_table(path, &drawn, chosen.table, error);
   strut_table_chosen_free(&chosen);
   return status;
@@ -213,12 +216,14 @@ static strut_status draw_bargains(void *context, strut_canvas *canvas, strut_box
   const strut_table_column *x = &t->table->columns[t->figure->x];
   const strut_table_column *y = &t->table->columns[t->figure->y];
   (void)panel; /* there is one */
-  const strut_work_precision diagram = {.cost = {x->name, x->unit, true, (double)NAN, (double)NAN},
-                                        .error = {y->name, y->unit, true, (double)NAN, (double)NAN},
-                                        .group_count = t->methods.count,
-                                        .groups = t->methods.name,
-                                        .count = t->count,
-                                        .bargains = t->bargains};
+  const strut_table_savings_figure *f = t->figure;
+  const strut_work_precision diagram = {
+      .cost = strut_table_axis_of(&f->x_axis, x->name, x->unit, true),
+      .error = strut_table_axis_of(&f->y_axis, y->name, y->unit, true),
+      .group_count = t->methods.count,
+      .groups = t->methods.name,
+      .count = t->count,
+      .bargains = t->bargains};
   return strut_draw_work_precision(canvas, box, &diagram);
 }
 

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/table_select.h"
+#include "engine/output/figures/table_parts.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "engine/output/figures/table_parts.h"
 
 static strut_status no_memory(strut_error *error) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");

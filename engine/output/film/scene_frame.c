@@ -166,8 +166,11 @@ static void draw_words(const strut_view_frame *s, strut_canvas *canvas,
 
 static void draw_scale(const strut_view_frame *s, strut_canvas *canvas) {
   strut_box page = strut_canvas_box(canvas);
-  const strut_colour_scale scale = {
-      .name = "force", .unit = "N", .low = -s->most_force, .high = s->most_force};
+  const strut_colour_scale scale = {.name = "force",
+                                    .unit = "N",
+                                    .low = -s->most_force,
+                                    .high = s->most_force,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (!(s->most_force > 0)) return;
   strut_draw_colour_scale(canvas, (strut_box){page.width - 190, page.height - 39, 180, 30}, &scale);
 }

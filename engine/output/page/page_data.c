@@ -1,14 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page's data: one JSON object, safe inside <script>. */
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/page/page_parts.h"
+#include "engine/output/quantity_text.h"
 #include "engine/output/summary_rows.h"
 
 struct cJSON;
 
 static const size_t MOST_BYTES = 4000000, MOST_YAML = 600000;
+
+static void add_row(strut_json *json, struct cJSON *rows, const char *label, const char *value) {
+  struct cJSON *row = strut_json_object(json, rows, NULL);
+  strut_json_text(json, row, "label", label);
+  strut_json_text(json, row, "value", value);
+}
 
 static void add_nodes(strut_json *json, const strut_scene *scene) {
   struct cJSON *nodes = strut_json_array(json, json->root, "nodes");
@@ -47,6 +55,24 @@ static void add_ground(strut_json *json, const strut_scene *scene) {
   strut_json_number(json, ground, "belt_speed", scene->ground.belt_speed);
 }
 
+/* Parameters as they were used, with the method and step of a run. */
+static void add_parameters(strut_json *json, const strut_scene *scene, bool run) {
+  const strut_experiment *experiment = &scene->experiment;
+  struct cJSON *rows = strut_json_array(json, json->root, "parameters");
+  for (size_t i = 0; i < scene->parameter_count; i++)
+    add_row(json, rows, scene->parameters[i].name, scene->parameters[i].text);
+  if (!run) return;
+  if (experiment->accuracy > 0) { /* chooses both */
+    char text[32];
+    snprintf(text, sizeof text, "%g", experiment->accuracy);
+    add_row(json, rows, "accuracy", text);
+    return;
+  }
+  add_row(json, rows, "integration method", experiment->integrator);
+  if (experiment->step > 0)
+    add_row(json, rows, "integration step", strut_quantity_of(experiment->step, 4, "s").text);
+}
+
 /* The scene's text; of a very long one its beginning, up to the end of a line. */
 static bool add_yaml(strut_json *json, const char *yaml) {
   size_t length = strlen(yaml), kept = length;
@@ -79,6 +105,7 @@ static char *still_data(const strut_page *page) {
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);
   if (!strut_page_add_equilibria(&json, page)) json.failed = true;
+  add_parameters(&json, scene, page->motion != NULL);
   struct cJSON *rows = strut_json_array(&json, json.root, "summary");
   strut_summary_rows(&json, rows, page->summary, scene);
   if (!add_yaml(&json, page->yaml)) json.failed = true;

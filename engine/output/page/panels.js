@@ -2,9 +2,9 @@
 /* Words around the drawings: summary, sampling, the scene's text. */
 "use strict";
 (function (page) {
-  function fillSummary(data) {
-    const body = document.querySelector("#summary tbody");
-    for (const row of data.summary || []) {
+  function fillTable(id, rows) {
+    const body = document.querySelector("#" + id + " tbody");
+    for (const row of rows || []) {
       const line = document.createElement("tr");
       for (const text of [row.label, row.value]) {
         const cell = document.createElement("td");
@@ -14,7 +14,7 @@
       }
       body.append(line);
     }
-    document.getElementById("summary-section").hidden = !(data.summary || []).length;
+    document.getElementById(id + "-section").hidden = !(rows || []).length;
   }
 
   function ordinal(n) {
@@ -42,7 +42,8 @@
     document.getElementById("name").textContent = data.name || "Unnamed";
     document.getElementById("source").textContent =
       [data.description, data.source].filter(Boolean).join(" \u2014 ");
-    fillSummary(data);
+    fillTable("parameters", data.parameters);
+    fillTable("summary", data.summary);
     document.getElementById("sampling").textContent = samplingText(data);
     document.getElementById("yaml").textContent = data.yaml || "";
     document.getElementById("scene").hidden = !data.yaml;
