@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_check.h"
+#include "parser/cli/commands.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +19,7 @@
 #include "parser/cli/streams.h"
 #include "parser/cli/terminal.h"
 
-enum { MOST_MEMBERS = 40, MOST_BANDS = 10, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
+enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
@@ -89,25 +89,29 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
   }
 }
 
-/* Stick bands that a step passes over. */
+/* Warns of stick bands that a step passes over, in one line for all nodes. */
 static void print_bands(const strut_model *model) {
   const strut_scene *scene = model->scene;
   const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
-  int32_t narrow = 0;
+  double needed = 0.0;
+  int32_t first = -1, more = -1;
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
-    const strut_contact_entry *e = &model->contacts.entry[i];
-    double needed = strut_stick_band_needed(model, method, i, scene->experiment.step);
-    if (!(needed * (1.0 - 1e-6) > e->stick_velocity) || ++narrow > MOST_BANDS) continue;
-    fprintf(stderr,
-            "strut: warning: stick_velocity %s of node '%s' is narrower than what a step of %s "
-            "changes its slip by, so that it sticks by luck; use stick_velocity >= %s, a smaller "
-            "step, or a method with events\n",
-            in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name,
-            in(scene->experiment.step, "s").text, in(needed, "m/s").text);
+    double here = strut_stick_band_needed(model, method, i, scene->experiment.step);
+    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].stick_velocity)) continue;
+    if (first < 0) first = i;
+    if (here > needed) needed = here;
+    more++;
   }
-  if (narrow > MOST_BANDS)
-    fprintf(stderr, "strut: warning: ... and %d more nodes whose stick_velocity is too narrow\n",
-            (int)(narrow - MOST_BANDS));
+  if (first < 0) return;
+  const strut_contact_entry *e = &model->contacts.entry[first];
+  char others[40] = "";
+  if (more > 0) snprintf(others, sizeof others, " and %d more", (int)more);
+  fprintf(stderr,
+          "strut: warning: stick_velocity %s of node '%s'%s is narrower than the change of slip in "
+          "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
+          "smaller step, or a method with events\n",
+          in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
+          in(scene->experiment.step, "s").text, in(needed, "m/s").text);
 }
 
 static void print_terms(const strut_plan *plan, bool wanted, const char *title) {
@@ -243,11 +247,7 @@ static strut_status print_json(const strut_plan *plan, const strut_scene *scene)
   add_terms(&json, plan);
   add_members(&json, scene);
   if (!add_warnings(&json, scene)) json.failed = true;
-  char *text = strut_json_end(&json);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
+  return strut_print_block(strut_json_end(&json));
 }
 
 /* Is there a run by the method that is given? Else it is for statics, or accuracy chooses. */
@@ -281,7 +281,7 @@ static strut_status run(const strut_arguments *arguments) {
     strut_print_error(&error);
   } else if (arguments->json) {
     status = print_json(&plan, &scene);
-  } else {
+  } else if (!arguments->quiet) {
     status = print_plan(&plan, model);
   }
   strut_model_free(model);

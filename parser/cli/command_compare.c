@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_compare.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE",
-     "give a parameter another value in every model that has it; may be repeated"},
+     "change a parameter: of every model that has it, or behind a MODEL of that one only"},
     {STRUT_OPTION_ACCURACY, "accuracy", "X", "of velocities, such as 1%; 0.5% if not given"},
     {STRUT_OPTION_NO_MOTION, "no-motion", NULL, "leave out runs"},
     {STRUT_OPTION_NO_STATES, "no-states", NULL, "leave out the search for stable states"},
@@ -30,7 +30,6 @@ static const strut_option options[] = {
      "write compare.csv, .json and .svg, and model-1.svg and so on, into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     {STRUT_OPTION_CSV, "csv", NULL, "print CSV, a row for each model"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -61,22 +60,16 @@ static strut_status draw(const char *stage, const char *name, double width,
   return strut_compare_figure(path, width, result, first, count, error);
 }
 
-static strut_status write_text(const char *stage, const char *name, char *text,
-                               strut_error *error) {
-  strut_status status = text ? strut_file_write_text(stage, name, text, error)
-                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_release(text);
-  return status;
-}
-
 /* All of them, or none. */
 static strut_status write_files(strut_results *files, const file_names *names,
                                 const strut_compare *result) {
   strut_error error = {0};
   if (!files->stage) return STRUT_OK;
-  strut_status status = write_text(files->stage, "compare.csv", strut_compare_csv(result), &error);
+  strut_status status =
+      strut_file_write_block(files->stage, "compare.csv", strut_compare_csv(result), &error);
   if (status == STRUT_OK)
-    status = write_text(files->stage, "compare.json", strut_compare_json(result), &error);
+    status =
+        strut_file_write_block(files->stage, "compare.json", strut_compare_json(result), &error);
   if (status == STRUT_OK)
     status = draw(files->stage, "compare.svg", PAGE, result, 0, result->count, &error);
   for (size_t i = 0; i < result->count && status == STRUT_OK; i++)
@@ -92,14 +85,11 @@ static strut_status show(const strut_arguments *arguments, const strut_compare *
                : arguments->csv ? strut_compare_csv(result)
                                 : strut_compare_table(
                                       result, strut_terminal_columns(STDOUT_FILENO, USUAL_COLUMNS));
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
+  return strut_print_block(text);
 }
 
-/* What could not be computed is told once more where nobody overlooks it. */
-static strut_status complain_of_columns(const strut_compare *result) {
+/* Repeats on stderr what could not be computed. */
+static strut_status report_failures(const strut_compare *result) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < result->count; i++) {
     const strut_compare_column *c = &result->columns[i];
@@ -139,7 +129,7 @@ static strut_status compare(const strut_arguments *arguments, const strut_plot *
       status = strut_compare_figure(plot->path, plot->width, &result, 0, result.count, &error);
       if (status != STRUT_OK) strut_print_error(&error);
     }
-    if (status == STRUT_OK) status = complain_of_columns(&result);
+    if (status == STRUT_OK) status = report_failures(&result);
   }
   strut_compare_free(&result);
   strut_results_abandon(&files); /* nothing where they are complete */
@@ -195,7 +185,8 @@ const strut_command strut_command_compare = {
         "of\n"
         "the steady motion, with what a simulated second costs.\n"
         "Then how the effective scenes differ from the first: + added, - removed, ~ changed.\n"
-        "What a model does not have is '-', empty in CSV, and null with a reason in JSON.\n",
+        "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"
+        "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n",
     .options = options,
     .run = run,
     .timed = true,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_form.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,6 @@ static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print what it holds"},
     {STRUT_OPTION_JSON, "json", NULL, "print what the form holds as one JSON object instead"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "with -o, print nothing"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };

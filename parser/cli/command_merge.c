@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_merge.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <sys/resource.h>
 
 #include "engine/study/results/merge.h"
 #include "parser/cli/streams.h"
-
-static const strut_option options[] = {
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print nothing if all is well"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
-};
 
 /* All shards are open at a time, and there may be more of them than is usual. */
 static void allow_many_files(void) {
@@ -50,6 +45,5 @@ const strut_command strut_command_merge = {
         "of the same study, model and version of strut; DIR/table.csv is then the same, byte for\n"
         "byte, as that of the study in one piece. What is missing is said otherwise.\n"
         "\nExit code: 3 where points of the study failed, 4 where shards or points are missing.\n",
-    .options = options,
     .run = run,
 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_modes.h"
+#include "parser/cli/commands.h"
 
-#include "engine/base/memory.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/modes_report.h"
@@ -25,47 +24,28 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-/* Writes a text as a file and releases it. */
-static strut_status write_file(const char *directory, const char *name, char *text,
-                               strut_error *error) {
-  strut_status status = text ? strut_file_write_text(directory, name, text, error)
-                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_release(text);
-  return status;
-}
-
 static strut_status write_files(const char *directory, const strut_model *model,
                                 const strut_modes *modes, strut_error *error) {
   strut_status status = strut_directory_create(directory, error);
   if (status == STRUT_OK)
-    status = write_file(directory, "modes.json", strut_modes_json(model, modes), error);
+    status = strut_file_write_block(directory, "modes.json", strut_modes_json(model, modes), error);
   if (status == STRUT_OK)
-    status = write_file(directory, "modes.csv", strut_modes_csv(modes), error);
+    status = strut_file_write_block(directory, "modes.csv", strut_modes_csv(modes), error);
   return status;
 }
 
-static strut_status show(const strut_arguments *arguments, const strut_model *model,
-                         const strut_modes *modes) {
-  char *text = arguments->json ? strut_modes_json(model, modes) : strut_modes_table(model, modes);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
-}
-
-/* `panels` is what --count says, or 0. */
+/* `panels`: the value of --count, or 0 without it. */
 static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
                            const strut_model *model, const strut_modes *modes, size_t panels) {
   strut_error error = {0};
-  if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK) {
-    strut_print_error(&error);
-    return error.status;
-  }
-  strut_status status = show(arguments, model, modes);
+  if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK)
+    return strut_print_failure(error.status, &error);
+  strut_status status =
+      strut_print_report(arguments, arguments->json ? strut_modes_json(model, modes)
+                                                    : strut_modes_table(model, modes));
   if (status != STRUT_OK || !plot->path) return status;
   status = strut_modes_figure(plot->path, plot->width, model, modes, panels, &error);
-  if (status != STRUT_OK) strut_print_error(&error);
-  return status;
+  return strut_print_failure(status, &error);
 }
 
 static strut_status run(const strut_arguments *arguments) {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_path.h"
+#include "parser/cli/commands.h"
 
-#include "engine/base/memory.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/path_report.h"
@@ -32,38 +31,28 @@ static const strut_option options[] = {
 
 static strut_status write_files(const char *directory, const strut_path *path,
                                 const strut_scene *scene, strut_error *error) {
-  char *json = strut_path_json(path, scene), *csv = strut_path_csv(path, scene);
-  strut_status status = json && csv ? strut_directory_create(directory, error)
-                                    : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (status == STRUT_OK) status = strut_file_write_text(directory, "path.json", json, error);
-  if (status == STRUT_OK) status = strut_file_write_text(directory, "path.csv", csv, error);
-  strut_release(json);
-  strut_release(csv);
+  strut_status status = strut_directory_create(directory, error);
+  if (status == STRUT_OK)
+    status = strut_file_write_block(directory, "path.json", strut_path_json(path, scene), error);
+  if (status == STRUT_OK)
+    status = strut_file_write_block(directory, "path.csv", strut_path_csv(path, scene), error);
   return status;
 }
 
-static strut_status show(const strut_arguments *arguments, const strut_path *path,
-                         const strut_scene *scene) {
-  char *text = arguments->json ? strut_path_json(path, scene) : strut_path_table(path, scene);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
-}
-
-/* Everything that was asked for; a sentence on stderr where that cannot be had. */
+/* Writes, prints and draws the path; reports what fails on stderr. */
 static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
                            const strut_model *model, const strut_path *path) {
   strut_error error = {0};
   strut_status status = STRUT_OK;
   if (arguments->output) status = write_files(arguments->output, path, model->scene, &error);
   if (status == STRUT_OK) {
-    status = show(arguments, path, model->scene);
+    char *text = arguments->json ? strut_path_json(path, model->scene)
+                                 : strut_path_table(path, model->scene);
+    status = strut_print_report(arguments, text);
     if (status != STRUT_OK || !plot->path) return status;
     status = strut_path_figure(plot->path, plot->width, model, path, &error);
   }
-  if (status != STRUT_OK) strut_print_error(&error);
-  return status;
+  return strut_print_failure(status, &error);
 }
 
 static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,

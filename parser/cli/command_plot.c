@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_plot.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_run.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 
@@ -24,7 +24,6 @@ static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write summary, scene and trajectories into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
     {STRUT_OPTION_FORCE, "force", NULL, "run even where the step is above the stability limit"},
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
@@ -65,10 +64,8 @@ static strut_status complete_results(kept *keep, const strut_summary *summary,
                                      const strut_scene *scene, strut_error *error) {
   if (!keep->results.stage) return STRUT_OK;
   const char *stage = keep->results.stage;
-  char *json = strut_summary_json(summary, scene, false);
-  if (!json) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_status status = strut_file_write_text(stage, "summary.json", json, error);
-  strut_release(json);
+  strut_status status = strut_file_write_block(stage, "summary.json",
+                                               strut_summary_json(summary, scene, false), error);
   if (status == STRUT_OK) {
     status = strut_file_write_text(stage, "scene.yaml", keep->scene_text, error);
   }
@@ -112,12 +109,8 @@ static strut_status simulate(const strut_model *model, const strut_arguments *ar
 static strut_status print_summary(const strut_arguments *arguments, const strut_summary *summary,
                                   const strut_scene *scene) {
   if (arguments->quiet && !arguments->json) return STRUT_OK;
-  char *text = arguments->json ? strut_summary_json(summary, scene, true)
-                               : strut_summary_table(summary, scene);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
+  return strut_print_block(arguments->json ? strut_summary_json(summary, scene, true)
+                                           : strut_summary_table(summary, scene));
 }
 
 /* A result that is there, but is not what the scene meant. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_sweep.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +36,6 @@ static const strut_option options[] = {
      "only tell how many points and which columns there are"},
     {STRUT_OPTION_STATUS, "status", NULL, "only tell what is done, missing and failed in DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print nothing and show no progress"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -112,6 +111,7 @@ static strut_status run_points(const strut_arguments *arguments, strut_sweep_stu
   strut_status status = strut_sweep_texts_write(arguments, study, error);
   if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
   strut_sweep_progress_end(&progress);
+  strut_sweep_print_warnings(state);
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
@@ -180,17 +180,17 @@ static strut_status run(const strut_arguments *arguments) {
     status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_LANES, 1,
                                   MOST_LANES, &at_a_time.lanes);
   if (status) return status;
-  if (arguments->retry &&
-      (arguments->tally || arguments->status || strut_option_text(arguments, STRUT_OPTION_EMIT))) {
+  if (arguments->retry && (arguments->count_points || arguments->status ||
+                           strut_option_text(arguments, STRUT_OPTION_EMIT))) {
     fputs("strut sweep: --retry is for computing, not for --count, --status or --emit\n", stderr);
     return STRUT_USAGE;
   }
-  if (!arguments->output && !arguments->tally) {
+  if (!arguments->output && !arguments->count_points) {
     fputs("strut sweep: -o DIR is missing, where the results go\n", stderr);
     return STRUT_USAGE;
   }
   status = strut_sweep_study_open(arguments, &study);
-  if (!status && arguments->tally)
+  if (!status && arguments->count_points)
     status = strut_sweep_print_count(&study.plan, arguments->json);
   else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
     status = strut_sweep_emit(arguments, study.plan.study->name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_tradeoff.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -35,7 +35,6 @@ static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -115,7 +114,7 @@ static strut_status read_options(const strut_arguments *arguments, wishes *w) {
   strut_status status = read_numbers(arguments, w);
   if (status == STRUT_OK) status = read_methods(arguments, w);
   if (status != STRUT_OK) return status;
-  w->study.own_model = arguments->own;
+  w->study.own_model = arguments->own_model;
   if (arguments->varied_count == 0 && (strut_option_text(arguments, STRUT_OPTION_POINTS) ||
                                        strut_option_text(arguments, STRUT_OPTION_SEED))) {
     fputs("strut tradeoff: --points and --seed belong to what --vary draws: give that too\n",
@@ -129,11 +128,9 @@ static strut_status read_options(const strut_arguments *arguments, wishes *w) {
 static strut_status write_files(const char *stage, const strut_tradeoff *result, const char *json,
                                 strut_error *error) {
   char path[4096];
-  char *csv = strut_tradeoff_csv(result);
-  strut_status status = csv ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (status == STRUT_OK) status = strut_file_write_text(stage, "tradeoff.csv", csv, error);
+  strut_status status =
+      strut_file_write_block(stage, "tradeoff.csv", strut_tradeoff_csv(result), error);
   if (status == STRUT_OK) status = strut_file_write_text(stage, "tradeoff.json", json, error);
-  strut_release(csv);
   int used = snprintf(path, sizeof path, "%s/tradeoff.svg", stage);
   if (status == STRUT_OK && used >= (int)sizeof path)
     status =
@@ -145,11 +142,7 @@ static strut_status show(const strut_arguments *arguments, const strut_tradeoff 
                          const char *json) {
   if (arguments->json) return strut_print(json);
   if (arguments->quiet) return STRUT_OK;
-  char *table = strut_tradeoff_table(result);
-  if (!table) return strut_print_out_of_memory();
-  strut_status status = strut_print(table);
-  strut_release(table);
-  return status;
+  return strut_print_block(strut_tradeoff_table(result));
 }
 
 static strut_status report(const strut_arguments *arguments, strut_results *files,

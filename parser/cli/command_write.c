@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_write.h"
+#include "parser/cli/commands.h"
 
-#include "engine/base/memory.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/streams.h"
 #include "parser/write/write_scene.h"
@@ -15,9 +14,7 @@ static strut_status run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
   if (status != STRUT_OK) return status;
-  char *text = strut_scene_write(&scene);
-  status = text ? strut_print(text) : strut_print_out_of_memory();
-  strut_release(text);
+  status = strut_print_block(strut_scene_write(&scene));
   strut_scene_free(&scene);
   return status;
 }

@@ -33,13 +33,13 @@ static strut_status still_of(const strut_arguments *arguments, const strut_model
   return STRUT_OK;
 }
 
-static void say(const strut_arguments *arguments, const strut_trajectory *motion,
-                const strut_vtk_written *written) {
+static void print_written(const strut_arguments *arguments, const strut_trajectory *motion,
+                          const strut_vtk_written *written) {
   printf("%zu frame%s in '%s': open structure.pvd with ParaView\n", written->frames,
          written->frames == 1 ? "" : "s", arguments->output);
   size_t recorded = motion->recorded > motion->frames ? motion->recorded : motion->frames;
   if (recorded > written->frames)
-    printf("of %zu recorded ones: more than %d are thinned evenly\n", recorded,
+    printf("evenly chosen from %zu recorded: at most %d are written\n", recorded,
            STRUT_VTK_MOST_FRAMES);
 }
 
@@ -64,7 +64,7 @@ strut_status strut_export_vtk(const strut_command *command, const strut_argument
   if (status == STRUT_OK)
     status = strut_vtk_write(arguments->output, opened.model, motion, &written, &error);
   if (status == STRUT_OK) {
-    say(arguments, motion, &written);
+    if (!arguments->quiet) print_written(arguments, motion, &written);
   } else {
     strut_print_error(&error);
   }

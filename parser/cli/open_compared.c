@@ -29,8 +29,19 @@ static bool is_taken(const strut_compared *compared, size_t count, const char *l
   return false;
 }
 
-/* The file's name without its folder and ending; else its path; else that with a number. */
-static const char *label_of(strut_compared *compared, size_t number, const char *path) {
+/* The label with what --set behind the model says: "crawler friction=0.2". */
+static const char *add_own_settings(const strut_arguments *arguments, strut_compared *compared,
+                                    size_t number, const char *label) {
+  for (size_t i = 0; i < arguments->override_count && label; i++)
+    if (arguments->override_model[i] == number + 1)
+      label = strut_arena_format(&compared->arena, "%s %s=%s", label, arguments->overrides[i].name,
+                                 arguments->overrides[i].value);
+  return label;
+}
+
+/* The file's name without its folder and ending, else its path, else that with a number; unique. */
+static const char *choose_label(const strut_arguments *arguments, strut_compared *compared,
+                                size_t number, const char *path) {
   const char *slash = strrchr(path, '/'), *name = slash && slash[1] ? slash + 1 : path;
   if (strcmp(path, "-") == 0) name = "stdin";
   size_t length = strlen(name);
@@ -38,17 +49,30 @@ static const char *label_of(strut_compared *compared, size_t number, const char 
   if (dot && dot > name && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0))
     length = (size_t)(dot - name);
   const char *label = strut_arena_text(&compared->arena, name, length);
+  label = add_own_settings(arguments, compared, number, label);
   if (label && is_taken(compared, number, label))
-    label = strut_arena_format(&compared->arena, "%s", path);
+    label = add_own_settings(arguments, compared, number, path);
+  const char *stem = label;
   for (int k = 2; label && is_taken(compared, number, label); k++)
-    label = strut_arena_format(&compared->arena, "%s (%d)", path, k);
+    label = strut_arena_format(&compared->arena, "%s (%d)", stem, k);
   return label;
 }
 
 /* ---- reading ---- */
 
-static strut_status read_scene(const source *from, const strut_override *overrides, size_t count,
-                               strut_scene *scene) {
+/* Prints the notes on --set that no earlier column gave. */
+static bool print_notes(strut_compared *compared, strut_diagnostics *diagnostics) {
+  if (diagnostics->note_count == 0) return true;
+  const char *notes = strut_diagnostics_render_notes(diagnostics);
+  const char *before = compared->notes ? compared->notes : "";
+  if (notes && strstr(before, notes)) return true;
+  if (notes) fputs(notes, stderr);
+  if (notes) compared->notes = strut_arena_format(&compared->arena, "%s%s", before, notes);
+  return notes && compared->notes;
+}
+
+static strut_status read_scene(strut_compared *compared, const source *from,
+                               const strut_override *overrides, size_t count, strut_scene *scene) {
   strut_diagnostics diagnostics = {0};
   strut_status status = strut_scene_read(scene, from->shown, from->text, from->length, overrides,
                                          count, STRUT_FOR_ANY, &diagnostics);
@@ -56,6 +80,10 @@ static strut_status read_scene(const source *from, const strut_override *overrid
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
     if (messages) fputs(messages, stderr);
     if (!messages) status = STRUT_NO_MEMORY;
+  }
+  if (status == STRUT_OK && !print_notes(compared, &diagnostics)) {
+    strut_scene_free(scene);
+    status = STRUT_NO_MEMORY;
   }
   if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
   strut_diagnostics_free(&diagnostics);
@@ -68,7 +96,7 @@ static bool has_parameter(const strut_scene *scene, const char *name) {
   return false;
 }
 
-/* Sorts what is set into what the model has and what it has not. */
+/* Splits the settings for a model into those whose parameter it has and the others. */
 static strut_status sort_settings(const strut_arguments *arguments, const strut_scene *scene,
                                   strut_compared *compared, size_t number, source *from) {
   size_t count = arguments->override_count;
@@ -77,6 +105,8 @@ static strut_status sort_settings(const strut_arguments *arguments, const strut_
   from->known = strut_arena_allocate(&compared->arena, count + 1, sizeof *from->known);
   if (!without || !from->known) return strut_print_out_of_memory();
   for (size_t i = 0; i < count; i++) {
+    size_t owner = arguments->override_model[i]; /* 0: all models */
+    if (owner != 0 && owner != number + 1) continue;
     if (has_parameter(scene, arguments->overrides[i].name))
       from->known[from->known_count++] = arguments->overrides[i];
     else
@@ -94,18 +124,18 @@ static strut_status open_one(const strut_arguments *arguments, strut_compared *c
   strut_scene *scene = &compared->scenes[number];
   strut_error error = {0};
   input->scene = scene;
-  input->label = label_of(compared, number, path);
+  input->label = choose_label(arguments, compared, number, path);
   if (!input->label) return strut_print_out_of_memory();
   strut_status status = strut_file_read(path, &from.text, &from.length, &error);
   if (status != STRUT_OK) {
     strut_print_error(&error);
     return status;
   }
-  status = read_scene(&from, NULL, 0, scene);
+  status = read_scene(compared, &from, NULL, 0, scene);
   if (status == STRUT_OK) status = sort_settings(arguments, scene, compared, number, &from);
   if (status == STRUT_OK && from.known_count > 0) {
     strut_scene_free(scene);
-    status = read_scene(&from, from.known, from.known_count, scene);
+    status = read_scene(compared, &from, from.known, from.known_count, scene);
   }
   strut_release(from.text);
   return status;
@@ -113,7 +143,7 @@ static strut_status open_one(const strut_arguments *arguments, strut_compared *c
 
 /* ---- all of them ---- */
 
-/* Every parameter of all models, one after the other. */
+/* Parameters of all models, concatenated: candidates for suggestions. */
 static const char *parameter_at(const void *context, size_t i) {
   const strut_compared *compared = context;
   for (size_t k = 0; k < compared->count; k++) {
@@ -127,12 +157,18 @@ static strut_status check_settings(const strut_command *command, const strut_arg
                                    const strut_compared *compared) {
   for (size_t i = 0; i < arguments->override_count; i++) {
     const char *name = arguments->overrides[i].name;
+    size_t owner = arguments->override_model[i];
     bool known = false;
     for (size_t k = 0; k < compared->count; k++)
-      known = known || has_parameter(&compared->scenes[k], name);
+      known =
+          known || ((owner == 0 || owner == k + 1) && has_parameter(&compared->scenes[k], name));
     if (known) continue;
     const char *near = strut_did_you_mean(name, parameter_at, compared);
-    fprintf(stderr, "strut %s: --set %s: no model has such a parameter", command->name, name);
+    fprintf(stderr, "strut %s: --set %s: ", command->name, name);
+    if (owner == 0)
+      fprintf(stderr, "no model has such a parameter");
+    else
+      fprintf(stderr, "'%s' has no such parameter", arguments->models[owner - 1]);
     if (near) fprintf(stderr, "; did you mean '%s'?", near);
     fputc('\n', stderr);
     return STRUT_USAGE;
@@ -140,7 +176,7 @@ static strut_status check_settings(const strut_command *command, const strut_arg
   return STRUT_OK;
 }
 
-/* Before starts are resolved, so that what was written is compared and not what follows from it. */
+/* Runs before starts are resolved, so that scenes are compared as written. */
 static strut_status find_differences(strut_compared *compared) {
   strut_status status = STRUT_OK;
   char *first = strut_scene_write(&compared->scenes[0]);
@@ -165,12 +201,12 @@ static strut_status refuse(const strut_command *command, const strut_arguments *
   for (size_t i = 0; i < arguments->model_count; i++)
     standard += strcmp(arguments->models[i], "-") == 0;
   if (standard > 1) {
-    fprintf(stderr, "strut %s: the standard input can be read once: give '-' once\n",
+    fprintf(stderr, "strut %s: standard input can be read only once: give '-' once\n",
             command->name);
     return STRUT_USAGE;
   }
   if (arguments->model_count > STRUT_COMPARE_MOST) {
-    fprintf(stderr, "strut %s: %zu models are more than the %d that it takes\n", command->name,
+    fprintf(stderr, "strut %s: %zu models given, at most %d can be compared\n", command->name,
             arguments->model_count, STRUT_COMPARE_MOST);
     return STRUT_USAGE;
   }

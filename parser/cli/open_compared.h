@@ -14,12 +14,13 @@ typedef struct strut_compared {
   strut_compare_input *inputs; /* (count) */
   strut_scene *scenes;         /* (count) */
   strut_arena arena;           /* of names and differences */
+  const char *notes;           /* on --set, as printed so far; or NULL */
 } strut_compared;
 
 /**
- * Reads every model of the command line; what is wrong with any of them is told on stderr, of all at
- * once. --set goes to the models that have the parameter; STRUT_USAGE where none has. On failure
- * nothing is left to free.
+ * Reads every model of the command line, and reports the errors of all of them on stderr. A --set
+ * before the first model goes to every model that has the parameter, one behind a model to that model
+ * alone; STRUT_USAGE where none has the parameter. On failure nothing is left to free.
  */
 strut_status strut_compared_open(const strut_command *command, const strut_arguments *arguments,
                                  strut_compared *compared);

@@ -3,20 +3,23 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "engine/base/memory.h"
+
 void strut_streams_open(void) {
-  /* The wrong way round on purpose: using a closed stream stays an error. */
+  /* Reversed on purpose: using a closed stream must stay an error. */
   static const int modes[] = {O_WRONLY, O_RDONLY, O_RDONLY};
   for (int i = 0; i < 3; i++) {
     if (fcntl(i, F_GETFD) == -1 && errno == EBADF && open("/dev/null", modes[i]) != i) break;
   }
 }
 
-static void complain_of_output(int reason) {
+static void print_output_error(int reason) {
   fprintf(stderr, "strut: error: cannot write to the standard output: %s\n",
           reason ? strerror(reason) : "an earlier write failed");
 }
@@ -24,8 +27,21 @@ static void complain_of_output(int reason) {
 strut_status strut_print(const char *text) {
   errno = 0;
   if (fputs(text, stdout) >= 0 && fflush(stdout) == 0) return STRUT_OK;
-  complain_of_output(errno);
+  print_output_error(errno);
   return STRUT_FILE_TROUBLE;
+}
+
+strut_status strut_print_block(char *text) {
+  strut_status status = text ? strut_print(text) : strut_print_out_of_memory();
+  strut_release(text);
+  return status;
+}
+
+strut_status strut_print_report(const strut_arguments *arguments, char *text) {
+  bool suppressed = arguments->quiet && !arguments->json && !arguments->csv;
+  if (!suppressed || !text) return strut_print_block(text);
+  strut_release(text);
+  return STRUT_OK;
 }
 
 int strut_streams_close(strut_status status) {
@@ -38,14 +54,29 @@ int strut_streams_close(strut_status status) {
     failed = true;
     reason = errno;
   }
-  if (!failed || code != 0) return code; /* what failed has been told */
-  complain_of_output(reason);
+  if (!failed || code != 0) return code; /* that failure has been reported */
+  print_output_error(reason);
   return strut_status_exit_code(STRUT_FILE_TROUBLE);
 }
 
 void strut_print_error(const strut_error *error) {
   fprintf(stderr, "strut: error: %s\n",
           error->message[0] ? error->message : strut_status_text(error->status));
+}
+
+strut_status strut_print_failure(strut_status status, const strut_error *error) {
+  if (status != STRUT_OK) strut_print_error(error);
+  return status;
+}
+
+strut_status strut_print_usage_error(const strut_command *command, const char *format, ...) {
+  va_list values;
+  va_start(values, format);
+  fprintf(stderr, "strut %s: ", command->name);
+  vfprintf(stderr, format, values);
+  fputc('\n', stderr);
+  va_end(values);
+  return STRUT_USAGE;
 }
 
 strut_status strut_print_out_of_memory(void) {

@@ -11,7 +11,7 @@
 #include "engine/study/cluster/parallel_script.h"
 #include "engine/study/cluster/slurm_script.h"
 #include "engine/study/results/shard.h"
-#include "parser/cli/command_sweep.h"
+#include "parser/cli/commands.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 

@@ -173,6 +173,26 @@ strut_status strut_sweep_print_status(strut_slots *slots, bool json) {
   return print_buffer(&b);
 }
 
+void strut_sweep_print_warnings(const strut_sweep_state *state) {
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n", (long long)w->runs,
+            (long long)state->computed, (long long)w->point, w->text);
+  }
+}
+
+static void add_warnings(strut_buffer *b, const strut_sweep_state *state) {
+  strut_buffer_add(b, ", \"warnings\": [");
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    strut_buffer_add(b, "%s{\"code\": \"%s\", \"runs\": %lld, \"point\": %lld, \"text\": ",
+                     i ? ", " : "", w->code, (long long)w->runs, (long long)w->point);
+    add_string(b, w->text);
+    strut_buffer_add(b, "}");
+  }
+  strut_buffer_add(b, "]");
+}
+
 strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json) {
   strut_buffer b = {0};
   char time[32];
@@ -182,6 +202,7 @@ strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *t
                      (long long)state->points, (long long)state->failed,
                      (long long)state->computed);
     add_string(&b, table);
+    add_warnings(&b, state);
     strut_buffer_add(&b, "}\n");
   } else {
     strut_buffer_add(&b, "%lld points, %lld failed; %lld computed now, in %s\n%s\n",

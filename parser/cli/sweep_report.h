@@ -25,6 +25,8 @@ void strut_sweep_progress_end(strut_sweep_progress *progress);
 strut_status strut_sweep_print_count(const strut_sweep_plan *plan, bool json);
 /** What is done, missing and failed in a file of slots, on stdout. */
 strut_status strut_sweep_print_status(strut_slots *slots, bool json);
+/** Each warning that runs gave, once, on stderr. */
+void strut_sweep_print_warnings(const strut_sweep_state *state);
 /** The end of a sweep, on stdout. `table`: its path. */
 strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json);
 

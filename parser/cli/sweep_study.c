@@ -24,13 +24,22 @@ static strut_status complain(strut_study_file *file, strut_status status, strut_
   return status;
 }
 
-/* The first point, then both ends of each axis with the others at their first values. */
+/* Notes on --set, which would be the same at every point. */
+static strut_status print_notes(strut_study_file *file) {
+  if (file->model_diagnostics.note_count == 0) return STRUT_OK;
+  const char *notes = strut_diagnostics_render_notes(&file->model_diagnostics);
+  if (notes) fputs(notes, stderr);
+  return notes ? STRUT_OK : STRUT_NO_MEMORY;
+}
+
+/* Tries the first point, then both ends of each axis with the others at their first values. */
 static strut_status try_ends(strut_study_file *file) {
   const strut_study *study = &file->study;
   strut_study_value *values = strut_allocate(file->column_count, sizeof *values);
   if (!values) return STRUT_NO_MEMORY;
   strut_grid_values(study, 0, values);
   strut_status status = strut_study_try(file, values);
+  if (!status) status = print_notes(file);
   int64_t stride = 1;
   for (size_t a = study->axis_count; a-- > 0 && !status;) {
     if (study->axes[a].count > 1) {

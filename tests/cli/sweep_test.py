@@ -512,7 +512,7 @@ keep: [velocity]
 
 
 def wrong_use():
-    check("-o DIR is missing" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
+    check("-o missing DIR" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
     run("sweep", "fails.yaml", "-o", "other", "--threads", "0", code=1)
     run("sweep", "nowhere.yaml", "-o", "other", code=4)
     run("sweep", "fails.yaml", "-o", "nothing", "--status", code=4)

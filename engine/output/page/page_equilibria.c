@@ -2,7 +2,6 @@
 /* The cards of the page: which equilibria are worth one, and what stands on it. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/page/page_parts.h"
@@ -36,14 +35,12 @@ static bool is_saddle(const strut_equilibrium *e) {
   return e->point.label == STRUT_SADDLE || e->point.label == STRUT_MAXIMUM;
 }
 
-static bool is_named(const strut_equilibrium *e) { return strncmp(e->name, "unnamed-", 8) != 0; }
-
 /* ENDS: it stands, or another comes to rest there. */
 static int rank_of(const strut_equilibrium *e) {
   if (is_saddle(e)) return SADDLES;
   if (e->fate == STRUT_OUTCOME_BELOW_GROUND) return BELOW_GROUND;
   if (e->fate != STRUT_OUTCOME_STANDS) return ELSEWHERE;
-  return is_named(e) ? NAMED : ENDS;
+  return e->configured ? NAMED : ENDS;
 }
 
 /* Every equilibrium with its rank, the best first. */

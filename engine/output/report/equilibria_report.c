@@ -14,6 +14,35 @@ const char *strut_outcome_name(strut_outcome fate) {
   return names[fate];
 }
 
+/* Twice the area of a, b, c: positive where they turn left. */
+static double turn(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static bool members_cross(const strut_model *model, const double *q, int32_t i, int32_t j) {
+  const strut_member_table *t = &model->members;
+  if (t->from[i] == t->from[j] || t->from[i] == t->to[j] || t->to[i] == t->from[j] ||
+      t->to[i] == t->to[j])
+    return false;
+  const double *a = q + t->from[i], *b = q + t->to[i], *c = q + t->from[j], *d = q + t->to[j];
+  double least = 1e-8 * model->size * model->size;
+  double c_side = turn(a, b, c), d_side = turn(a, b, d);
+  double a_side = turn(c, d, a), b_side = turn(c, d, b);
+  bool apart = fmin(fabs(c_side), fabs(d_side)) > least && fmin(fabs(a_side), fabs(b_side)) > least;
+  return apart && (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
+}
+
+strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double *q) {
+  const double least = 1e-4 * model->size;
+  strut_shape_flaws flaws = {0};
+  for (int32_t i = 0; i < model->node_count && !flaws.collapsed; i++)
+    for (int32_t j = 0; j < i && !flaws.collapsed; j++)
+      flaws.collapsed = hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]) < least;
+  for (int32_t i = 0; i < model->members.count; i++)
+    for (int32_t j = 0; j < i; j++) flaws.crossings += members_cross(model, q, i, j);
+  return flaws;
+}
+
 static void add_names(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                       const int32_t *node, size_t count) {
   struct cJSON *names = strut_json_array(json, to, key);
@@ -85,7 +114,8 @@ static void add_down(strut_json *json, struct cJSON *to, const strut_equilibria 
 }
 
 static void add_equilibrium(strut_json *json, struct cJSON *to, const strut_equilibria *all,
-                            const strut_scene *scene, const strut_equilibrium *e) {
+                            const strut_model *model, const strut_equilibrium *e) {
+  const strut_scene *scene = model->scene;
   const strut_critical_point *p = &e->point;
   strut_json_text(json, to, "name", e->name);
   strut_json_text(json, to, "label", strut_stability_name(p->label));
@@ -100,6 +130,9 @@ static void add_equilibrium(strut_json *json, struct cJSON *to, const strut_equi
   strut_json_integer(json, to, "shape", p->shape);
   strut_json_integer(json, to, "placements", p->placements);
   strut_json_integer(json, to, "found", p->found);
+  strut_shape_flaws flaws = strut_find_shape_flaws(model, p->q);
+  strut_json_bool(json, to, "collapsed", flaws.collapsed);
+  strut_json_integer(json, to, "crossings", flaws.crossings);
   add_nodes(json, to, scene, p->q);
   add_forces(json, to, scene, e);
   add_below(json, to, scene, e);
@@ -148,7 +181,7 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_text(&json, json.root, "remark", all->remark[0] ? all->remark : NULL);
   struct cJSON *list = strut_json_array(&json, json.root, "equilibria");
   for (size_t i = 0; i < all->count; i++)
-    add_equilibrium(&json, strut_json_object(&json, list, NULL), all, scene, &all->list[i]);
+    add_equilibrium(&json, strut_json_object(&json, list, NULL), all, model, &all->list[i]);
   add_barriers(&json, all);
   return strut_json_end(&json);
 }

@@ -86,6 +86,22 @@ static bool is_told(const strut_compare *r, int row) {
   return false;
 }
 
+/* The names that the scenes have, by label. */
+static void add_scene_names(strut_buffer *to, const strut_compare *r) {
+  int width = 0;
+  for (size_t i = 0; i < r->count; i++) {
+    int here = letters(r->columns[i].input->label);
+    if (*r->columns[i].input->scene->name && here > width) width = here;
+  }
+  for (size_t i = 0; i < r->count; i++) {
+    const strut_compare_input *in = r->columns[i].input;
+    if (*in->scene->name)
+      strut_buffer_add(to, "%s:%*s %s\n", in->label, width - letters(in->label), "",
+                       in->scene->name);
+  }
+  if (width > 0) strut_buffer_add(to, "\n");
+}
+
 static void add_block(strut_buffer *to, const strut_compare *r, size_t first, size_t end) {
   const char *group = "";
   strut_buffer_add(to, "%-*s", LABELS, "");
@@ -140,8 +156,8 @@ static void add_motion(strut_buffer *to, const strut_compare_column *c) {
 
 static void add_remarks(strut_buffer *to, const strut_compare_column *c) {
   for (size_t i = 0; i < c->input->without_count; i++)
-    strut_buffer_add(to, "  %s has no parameter '%s': it is as its file says\n", c->input->label,
-                     c->input->without[i]);
+    strut_buffer_add(to, "  %s has no parameter '%s' and keeps the values of its file\n",
+                     c->input->label, c->input->without[i]);
   if (c->status != STRUT_OK) strut_buffer_add(to, "  %s: %s\n", c->input->label, c->message);
 }
 
@@ -176,6 +192,7 @@ static void add_differences(strut_buffer *to, const strut_compare *r,
 char *strut_compare_table(const strut_compare *r, int columns) {
   strut_buffer table = {0};
   strut_c_locale locale = strut_c_locale_enter();
+  add_scene_names(&table, r);
   for (size_t first = 0, end; first < r->count; first = end) {
     int used = LABELS;
     for (end = first; end < r->count; end++) {
