@@ -145,9 +145,11 @@ const strut_command strut_command_view = {
     .model = "RUN|MODEL",
     .summary = "writes an interactive HTML page of a run or model",
     .details =
-        "\nRUN is a directory written by 'strut run MODEL -o DIR': the page plays its motion, with\n"
+        "\nRUN is a directory written by 'strut run MODEL -o DIR': the page plays its motion, "
+        "with\n"
         "charts, parameters and summary; --equilibria all adds the equilibria as cards. For a\n"
-        "MODEL the page shows the shape at the start and the equilibria. The page is a single file\n"
+        "MODEL the page shows the shape at the start and the equilibria. The page is a single "
+        "file\n"
         "that works offline; above about 4 MB it keeps an even selection of the frames, and says\n"
         "so. Without -o it is RUN.html or MODEL.html beside the input; a file that strut did not\n"
         "write is never overwritten.\n",

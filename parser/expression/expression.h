@@ -99,6 +99,17 @@ STRUT_API bool strut_expression_compile(const char *text, const strut_scope *sco
 /** True for the names that no parameter may have: pi and the functions. */
 STRUT_API bool strut_expression_reserved(const char *name, size_t length);
 
+/** Longest literal that is read, in bytes. */
+enum { STRUT_NUMBER_MOST = 1000 };
+
+/** Bytes of the literal that text begins with; 0 where it begins with none. */
+size_t strut_number_scan(const char *text, size_t left);
+/**
+ * The literal that fills text[0..length), times 10^decimal, rounded once: "96.51" with -3 has the
+ * bits of 0.09651. False: not a literal, or neither zero nor representable.
+ */
+STRUT_API bool strut_number_read_scaled(const char *text, size_t length, int decimal,
+                                        double *value);
 /**
  * Reads a strict decimal number that fills text[0..length): the reader of every number literal. A
  * literal has no sign. False also where the value is beyond the range of a double.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/expression/quantity.h"
+#include "parser/expression/expression_parts.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -213,4 +213,13 @@ int strut_switch_find(const char *text);
 /** The i-th word, copied into buffer, or NULL after the last. */
 STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size_t size);
 
+/** Room for strut_dimension_suffix. */
+enum { STRUT_SUFFIX_TEXT = 120 };
+
+/** "force", "kinetic", "time" */
+const char *strut_column_word(strut_column_kind kind);
+strut_column_owner strut_column_owner_of(strut_column_kind kind);
+/** "com", "energy", "work", "losses"; NULL for others. */
+const char *strut_column_group(strut_column_owner owner);
+
 #endif

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/expression/quantity.h"
+#include "parser/expression/expression_parts.h"
 #include "parser/read/reader.h"
 
 const char *strut_parameter_name(const void *context, size_t i) {

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/language/quantities.h"
 #include "parser/read/reader.h"
 
 /* Most characters of a name that a message repeats. */

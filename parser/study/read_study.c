@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The study's text and its model. See read_study.h; axes are in study_axes.c. */
+/* The study's text, its model and its figures. See read_study.h; axes are in study_axes.c. */
 #include "parser/study/read_study.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
-#include "parser/study/overlay.h"
 #include "parser/study/study_reader.h"
 
 static const strut_owner study_owner = {"the study", NULL};
@@ -149,6 +149,56 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   }
 }
 
+static void require_column(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
+                           const char *kind, const char *name, const char *text) {
+  if (text || fields->broken) return;
+  strut_report_error(r->reader, key->place, "%s '%s' lacks '%s', expected a column of the table",
+                     kind, key->text, name);
+}
+
+/* What a kind cannot do without. */
+static void require_columns(strut_study_reader *r, const strut_fields *fields,
+                            const strut_tree *key, const strut_study_figure *f) {
+  static const char *const kinds[] = {"figure", "map", "figure", "", ""};
+  const char *kind = kinds[f->kind];
+  if (f->kind == STRUT_FIGURE_PERIOD || f->kind == STRUT_FIGURE_SNAPSHOTS) return;
+  require_column(r, fields, key, kind, "x", f->x);
+  require_column(r, fields, key, kind, "y", f->y);
+  if (f->kind == STRUT_FIGURE_MAP) require_column(r, fields, key, kind, "color", f->color);
+}
+
+static void read_times(strut_study_reader *r, const strut_slot *slot, strut_owner owner,
+                       strut_study_figure *figure) {
+  if (slot->state != STRUT_GIVEN) return;
+  double *times =
+      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *times);
+  for (const strut_tree *item = slot->value->first; item && times; item = item->next)
+    if (strut_read_number(r->reader, item, "times", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
+                          &times[figure->time_count]))
+      figure->time_count++;
+  figure->times = times;
+}
+
+static void read_figure(strut_study_reader *r, const strut_tree *key, strut_study_figure *figure) {
+  strut_fields fields;
+  strut_owner owner = {"figure", key->text};
+  strut_read_name(r->reader, key, "figure");
+  strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
+  *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
+  strut_store_fields(r->reader, &fields, &r->file->arena, figure, sizeof *figure);
+  read_times(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_TIMES), owner, figure);
+  require_columns(r, &fields, key, figure);
+}
+
+static void read_figures(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  if (slot->state != STRUT_GIVEN) return;
+  study->figures =
+      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *study->figures);
+  for (const strut_tree *key = slot->value->first; key && study->figures; key = key->next->next)
+    read_figure(r, key, &study->figures[study->figure_count++]);
+}
+
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
@@ -160,7 +210,7 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
                       (strut_owner){"the check", NULL}, &fields);
     strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
   }
-  strut_study_read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
+  read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
 static size_t size_of(const strut_slot *slot) {

@@ -7,48 +7,52 @@
 #include "parser/language/keys.h"
 #include "parser/write/writer.h"
 
-/* What stands above the table of each section. */
+/* The text above the table of each section. */
 static const char *const introductions[STRUT_SECTION_COUNT] = {
-    [STRUT_SECTION_SCENE] = "The keys of the file itself.",
+    [STRUT_SECTION_SCENE] = "The keys at the top level of a model.",
     [STRUT_SECTION_NODE] =
         "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.",
     [STRUT_SECTION_MEMBER] =
-        "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Its own rest "
-        "key replaces that of its group, whichever it is; so does its own stiffness key.",
+        "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Of the four "
+        "keys "
+        "for the rest length, the member's own replaces that of its group; the same holds for the "
+        "two "
+        "keys for the stiffness.",
     [STRUT_SECTION_GROUND] = "`ground: {...}`: the line that nodes may touch.",
     [STRUT_SECTION_FRICTION] =
-        "`friction: {...}` of the ground, of a group, or of a contact; each key over the one "
-        "before. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`, and "
-        "Karnopp's "
-        "needs `stick_velocity`; the smooth law needs `mu` or `mu_kinetic`, and `width`.",
-    [STRUT_SECTION_CONTACT] =
-        "`ground: {contacts: {NODE: {...}}}`: what is different for one node.",
+        "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "
+        "precedence over those of its groups, and these over those of the ground. Karnopp's law "
+        "and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs "
+        "`stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`.",
+    [STRUT_SECTION_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.",
     [STRUT_SECTION_ACTUATOR] = "`actuators: {NAME: {...}}`.",
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
     [STRUT_SECTION_SIGNAL] =
-        "A signal is a mapping with one of these keys, or the name of an entry of `signals`. Its "
-        "values measure what its user needs: a length for an actuator, a plain factor for a load.",
+        "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
+        "unit of its values follows from its use: a length for an actuator, a number without unit "
+        "for a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
     [STRUT_SECTION_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
     [STRUT_SECTION_SQUARE] = "`{square: {...}}`.",
     [STRUT_SECTION_RAMP] = "`{ramp: {...}}`.",
     [STRUT_SECTION_CONFIGURATION] =
         "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with "
-        "these keys. `{}` is the drawn shape. Where a node is called `contacts`, two plain values "
-        "behind that key are its position.",
+        "these keys. `{}` is the drawn shape. If a node is called `contacts`, that key followed by "
+        "two plain values is its position.",
     [STRUT_SECTION_INITIAL] = "`initial: {...}`.",
     [STRUT_SECTION_SETTLE] = "`initial: {settle: {...}}`.",
     [STRUT_SECTION_EQUILIBRIA] =
-        "`equilibria: {...}`: what `strut equilibria` and `initial: {equilibrium: NAME}` look for.",
+        "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: "
+        "NAME}`.",
     [STRUT_SECTION_SOLVER] = "`solver: {...}`.",
-    [STRUT_SECTION_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
+    [STRUT_SECTION_RUN] = "`run: {...}`: either `duration`, or `periods` and `of`.",
     [STRUT_SECTION_MEASURE] = "`run: {measure: {...}}`.",
     [STRUT_SECTION_QUANTITY] = "`run: {measure: {quantities: {NAME: {...}}}}`.",
     [STRUT_SECTION_STEADY] = "`run: {measure: {steady: {...}}}`.",
     [STRUT_SECTION_OUTPUT] = "`output: {...}`.",
     [STRUT_SECTION_STUDY] =
-        "A study is a file of its own: what `strut sweep` runs. Expressions may use the model's "
-        "parameters in `set` and `derive`.",
+        "The keys at the top level of a study, the file that `strut sweep` runs. Expressions in "
+        "`set` and `derive` may use the model's parameters.",
     [STRUT_SECTION_RANGE] =
         "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
     [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
@@ -70,7 +74,7 @@ static void put_unit(strut_writer *writer, const strut_key *key) {
   bool number = key->type == STRUT_TYPE_NUMBER || key->type == STRUT_TYPE_PAIR;
   if (!number || key->measure == STRUT_MEASURE_NONE) return;
   if (key->measure == STRUT_MEASURE_CONTEXT) {
-    strut_put(writer, " in the unit of its use");
+    strut_put(writer, " in a unit that depends on its use");
     return;
   }
   strut_put(writer, " [");
@@ -81,7 +85,7 @@ static void put_unit(strut_writer *writer, const strut_key *key) {
 static void put_limits(strut_writer *writer, strut_key_limits limits) {
   switch (limits.range) {
     case STRUT_RANGE_NOT_NEGATIVE: strut_put(writer, ", not negative"); break;
-    case STRUT_RANGE_ABOVE_ZERO: strut_put(writer, ", above zero"); break;
+    case STRUT_RANGE_ABOVE_ZERO: strut_put(writer, ", positive"); break;
     case STRUT_RANGE_WHOLE:
       strut_put(writer, " from ");
       strut_put_number(writer, limits.least);
@@ -155,13 +159,14 @@ static void put_section(strut_writer *writer, strut_section section) {
 
 char *strut_keys_page(void) {
   strut_writer result = {.text = NULL};
-  strut_put(
-      &result,
-      "<!-- Made from the table of keys (parser/language/keys_table.h); do not edit. -->\n"
-      "# Keys of the language, version 1\n\n"
-      "A number is an expression with units, such as `2*amplitude + 0.1 mm`; a plain number is in "
-      "the SI unit given here.\nGroups take the keys of a [member](#member), a [node](#node) or a "
-      "[contact](#contact), except `group`.\n");
+  strut_put(&result,
+            "<!-- Generated by `strut keys` from parser/language/keys_table.h; do not edit. -->\n"
+            "# Keys of the language, version 1\n\n"
+            "A number is an expression with units, such as `2*amplitude + 0.1 mm`; a number "
+            "without a unit is "
+            "in the SI unit in brackets.\nGroups may have the keys of a [member](#member), a "
+            "[node](#node) or "
+            "a [contact](#contact), except `group`.\n");
   for (int section = 0; section < STRUT_SECTION_COUNT; section++)
     put_section(&result, (strut_section)section);
   if (!result.failed) return result.text;

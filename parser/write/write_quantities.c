@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "parser/expression/expression.h"
-#include "parser/language/quantities.h"
 #include "parser/write/writer.h"
 
 static const struct operation_row {

@@ -5,7 +5,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/film/encoder.h"
-#include "engine/output/film/scene_frame.h"
+#include "engine/output/film/frame.h"
 
 enum { WIDTH = 1280, HEIGHT = 720, GIF_WIDTH = 640, GIF_HEIGHT = 360 };
 

@@ -1,11 +1,136 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/film/scene_frame.h"
+#include "engine/output/film/frame.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
+
+/* It follows what moves farther than so many sizes of the structure, in x and in y. */
+static const double RANGE[2] = {2.05, 1.6};
+
+/* Means over the neighbours, as many on both sides, from one column of rows of two to another;
+ * `sum` has room for (count + 1). */
+static void smooth(double (*to)[2], const double (*from)[2], int axis, size_t count, size_t reach,
+                   double *sum) {
+  sum[0] = 0;
+  for (size_t i = 0; i < count; i++) sum[i + 1] = sum[i] + from[i][axis];
+  for (size_t i = 0; i < count; i++) {
+    size_t near = i < count - 1 - i ? i : count - 1 - i;
+    if (near > reach) near = reach;
+    to[i][axis] = (sum[i + near + 1] - sum[i - near]) / (double)(2 * near + 1);
+  }
+}
+
+static strut_bounds union_of(const strut_bounds *bounds, size_t count, double *size) {
+  strut_bounds all = strut_bounds_none();
+  *size = 0;
+  for (size_t i = 0; i < count; i++) {
+    for (int k = 0; k < 2; k++) {
+      all.low[k] = fmin(all.low[k], bounds[i].low[k]);
+      all.high[k] = fmax(all.high[k], bounds[i].high[k]);
+      *size = fmax(*size, bounds[i].high[k] - bounds[i].low[k]);
+    }
+  }
+  return all;
+}
+
+bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t count, size_t reach,
+                       strut_arena *arena) {
+  double size;
+  strut_bounds all = union_of(bounds, count, &size);
+  *camera = (strut_camera){.count = count};
+  camera->middle = strut_arena_allocate(arena, count, sizeof *camera->middle);
+  double(*once)[2] = strut_arena_allocate(arena, count, sizeof *once);
+  double *sum = strut_arena_allocate(arena, count + 1, sizeof *sum);
+  if (!camera->middle || !once || !sum) return false;
+  for (int k = 0; k < 2; k++) {
+    camera->follows[k] = size > 0 && all.high[k] - all.low[k] > RANGE[k] * size;
+    for (size_t i = 0; i < count; i++)
+      camera->middle[i][k] = camera->follows[k] ? 0.5 * (bounds[i].low[k] + bounds[i].high[k])
+                                                : 0.5 * (all.low[k] + all.high[k]);
+    if (camera->follows[k]) { /* twice, so that its speed has no jumps either */
+      smooth(once, (const double(*)[2])camera->middle, k, count, reach, sum);
+      smooth(camera->middle, (const double(*)[2])once, k, count, reach, sum);
+    }
+    for (size_t i = 0; i < count; i++) {
+      double middle = camera->middle[i][k];
+      double need = fmax(bounds[i].high[k] - middle, middle - bounds[i].low[k]);
+      camera->half[k] = fmax(camera->half[k], need);
+    }
+  }
+  return true;
+}
+
+static const double FAR = 20; /* sizes from where it began: farther it is no motion to look at */
+
+/* Whether a shape is all there, and in one piece if the run diverged. */
+static bool shows(const strut_model *model, const strut_trajectory *motion, const double *q) {
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < 2 * motion->node_count; i++) {
+    if (!isfinite(q[i])) return false;
+    low[i % 2] = fmin(low[i % 2], q[i]);
+    high[i % 2] = fmax(high[i % 2], q[i]);
+  }
+  double size = fmax(high[0] - low[0], high[1] - low[1]);
+  return motion->status != STRUT_DIVERGED || size < FAR * model->size;
+}
+
+size_t strut_frames_to_show(const strut_model *model, const strut_trajectory *motion) {
+  size_t frames = 0;
+  while (frames < motion->frames &&
+         shows(model, motion, motion->position + 2 * motion->node_count * frames))
+    frames++;
+  return frames;
+}
+
+bool strut_moment_create(strut_moment *moment, const strut_model *model,
+                         const strut_trajectory *motion, strut_arena *arena) {
+  *moment = (strut_moment){0};
+  moment->q = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  if (motion->force) {
+    moment->force = strut_arena_allocate(arena, motion->member_count, sizeof(double));
+    if (!moment->force) return false;
+  }
+  if (motion->contact && motion->contact_count > 0) {
+    moment->contact = strut_arena_allocate(arena, 2 * motion->contact_count, sizeof(double));
+    if (!moment->contact) return false;
+  }
+  return moment->q;
+}
+
+/* to = (1 - part) row i + part row j of (rows, count). */
+static void mix(double *to, const double *rows, size_t count, size_t i, size_t j, double part) {
+  const double *from = rows + i * count, *next = rows + j * count;
+  for (size_t k = 0; k < count; k++)
+    to[k] = part > 0 ? from[k] + part * (next[k] - from[k]) : from[k];
+}
+
+void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_t frames,
+                     double time) {
+  const double *t = motion->time;
+  size_t i = moment->frame;
+  while (i + 1 < frames && t[i + 1] <= time) i++;
+  size_t j = i + 1 < frames ? i + 1 : i;
+  double part = t[j] > t[i] && time > t[i] ? fmin(1, (time - t[i]) / (t[j] - t[i])) : 0;
+  moment->frame = i;
+  moment->time = time;
+  mix(moment->q, motion->position, 2 * motion->node_count, i, j, part);
+  if (moment->force) mix(moment->force, motion->force, motion->member_count, i, j, part);
+  if (moment->contact) mix(moment->contact, motion->contact, 2 * motion->contact_count, i, j, part);
+}
+
+double strut_moment_travel(const strut_moment *moment, const strut_model *model) {
+  int32_t node = model->scene->experiment.measure_node;
+  double sum = 0, weight = 0;
+  if (node >= 0) return moment->q[2 * node];
+  for (int32_t i = 0; i < model->node_count; i++) {
+    sum += model->weight[i] * moment->q[2 * i];
+    weight += model->weight[i];
+  }
+  return weight > 0 ? sum / weight : moment->q[0];
+}
 
 enum { DIGITS = 3, TEXT = 64, MOST_MARKS = 200, TITLE = 84 };
 

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Arrays over time as blocks of few bytes: page.h says how.
+ * The motion of a page: arrays over time as compact blocks, in the format that page.h describes.
  */
-#ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_BLOCKS_H
-#define STRUT_ENGINE_OUTPUT_PAGE_PAGE_BLOCKS_H
+#ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_MOTION_H
+#define STRUT_ENGINE_OUTPUT_PAGE_PAGE_MOTION_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/export.h"
+#include "engine/output/buffer.h"
+#include "engine/output/page/page.h"
 
 /** An array (frames, columns) of which every so many-th frame is taken, and the last. */
 typedef struct strut_rows {
@@ -45,5 +46,12 @@ typedef struct strut_block {
 STRUT_API bool strut_block_encode(const strut_rows *rows, double quantum, strut_block *block);
 /** A zeroed block is allowed; it is zeroed again. */
 STRUT_API void strut_block_free(strut_block *block);
+
+/**
+ * Appends the value of the key motion, about `room` bytes of it, or null. Frames from the first that
+ * is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
+ */
+void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
+                           strut_page_frames *frames);
 
 #endif
