@@ -97,12 +97,12 @@ static void print_bands(const strut_model *model) {
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
     const strut_contact_entry *e = &model->contacts.entry[i];
     double needed = strut_stick_band_needed(model, method, i, scene->experiment.step);
-    if (!(needed * (1.0 - 1e-6) > e->stick_velocity) || ++narrow > MOST_BANDS) continue;
+    if (!(needed * (1.0 - 1e-6) > e->friction.stick_velocity) || ++narrow > MOST_BANDS) continue;
     fprintf(stderr,
             "strut: warning: stick_velocity %s of node '%s' is narrower than what a step of %s "
             "changes its slip by, so that it sticks by luck; use stick_velocity >= %s, a smaller "
             "step, or a method with events\n",
-            in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name,
+            in(e->friction.stick_velocity, "m/s").text, scene->nodes[e->node].name,
             in(scene->experiment.step, "s").text, in(needed, "m/s").text);
   }
   if (narrow > MOST_BANDS)

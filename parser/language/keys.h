@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/scene.h"
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 

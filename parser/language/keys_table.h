@@ -56,7 +56,7 @@
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, false, 0, "", "", "Friction of every contact. Without it there is none.") \
   X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, false, 0, "all", "", "Which nodes may touch the ground: `all`, or a list.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, false, 0, "", "the keys of a contact", "What is different for a node; named by the node.") \
-  X(FRICTION, LAW, "law", WORD, NONE, ANY, false, 0, "karnopp", "none|karnopp|coulomb|smooth", "`karnopp`: Coulomb friction with a stick band, the paper's. `coulomb`: exact sticking; needs a method with events. `smooth`: -mu_kinetic N u / sqrt(u^2 + width^2), which creeps.") \
+  X(FRICTION, LAW, "law", WORD, NONE, ANY, false, 0, "karnopp", STRUT_FRICTION_WORDS, "`karnopp`: Coulomb friction with a stick band, the paper's. `coulomb`: exact sticking; needs a method with events. `smooth`: -mu_kinetic N u / sqrt(u^2 + width^2), which creeps.") \
   X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Both coefficients.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sticking.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, false, 0, "", "", "Coefficient of sliding.") \
@@ -113,7 +113,7 @@
   X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, false, 0, "every pair that can carry", "", "Contact nodes to hold in turn: of each list the first is pinned, the others roll on the ground.") \
   X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, NOT_NEGATIVE, false, 0, "until little can be missing", "", "Random starts for each list of supports.") \
   X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, NOT_NEGATIVE, false, 0, "1", "", "Of the random starts; the same seed gives the same answer.") \
-  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", "rk4|euler|verlet|rk4-events|euler-events|verlet-events|adaptive|midpoint", "The method.") \
+  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, false, 0, "rk4", STRUT_INTEGRATOR_WORDS, "The method.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, false, 0, "", "", "Time step; of `adaptive` the longest. A run needs it, or `accuracy`.") \
   X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, false, 0, "1e-6", "", "Of `adaptive`: local error of a step, relative.") \
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, false, 0, "from the scene", "", "Of methods with events: so many times shorter steps after a touchdown; 1 for none.") \

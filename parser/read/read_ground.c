@@ -7,35 +7,34 @@
 /* Friction of one contact while layers of keys are laid over each other. */
 typedef struct friction_layers {
   strut_friction friction;
-  bool any, law, statics, kinetics, stick, width; /* given so far */
+  bool any, law, given[STRUT_FRICTION_PARAMETER_COUNT]; /* given so far */
   bool broken;
   const strut_tree *last; /* the mapping of the top layer, */
   strut_owner owner;      /* and whose it is */
 } friction_layers;
 
+static bool is_coefficient(int parameter) {
+  return parameter == STRUT_FRICTION_PARAMETER_MU_STATIC ||
+         parameter == STRUT_FRICTION_PARAMETER_MU_KINETIC;
+}
+
 static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owner) {
-  const struct {
-    int key;
-    bool *given_first, *given_second;
-    double *first, *second;
-  } values[] = {
-      {STRUT_KEY_FRICTION_MU, &f->statics, &f->kinetics, &f->friction.mu_static,
-       &f->friction.mu_kinetic},
-      {STRUT_KEY_FRICTION_MU_STATIC, &f->statics, NULL, &f->friction.mu_static, NULL},
-      {STRUT_KEY_FRICTION_MU_KINETIC, &f->kinetics, NULL, &f->friction.mu_kinetic, NULL},
-      {STRUT_KEY_FRICTION_STICK_VELOCITY, &f->stick, NULL, &f->friction.stick_velocity, NULL},
-      {STRUT_KEY_FRICTION_WIDTH, &f->width, NULL, &f->friction.width, NULL}};
+  static const int keys[] = {
+#define STRUT_FRICTION_ROW(NAME, ...) STRUT_KEY_FRICTION_##NAME,
+      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+  };
+  const strut_slot *both = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   f->any = true;
   f->last = fields->map;
   f->owner = owner;
   if (fields->broken) f->broken = true;
-  for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
-    const strut_slot *slot = strut_slot_of(fields, values[i].key);
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    const strut_slot *slot = strut_slot_of(fields, keys[p]);
+    if (both->state == STRUT_GIVEN && is_coefficient(p)) slot = both;
     if (slot->state != STRUT_GIVEN) continue;
-    *values[i].first = slot->number[0];
-    *values[i].given_first = true;
-    if (values[i].second) *values[i].second = slot->number[0];
-    if (values[i].second) *values[i].given_second = true;
+    *strut_friction_parameter(&f->friction, p) = slot->number[0];
+    f->given[p] = true;
   }
   const strut_slot *law = strut_slot_of(fields, STRUT_KEY_FRICTION_LAW);
   if (law->state == STRUT_GIVEN) {
@@ -44,32 +43,35 @@ static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owne
   }
 }
 
-static void lacks_speed(strut_reader *reader, const friction_layers *f, const char *key) {
+static void report_missing(strut_reader *reader, const friction_layers *f, const char *key,
+                           bool coefficient) {
   char expected[200];
-  strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
-                     strut_owner_text(reader, f->owner), key,
-                     strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
+  strut_report_error(
+      reader, f->last->place, "%s lacks '%s', expected %s", strut_owner_text(reader, f->owner), key,
+      coefficient ? "a number such as 0.5"
+                  : strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
 }
 
-/* Is what the friction law needs complete? Says at the top layer what is missing, once each. */
+/* Are all numbers given that the friction law needs? Reports at the top layer what is missing, once. */
 static bool finish_friction(strut_reader *reader, friction_layers *f, const strut_tree **said) {
   if (!f->any || f->broken) return !f->broken;
   if (!f->law) f->friction.law = STRUT_FRICTION_KARNOPP;
-  if (f->friction.law == STRUT_FRICTION_NONE) return true;
-  bool smooth = f->friction.law == STRUT_FRICTION_SMOOTH;
-  bool stick = f->friction.law != STRUT_FRICTION_KARNOPP || f->stick, width = !smooth || f->width;
-  const char *missing = !f->statics && !f->kinetics ? "mu"
-                        : !f->statics && !smooth    ? "mu_static"
-                        : !f->kinetics              ? "mu_kinetic"
-                                                    : NULL;
-  if (!missing && stick && width) return true;
+  bool complete = true, none = true;
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    complete = complete && (f->given[p] || !strut_friction_needs(f->friction.law, p));
+    none = none && !(f->given[p] && is_coefficient(p));
+  }
+  if (complete) return true;
   if (*said == f->last) return false;
   *said = f->last;
-  if (missing)
-    strut_report_error(reader, f->last->place, "%s lacks '%s', expected a number such as 0.5",
-                       strut_owner_text(reader, f->owner), missing);
-  if (!stick) lacks_speed(reader, f, "stick_velocity");
-  if (!width) lacks_speed(reader, f, "width");
+  bool coefficients = false; /* one of them reported */
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    if (f->given[p] || !strut_friction_needs(f->friction.law, p)) continue;
+    if (is_coefficient(p) && coefficients) continue;
+    coefficients = coefficients || is_coefficient(p);
+    report_missing(reader, f, is_coefficient(p) && none ? "mu" : strut_friction_key(p),
+                   is_coefficient(p));
+  }
   return false;
 }
 

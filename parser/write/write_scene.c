@@ -8,9 +8,6 @@
 #include "engine/base/c_locale.h"
 #include "parser/write/writer.h"
 
-/* Same bits? -0 and 0 differ. */
-static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
-
 static void put_text(strut_writer *writer, const char *key, const char *text) {
   if (!*text) return;
   strut_put(writer, key);
@@ -107,29 +104,36 @@ static void put_members(strut_writer *writer) {
   }
 }
 
-static bool no_friction(const strut_friction *f) {
-  return f->law == STRUT_FRICTION_NONE && f->mu_static == 0.0 && f->mu_kinetic == 0.0 &&
-         f->stick_velocity == 0.0 && f->width == 0.0;
+/* By bits: -0 and 0 differ. */
+static bool same_friction(const strut_friction *a, const strut_friction *b) {
+  bool same = a->law == b->law;
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    const double one = strut_friction_value(a, p), other = strut_friction_value(b, p);
+    same = same && memcmp(&one, &other, sizeof one) == 0;
+  }
+  return same;
 }
 
-static bool same_friction(const strut_friction *a, const strut_friction *b) {
-  return a->law == b->law &&
-         same((const double[2]){a->mu_static, a->mu_kinetic},
-              (const double[2]){b->mu_static, b->mu_kinetic}) &&
-         a->stick_velocity == b->stick_velocity && a->width == b->width;
+static bool no_friction(const strut_friction *f) {
+  bool none = f->law == STRUT_FRICTION_NONE;
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
+    none = none && strut_friction_value(f, p) == 0.0;
+  return none;
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
-  static const char *const laws[] = {"none", "karnopp", "coulomb", "smooth"};
   bool first = false;
   strut_put(writer, "{law: ");
-  strut_put(writer, laws[f->law]);
-  strut_put_key(writer, &first, "mu_static");
-  strut_put_number(writer, f->mu_static);
-  strut_put_key(writer, &first, "mu_kinetic");
-  strut_put_number(writer, f->mu_kinetic);
-  strut_put_value(writer, &first, "stick_velocity", f->stick_velocity);
-  strut_put_value(writer, &first, "width", f->width);
+  strut_put(writer, strut_friction_law_at(f->law)->word);
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    double value = strut_friction_value(f, p);
+    if (strut_friction_above_zero(p)) {
+      strut_put_value(writer, &first, strut_friction_key(p), value);
+    } else {
+      strut_put_key(writer, &first, strut_friction_key(p));
+      strut_put_number(writer, value);
+    }
+  }
   strut_put(writer, "}");
 }
 

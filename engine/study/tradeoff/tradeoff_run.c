@@ -20,7 +20,7 @@ double strut_study_left(const study *s, double share) {
 }
 
 bool strut_study_adaptive(const strut_integrator *method) {
-  return strcmp(method->name, "adaptive") == 0;
+  return method->role == STRUT_ROLE_REFERENCE;
 }
 
 strut_experiment strut_study_experiment(const study *s, size_t point) {
