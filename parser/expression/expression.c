@@ -46,13 +46,13 @@ bool strut_expression_reserved(const char *name, size_t length) {
   return (length == 2 && memcmp(name, "pi", 2) == 0) || strut_function_find(name, length);
 }
 
-static bool expect(strut_expression_reader *r, char wanted, const char *words) {
+static bool expect_character(strut_expression_reader *r, char wanted, const char *words) {
   if (strut_expression_peek(r) != wanted) return strut_expression_unexpected(r, words);
   r->at++;
   return true;
 }
 
-/* Arguments and the closing parenthesis; r is behind the opening one. */
+/* Reads arguments and the closing parenthesis; the opening one has been read. */
 static bool read_call(strut_expression_reader *r, const strut_function *function, size_t begin,
                       strut_quantity *q) {
   strut_quantity arguments[STRUT_ARGUMENT_MOST];
@@ -65,7 +65,7 @@ static bool read_call(strut_expression_reader *r, const strut_function *function
     if (!read_sum(r, &arguments[count])) return false;
     count++;
   } while (strut_expression_peek(r) == ',');
-  if (!expect(r, ')', "an operator, ',' or ')'")) return false;
+  if (!expect_character(r, ')', "an operator, ',' or ')'")) return false;
   if (!strut_function_apply(function, arguments, count, q, &reason))
     return strut_expression_fail(r, begin, r->at, "%s", reason.text);
   strut_expression_emit(r, strut_function_operation(function), count, q);
@@ -114,7 +114,7 @@ static bool read_primary(strut_expression_reader *r, strut_quantity *q) {
   if ((c >= '0' && c <= '9') || c == '.') return read_literal(r, q);
   if (c == '(') {
     r->at++;
-    return read_sum(r, q) && expect(r, ')', "an operator or ')'");
+    return read_sum(r, q) && expect_character(r, ')', "an operator or ')'");
   }
   size_t length = strut_expression_word(r, r->at);
   if (length) return read_name(r, length, q);
@@ -122,8 +122,8 @@ static bool read_primary(strut_expression_reader *r, strut_quantity *q) {
 }
 
 /* *q = *q OP b, where the operands stand in text[begin..at). */
-static bool operate(strut_expression_reader *r, size_t begin, char operation, strut_quantity *q,
-                    strut_quantity b) {
+static bool apply_operator(strut_expression_reader *r, size_t begin, char operation,
+                           strut_quantity *q, strut_quantity b) {
   static const char signs[] = "+-*/^";
   static const strut_operation operations[] = {STRUT_OPERATION_ADD, STRUT_OPERATION_SUBTRACT,
                                                STRUT_OPERATION_MULTIPLY, STRUT_OPERATION_DIVIDE,
@@ -147,10 +147,10 @@ static bool read_power(strut_expression_reader *r, strut_quantity *q) {
     return true;
   }
   r->at++;
-  return read_signed(r, &exponent) && operate(r, begin, '^', q, exponent);
+  return read_signed(r, &exponent) && apply_operator(r, begin, '^', q, exponent);
 }
 
-/* Every way of nesting passes here, so this is where depth is counted. */
+/* Every kind of nesting passes through here, so the depth is counted here. */
 static bool read_signed(strut_expression_reader *r, strut_quantity *q) {
   char c = strut_expression_peek(r);
   if (r->depth > DEPTH_MOST)
@@ -180,7 +180,7 @@ static bool read_product(strut_expression_reader *r, strut_quantity *q) {
       return true;
     }
     r->at++;
-    if (!read_signed(r, &factor) || !operate(r, begin, c, q, factor)) return false;
+    if (!read_signed(r, &factor) || !apply_operator(r, begin, c, q, factor)) return false;
   }
 }
 
@@ -197,7 +197,7 @@ static bool read_sum(strut_expression_reader *r, strut_quantity *q) {
       return true;
     }
     r->at++;
-    if (!read_product(r, &term) || !operate(r, begin, c, q, term)) return false;
+    if (!read_product(r, &term) || !apply_operator(r, begin, c, q, term)) return false;
   }
 }
 
@@ -224,7 +224,7 @@ bool strut_expression_compile(const char *text, const strut_scope *scope, strut_
   return true;
 }
 
-/* Longest stretch of the text that a message repeats. */
+/* Longest piece of the text that a message quotes. */
 enum { SHOWN_MOST = 40 };
 
 bool strut_expression_fail(strut_expression_reader *r, size_t begin, size_t end, const char *format,
@@ -244,7 +244,7 @@ bool strut_expression_fail(strut_expression_reader *r, size_t begin, size_t end,
   return false;
 }
 
-/* Which names a suggestion may come from, in this order. */
+/* The names that may be suggested, in this order. */
 typedef struct candidates {
   const strut_scope *scope;
   bool parameters, functions, units;
@@ -343,7 +343,7 @@ bool strut_expression_unknown_function(strut_expression_reader *r, size_t begin,
   return fail_with_hint(r, begin, length, "function", false, true, false);
 }
 
-/* What people type or paste in place of plain characters. */
+/* Characters that are typed or pasted instead of plain ones. */
 static const struct lookalike {
   uint32_t code;
   const char *advice;

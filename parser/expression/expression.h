@@ -19,7 +19,7 @@ typedef struct strut_quantity {
   double value; /* SI */
   strut_dimension dimension;
   bool bare;
-  bool varies; /* it is made of columns of the motion: it has no value yet */
+  bool varies; /* computed from columns of the motion, and thus without a value yet */
 } strut_quantity;
 
 /** A part of the text that is being read. */
@@ -28,7 +28,7 @@ typedef struct strut_piece {
   size_t length;
 } strut_piece;
 
-/** Where an expression went wrong: code point offset and length within the text, and why. */
+/** An error in an expression: its offset and length in code points, and the message. */
 typedef struct strut_expression_error {
   size_t offset, length;
   char message[300];
@@ -40,7 +40,7 @@ typedef struct strut_expression_error {
  * there is none of that name; -1 when it exists but has no value (the lookup has reported why).
  */
 typedef int strut_lookup(void *context, const char *name, size_t length, strut_quantity *quantity);
-/** Names for "did you mean": the i-th, or NULL after the last. */
+/** The i-th name for "did you mean", or NULL after the last. */
 typedef const char *strut_names(const void *context, size_t i);
 
 typedef struct strut_scope {
@@ -48,7 +48,7 @@ typedef struct strut_scope {
   strut_names *names;
   void *context;
   bool no_hints; /* errors suggest no name: that would take too long */
-  bool unread;   /* nobody will read the messages: they need only not be empty */
+  bool unread;   /* messages will not be read: they only need not be empty */
 } strut_scope;
 
 /**
@@ -71,18 +71,18 @@ typedef struct strut_refusal {
 typedef int strut_find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
                               strut_column *column, strut_dimension *dimension,
                               strut_refusal *refusal);
-/** The same of WORD(FIRST, SECOND), whose word is one of those below. */
+/** The same for the pairs WORD(FIRST, SECOND): angle and distance. */
 typedef int strut_find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
                             strut_column *column, strut_dimension *dimension,
                             strut_refusal *refusal);
 
-/** One instruction while it is being made. */
+/** One instruction of a program under construction. */
 typedef struct strut_compiled {
   strut_instruction instruction;
   strut_dimension dimension; /* of a NUMBER */
 } strut_compiled;
 
-/** Makes a program of an expression of columns. */
+/** Compiles an expression of columns to a program. */
 typedef struct strut_compiler {
   strut_find_column *column;
   strut_find_pair *pair;
@@ -91,7 +91,7 @@ typedef struct strut_compiler {
   size_t length, depth;    /* instructions so far; numbers on the stack at most */
 } strut_compiler;
 
-/** As strut_expression_evaluate; what has columns is not evaluated but compiled. */
+/** As strut_expression_evaluate; an expression with columns is compiled instead of evaluated. */
 STRUT_API bool strut_expression_compile(const char *text, const strut_scope *scope,
                                         strut_compiler *compiler, strut_quantity *quantity,
                                         strut_expression_error *error);
@@ -102,7 +102,7 @@ STRUT_API bool strut_expression_reserved(const char *name, size_t length);
 /** Longest literal that is read, in bytes. */
 enum { STRUT_NUMBER_MOST = 1000 };
 
-/** Bytes of the literal that text begins with; 0 where it begins with none. */
+/** Bytes of the literal at the beginning of the text, or 0. */
 size_t strut_number_scan(const char *text, size_t left);
 /**
  * The literal that fills text[0..length), times 10^decimal, rounded once: "96.51" with -3 has the

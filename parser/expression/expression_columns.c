@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Columns of the motion in expressions, and the program that is made of them. */
+#include <assert.h>
 #include <string.h>
 
 #include "parser/expression/expression_parts.h"
@@ -46,6 +47,7 @@ void strut_expression_emit(strut_expression_reader *r, strut_operation operation
   strut_compiler *c = r->compiler;
   if (!c) return;
   if (!result->varies) { /* then each operand is one number */
+    assert(c->length >= operands);
     c->length -= operands;
     strut_expression_emit_number(r, result);
     return;

@@ -212,7 +212,7 @@ static bool read_unit(strut_expression_reader *r, unit_product *product) {
   }
 }
 
-/* Refuses what looks like a number and is none, right behind a literal that is one. */
+/* Reports characters right after a literal that make it look like another kind of number. */
 static bool check_end(strut_expression_reader *r, size_t begin) {
   char c = r->at < r->length ? r->text[r->at] : '\0';
   size_t word = strut_expression_word(r, r->at), end = r->at + (word ? word : 1);

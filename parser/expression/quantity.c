@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Beyond this no exponent of a dimension means anything. */
+/* Largest meaningful exponent of a dimension. */
 static const float POWER_MOST = 100;
 
 typedef enum function_kind {
@@ -53,10 +53,10 @@ static const strut_function functions[] = {
 };
 enum { FUNCTION_COUNT = sizeof functions / sizeof functions[0] };
 
-static bool refuse(strut_reason *reason, const char *format, ...)
+static bool fail_with_reason(strut_reason *reason, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-static bool refuse(strut_reason *reason, const char *format, ...) {
+static bool fail_with_reason(strut_reason *reason, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(reason->text, sizeof reason->text, format, arguments);
@@ -78,8 +78,9 @@ static bool in_range(strut_dimension d) {
          fabsf(d.angle) <= POWER_MOST;
 }
 
-/* Makes a and b of one dimension, where they are or one is bare. */
-static bool agree(strut_quantity *a, strut_quantity b, const char *what, strut_reason *reason) {
+/* Gives a and b one dimension, if they have the same or one is bare. */
+static bool unify_dimensions(strut_quantity *a, strut_quantity b, const char *what,
+                             strut_reason *reason) {
   if (b.bare) return true;
   if (a->bare) {
     a->dimension = b.dimension;
@@ -88,21 +89,21 @@ static bool agree(strut_quantity *a, strut_quantity b, const char *what, strut_r
   }
   if (strut_dimension_equal(a->dimension, b.dimension)) return true;
   char first[64], second[64];
-  return refuse(reason, "%s joins %s and %s, expected equal dimensions", what,
-                strut_dimension_name(a->dimension, first, sizeof first),
-                strut_dimension_name(b.dimension, second, sizeof second));
+  return fail_with_reason(reason, "%s joins %s and %s, expected equal dimensions", what,
+                          strut_dimension_name(a->dimension, first, sizeof first),
+                          strut_dimension_name(b.dimension, second, sizeof second));
 }
 
-static bool raise(strut_quantity *a, strut_quantity b, strut_reason *reason) {
+static bool raise_to_power(strut_quantity *a, strut_quantity b, strut_reason *reason) {
   char name[64];
   if (!dimensionless(b))
-    return refuse(reason, "the exponent is %s, expected a number without unit",
-                  strut_dimension_name(b.dimension, name, sizeof name));
+    return fail_with_reason(reason, "the exponent is %s, expected a number without unit",
+                            strut_dimension_name(b.dimension, name, sizeof name));
   if (b.varies && !dimensionless(*a))
-    return refuse(reason, "the exponent varies in time, so %s cannot be raised to it",
-                  strut_dimension_name(a->dimension, name, sizeof name));
+    return fail_with_reason(reason, "the exponent varies in time, so %s cannot be raised to it",
+                            strut_dimension_name(a->dimension, name, sizeof name));
   if (!a->bare && !b.varies) a->dimension = combine(STRUT_DIM_NONE, a->dimension, (float)b.value);
-  if (!in_range(a->dimension)) return refuse(reason, "the power of a unit is too high");
+  if (!in_range(a->dimension)) return fail_with_reason(reason, "the power of a unit is too high");
   a->bare = a->bare && b.bare;
   a->value = pow(a->value, b.value);
   return true;
@@ -114,24 +115,27 @@ bool strut_quantity_operate(char operation, strut_quantity *a, strut_quantity b,
   switch (operation) {
     case '+':
     case '-':
-      if (!agree(a, b, operation == '+' ? "'+'" : "'-'", reason)) return false;
+      if (!unify_dimensions(a, b, operation == '+' ? "'+'" : "'-'", reason)) return false;
       a->value = operation == '+' ? a->value + b.value : a->value - b.value;
       break;
     case '*':
     case '/':
       a->dimension = combine(a->dimension, b.dimension, operation == '*' ? 1 : -1);
       a->bare = a->bare && b.bare;
-      if (!in_range(a->dimension)) return refuse(reason, "the power of a unit is too high");
-      if (operation == '/' && b.value == 0) return refuse(reason, "division by zero");
+      if (!in_range(a->dimension))
+        return fail_with_reason(reason, "the power of a unit is too high");
+      if (operation == '/' && b.value == 0) return fail_with_reason(reason, "division by zero");
       a->value = operation == '*' ? a->value * b.value : a->value / b.value;
       break;
     default:
-      if (!raise(a, b, reason)) return false;
+      if (!raise_to_power(a, b, reason)) return false;
   }
   a->varies = varies;
   if (varies) a->value = 1; /* not known */
-  if (isnan(a->value)) return refuse(reason, "the result of '%c' is not a real number", operation);
-  if (isinf(a->value)) return refuse(reason, "the result of '%c' is not finite", operation);
+  if (isnan(a->value))
+    return fail_with_reason(reason, "the result of '%c' is not a real number", operation);
+  if (isinf(a->value))
+    return fail_with_reason(reason, "the result of '%c' is not finite", operation);
   return true;
 }
 
@@ -152,18 +156,18 @@ static bool check_argument(const strut_function *f, strut_quantity argument, str
       f->kind == OF_ROOT || f->kind == OF_ANY || f->kind == OF_LIKE || f->kind == LIKE_TO_ANGLE;
   if (free_kind || dimensionless(argument) || (f->kind == OF_ANGLE && angle)) return true;
   char name[64];
-  return refuse(reason, "'%s' takes %s, got %s", f->name,
-                f->kind == OF_ANGLE ? "an angle" : "a number without unit",
-                strut_dimension_name(argument.dimension, name, sizeof name));
+  return fail_with_reason(reason, "'%s' takes %s, got %s", f->name,
+                          f->kind == OF_ANGLE ? "an angle" : "a number without unit",
+                          strut_dimension_name(argument.dimension, name, sizeof name));
 }
 
 static bool check_count(const strut_function *f, size_t count, strut_reason *reason) {
   if (count >= f->least && count <= f->most) return true;
   if (f->least == f->most)
-    return refuse(reason, "'%s' takes %zu argument%s, got %zu", f->name, f->least,
-                  f->least == 1 ? "" : "s", count);
-  return refuse(reason, "'%s' takes %zu to %zu arguments, got %zu", f->name, f->least, f->most,
-                count);
+    return fail_with_reason(reason, "'%s' takes %zu argument%s, got %zu", f->name, f->least,
+                            f->least == 1 ? "" : "s", count);
+  return fail_with_reason(reason, "'%s' takes %zu to %zu arguments, got %zu", f->name, f->least,
+                          f->most, count);
 }
 
 bool strut_function_apply(const strut_function *f, const strut_quantity *arguments, size_t count,
@@ -176,7 +180,7 @@ bool strut_function_apply(const strut_function *f, const strut_quantity *argumen
   bool varies = q.varies;
   if (f->one) q.value = f->one(q.value);
   for (size_t i = 1; i < count; i++) {
-    if (!agree(&q, arguments[i], what, reason)) return false;
+    if (!unify_dimensions(&q, arguments[i], what, reason)) return false;
     q.value = f->two(q.value, arguments[i].value);
     varies = varies || arguments[i].varies;
   }
@@ -191,8 +195,9 @@ bool strut_function_apply(const strut_function *f, const strut_quantity *argumen
   }
   q.varies = varies;
   if (varies) q.value = 1; /* not known */
-  if (isnan(q.value)) return refuse(reason, "the result of '%s' is not a real number", f->name);
-  if (isinf(q.value)) return refuse(reason, "the result of '%s' is not finite", f->name);
+  if (isnan(q.value))
+    return fail_with_reason(reason, "the result of '%s' is not a real number", f->name);
+  if (isinf(q.value)) return fail_with_reason(reason, "the result of '%s' is not finite", f->name);
   *result = q;
   return true;
 }

@@ -76,7 +76,7 @@ static const strut_unit units[] = {
 };
 enum { UNIT_COUNT = sizeof units / sizeof units[0] };
 
-/* What messages call a dimension, how a value of it is written, and its SI unit. */
+/* Name of a dimension in messages, an example of a value, and its SI unit. */
 static const struct dimension_words {
   strut_dimension dimension;
   const char *name, *example, *unit;
@@ -119,7 +119,7 @@ const strut_unit *strut_unit_find(const char *name, size_t length) {
 
 const strut_unit *strut_unit_at(size_t i) { return i < UNIT_COUNT ? &units[i] : NULL; }
 
-/* Exponents come from roots and powers: 3 * (1/3) in floats is 1 only nearly. */
+/* Exponents result from roots and powers: in floats, 3 * (1/3) is only nearly 1. */
 static bool same(float a, float b) { return fabsf(a - b) < 1e-4f; }
 
 bool strut_dimension_equal(strut_dimension a, strut_dimension b) {
@@ -191,7 +191,7 @@ const char *strut_dimension_suffix(strut_dimension dimension, char *buffer, size
     float power;
   } parts[] = {
       {"kg", dimension.kg}, {"m", dimension.m}, {"s", dimension.s}, {"rad", dimension.angle}};
-  size_t used = 0; /* units first, so that they stand behind the number */
+  size_t used = 0; /* units first, so that they follow the number */
   for (int pass = 0; pass < 2; pass++)
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
       bool whole = same(parts[i].power, roundf(parts[i].power)) && fabsf(parts[i].power) <= 12;

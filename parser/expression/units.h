@@ -32,7 +32,7 @@ typedef struct strut_unit {
   const char *name;
   double factor; /* SI value of one: rest * 10^decimal */
   strut_dimension dimension;
-  double rest; /* what is not a power of ten: 60 for min, 1 for mm */
+  double rest; /* the factor without its power of ten: 60 for min, 1 for mm */
   int decimal; /* so that 0.1 ms has the bits of 1e-4 */
 } strut_unit;
 
@@ -46,7 +46,7 @@ STRUT_API bool strut_dimension_equal(strut_dimension a, strut_dimension b);
 STRUT_API const char *strut_dimension_name(strut_dimension dimension, char *buffer, size_t size);
 /** An example for messages: "10 mm", "10 Hz", "0.2 N s/m"; NULL where there is none. */
 STRUT_API const char *strut_dimension_example(strut_dimension dimension);
-/** What is written behind a number of it in SI, "kg m s^-2" or "N"; "" for none; in buffer. */
+/** The SI unit to write after a number, "kg m s^-2" or "N"; "" for none; in buffer. */
 STRUT_API const char *strut_dimension_suffix(strut_dimension dimension, char *buffer, size_t size);
 /** The SI unit to write beside a number: "m", "N s/m"; "1" for none; "SI" for one without a name. */
 STRUT_API const char *strut_dimension_unit(strut_dimension dimension);

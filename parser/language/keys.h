@@ -71,10 +71,10 @@ typedef enum strut_key_type {
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
-  STRUT_TYPE_THINGS         /* a mapping from names to what `words` says */
+  STRUT_TYPE_THINGS         /* a mapping from names to things, described by `words` */
 } strut_key_type;
 
-/** What a number measures; CONTEXT: it depends on where the mapping stands. */
+/** The dimension of a number; CONTEXT: it depends on the use of the mapping. */
 typedef enum strut_measure {
   STRUT_MEASURE_NONE,
   STRUT_MEASURE_CONTEXT,
@@ -183,7 +183,7 @@ typedef struct strut_spelling {
 /** The other spelling of a key (`key` NULL) or of a word, or NULL. */
 STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                                     const char *text);
-/** Its number: below 32 for former names. */
+/** The number of a spelling; below 32 for former names. */
 STRUT_API int strut_spelling_index(const strut_spelling *spelling);
 /** The current name of a key: `name` itself, unless it is a former one. */
 STRUT_API const char *strut_key_current(strut_section section, const char *name);
@@ -213,13 +213,13 @@ int strut_switch_find(const char *text);
 /** The i-th word, copied into buffer, or NULL after the last. */
 STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size_t size);
 
-/** Room for strut_dimension_suffix. */
+/** Size of the buffer of strut_dimension_suffix. */
 enum { STRUT_SUFFIX_TEXT = 120 };
 
-/** "force", "kinetic", "time" */
+/** The word of a column: "force", "kinetic", "time". */
 const char *strut_column_word(strut_column_kind kind);
 strut_column_owner strut_column_owner_of(strut_column_kind kind);
-/** "com", "energy", "work", "losses"; NULL for others. */
+/** The word of a group of columns: "com", "energy", "work", "losses"; NULL for other owners. */
 const char *strut_column_group(strut_column_owner owner);
 
 #endif

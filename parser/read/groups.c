@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Groups: keys of a member, a node or a contact that many things share. See reader.h. */
+#include <assert.h>
 #include <string.h>
 
 #include "parser/read/reader.h"
@@ -16,7 +17,8 @@ static const char *group_name(const void *context, size_t i) {
 
 static size_t section_index(strut_section section) {
   size_t i = 0;
-  while (sections[i] != section) i++;
+  while (i < SECTIONS && sections[i] != section) i++;
+  assert(i < SECTIONS);
   return i;
 }
 

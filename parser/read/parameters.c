@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameters: evaluated on demand, in any order; values from --set; cycles. See reader.h. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -131,6 +132,7 @@ static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
     return;
   }
   reader->parameter_stack[reader->parameter_depth++] = p;
+  assert(reader->parameter_depth <= STRUT_DEEPEST_PARAMETER);
   p->state = STRUT_READING;
   strut_quantity declared;
   bool fine = evaluate(reader, p, &declared);

@@ -16,21 +16,28 @@ static void store_velocity(strut_reader *reader, int32_t node, const double pair
   if (reader->velocity_source) reader->velocity_source[node] = value;
 }
 
+/*
+ * `settle` and `steady` are true, false or a mapping of their own: false where there is no mapping to read.
+ */
+static bool read_switch(strut_reader *reader, const strut_slot *slot, int key, strut_owner owner,
+                        bool *wanted) {
+  char expected[100];
+  const strut_tree *value = slot->value;
+  *wanted = value->kind == STRUT_TREE_MAP;
+  if (*wanted) return true;
+  int found = value->quoted ? -1 : strut_switch_find(value->text);
+  *wanted = found == 1;
+  if (found < 0)
+    strut_report_error(reader, value->place, "expected %s, for '%s' of %s, found %s",
+                       strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
+                       owner.kind, strut_found(reader, value));
+  return false;
+}
+
 static void read_settle(strut_reader *reader, const strut_slot *slot) {
   strut_settle *settle = &reader->scene->settle;
-  strut_owner owner = {"the settling", NULL};
-  settle->wanted = true;
-  if (slot->value->kind == STRUT_TREE_SCALAR) {
-    int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
-    settle->wanted = wanted == 1;
-    if (wanted >= 0) return;
-    strut_report_error(
-        reader, slot->value->place,
-        "expected true, or a mapping such as {limit: 100 s}, for 'settle' of the initial "
-        "state, found %s",
-        strut_found(reader, slot->value));
-    return;
-  }
+  strut_owner initial = {"the initial state", NULL}, owner = {"the settling", NULL};
+  if (!read_switch(reader, slot, STRUT_KEY_INITIAL_SETTLE, initial, &settle->wanted)) return;
   strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
   strut_store_fields(reader, &reader->settle, &reader->scene->arena, settle, sizeof *settle);
 }
@@ -183,19 +190,8 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
 
 static void read_steady(strut_reader *reader, const strut_slot *slot) {
   strut_steady *steady = &reader->scene->experiment.steady;
-  strut_owner owner = {"the steady state", NULL};
-  steady->wanted = true;
-  if (slot->value->kind == STRUT_TREE_SCALAR) {
-    int wanted = slot->value->quoted ? -1 : strut_switch_find(slot->value->text);
-    steady->wanted = wanted == 1;
-    if (wanted >= 0) return;
-    strut_report_error(
-        reader, slot->value->place,
-        "expected true, or a mapping such as {tolerance: 0.5 %%}, for 'steady' of the "
-        "measurement, found %s",
-        strut_found(reader, slot->value));
-    return;
-  }
+  strut_owner measurement = {"the measurement", NULL}, owner = {"the steady state", NULL};
+  if (!read_switch(reader, slot, STRUT_KEY_MEASURE_STEADY, measurement, &steady->wanted)) return;
   strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
   strut_store_fields(reader, &reader->steady, &reader->scene->arena, steady, sizeof *steady);
 }

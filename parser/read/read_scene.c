@@ -64,8 +64,7 @@ static bool describes_run(strut_reader *reader) {
          (solver->state == STRUT_GIVEN && strut_tree_find(solver->value, step, NULL));
 }
 
-/* A study instead of a model gets one message instead of one for each line. */
-static bool is_study(const strut_tree *root) {
+bool strut_tree_is_study(const strut_tree *root) {
   return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
          !strut_tree_find(root, "nodes", NULL);
 }
@@ -74,7 +73,7 @@ static bool is_study(const strut_tree *root) {
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
-  if (is_study(reader->document.root)) {
+  if (strut_tree_is_study(reader->document.root)) {
     strut_report_error(reader, strut_root_place(reader),
                        "this is a study, expected a model; 'strut sweep' runs studies");
     return;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals, and what they drive: actuators and loads. See reader.h. */
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -200,6 +201,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
 /* May the signal stand where `expected` is needed? Its first use decides for a bare one. */
 static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
                   const strut_dimension *expected) {
+  assert(index >= 0 && (size_t)index < reader->signal_count);
   strut_signal_state *state = &reader->signal_state[index];
   char wanted[200], found[80];
   if (!expected) return true;

@@ -3,9 +3,9 @@
  * What the parts of the scene reader share. Internal to parser/.
  *
  * Every mapping is read in two passes: strut_read_fields turns its keys into *fields*, by the table
- * of keys alone; then the part that knows the thing takes its values from there. A value that could
- * not be read has been reported and is BROKEN: whatever depends on it stays silent, so that one
- * mistake gives one message.
+ * of keys alone; then the part that knows the thing takes its values from there. A value that cannot
+ * be read is reported and marked BROKEN; nothing that depends on it is reported, so that one mistake
+ * gives one message.
  */
 #ifndef STRUT_PARSER_READ_READER_H
 #define STRUT_PARSER_READ_READER_H
@@ -130,6 +130,9 @@ typedef struct strut_reader {
   bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
 } strut_reader;
+
+/** Is this the tree of a study? As a model it would be wrong in every line. */
+bool strut_tree_is_study(const strut_tree *root);
 
 /* read_values.c: messages and single values */
 

@@ -182,9 +182,7 @@ static bool is_study(const strut_study_file *file) {
   strut_diagnostics unsaid = {0};
   strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
   strut_document_read(&document, &unsaid);
-  const strut_tree *root = document.root;
-  bool found = root && root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
-               !strut_tree_find(root, "nodes", NULL);
+  bool found = document.root && strut_tree_is_study(document.root);
   strut_document_free(&document);
   strut_diagnostics_free(&unsaid);
   return found;

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals, what they drive, and the experiment, as YAML. See writer.h. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
 #include "parser/write/writer.h"
 
-/* The name of the signal in the file, or NULL: it is written where it is used. */
+/* The name of the signal in the file; NULL if it is written where it is used. */
 static const char *signal_name(const strut_writer *writer, int32_t index) {
+  assert(index >= 0 && (size_t)index < writer->scene->signal_count);
   const char *name = writer->scene->signals[index].name;
   return name ? name : index == writer->period_signal ? "signal_of_the_period" : NULL;
 }
 
-/* An angle in radians that is read back as exactly so many turns, if there is one. */
+/* The angle in radians that reads back as exactly this number of turns, if there is one. */
 static double radians(double turns) {
   double angle = turns * STRUT_TAU, up = angle, down = angle;
   for (int i = 0; i < 4; i++) {
@@ -138,8 +140,8 @@ void strut_put_drives(strut_writer *writer) {
   }
 }
 
-/* Does `name` lead a reader of `of` to the signal? */
-static bool leads_to(const strut_scene *scene, const char *name, int32_t signal) {
+/* Would `of: name` refer to this signal? */
+static bool refers_to(const strut_scene *scene, const char *name, int32_t signal) {
   bool found = false;
   for (size_t i = 0; i < scene->actuator_count; i++)
     if (strcmp(scene->actuators[i].name, name) == 0) {
@@ -159,17 +161,17 @@ static bool leads_to(const strut_scene *scene, const char *name, int32_t signal)
   return found;
 }
 
-/* What `of` may say for the signal whose periods count; NULL: it needs a name first. */
+/* A name that `of` may use for the signal whose periods count; NULL: the signal needs a name first. */
 static const char *period_name(const strut_scene *scene) {
   const strut_experiment *e = &scene->experiment;
-  if (e->period_of && leads_to(scene, e->period_of, e->period_signal)) return e->period_of;
+  if (e->period_of && refers_to(scene, e->period_of, e->period_signal)) return e->period_of;
   const char *own = scene->signals[e->period_signal].name;
-  if (own && leads_to(scene, own, e->period_signal)) return own;
+  if (own && refers_to(scene, own, e->period_signal)) return own;
   for (size_t i = 0; i < scene->actuator_count; i++)
-    if (leads_to(scene, scene->actuators[i].name, e->period_signal))
+    if (refers_to(scene, scene->actuators[i].name, e->period_signal))
       return scene->actuators[i].name;
   for (size_t i = 0; i < scene->load_count; i++)
-    if (leads_to(scene, scene->loads[i].name, e->period_signal)) return scene->loads[i].name;
+    if (refers_to(scene, scene->loads[i].name, e->period_signal)) return scene->loads[i].name;
   return NULL;
 }
 

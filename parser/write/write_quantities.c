@@ -31,14 +31,14 @@ static int binding(const strut_instruction *p) {
   }
 }
 
-/* Where the operand begins whose last instruction is program[end - 1]. */
+/* Index of the first instruction of the operand whose last one is program[end - 1]. */
 static size_t begin_of(const strut_instruction *program, size_t end) {
   size_t needed = 1;
   while (needed > 0) needed += operations[program[--end].operation].operands - 1;
   return end;
 }
 
-/* Names that expressions would take apart stand in parentheses. */
+/* Names that an expression would split are written in parentheses. */
 static void put_owner(strut_writer *writer, const char *kind, const char *name) {
   const char *c = name;
   while ((*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || *c == '_' ||

@@ -8,7 +8,7 @@
 #include "engine/base/c_locale.h"
 #include "parser/write/writer.h"
 
-/* An expression, on one line however it was written. */
+/* An expression, on one line. */
 static void put_expression(strut_writer *writer, const char *text) {
   char one[2] = {0};
   for (; *text; text++) {
@@ -126,7 +126,7 @@ static bool friction_is_shared(const strut_scene *scene) {
   return true;
 }
 
-/* What is different for one contact. */
+/* The keys in which one contact differs from the first. */
 static void put_contact(strut_writer *writer, const strut_contact *contact, bool friction) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   strut_put_name(writer, writer->scene->nodes[contact->node].name);
@@ -188,7 +188,7 @@ static void put_ground(strut_writer *writer) {
   strut_put(writer, "\n");
 }
 
-/* Is the signal whose periods count one that nothing names? Then it gets a name of its own. */
+/* The signal whose periods count, if it has no name and nothing named uses it; else -1. */
 static int32_t nameless_period(const strut_scene *scene) {
   const strut_experiment *e = &scene->experiment;
   if (e->periods == 0.0 || scene->signals[e->period_signal].name) return -1;

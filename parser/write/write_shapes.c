@@ -8,7 +8,8 @@
 /* Same bits? -0 and 0 differ. */
 static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
 
-void strut_put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
+/* "[[n1, n4], [n2]]": always a list of lists, which cannot be mistaken for a position. */
+static void put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
   strut_put(writer, "[");
   for (size_t i = 0; i < count; i++) {
     strut_put(writer, i ? ", [" : "[");
@@ -48,7 +49,7 @@ static void put_configurations(strut_writer *writer) {
     strut_put(writer, ": {");
     if (c->set_count) {
       strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_CONTACTS);
-      strut_put_node_sets(writer, c->sets, c->set_count);
+      put_node_sets(writer, c->sets, c->set_count);
     }
     if (c->shaped) {
       strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_SHAPE);
@@ -63,7 +64,7 @@ static void put_supports(strut_writer *writer, strut_mapping *mapping, int key,
   const strut_search *search = object;
   if (!search->support_count) return;
   strut_put_key_name(writer, mapping, key);
-  strut_put_node_sets(writer, search->supports, search->support_count);
+  put_node_sets(writer, search->supports, search->support_count);
 }
 
 static void put_search(strut_writer *writer) {
@@ -82,8 +83,7 @@ static bool is_configuration(const strut_scene *scene, const char *name) {
   return false;
 }
 
-/* A configuration's own name, or a parameter's that leads to it where the own one is taken for a
-   parameter. */
+/* A name that refers to the configuration: its own, unless a text parameter has that name. */
 static const char *leading_name(const strut_scene *scene, const char *name) {
   const char *leading = name;
   bool taken = false;
@@ -108,7 +108,7 @@ static void put_initial_pair(strut_writer *writer, bool *begun, bool *listed, co
   strut_put(writer, "\n");
 }
 
-/* The step, where it is chosen for settling: that of the run is written there. */
+/* The step of settling, if it differs from that of the run. */
 static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int key,
                               const void *object) {
   const strut_settle *settle = object;

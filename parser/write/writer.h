@@ -29,16 +29,16 @@ void strut_put_number(strut_writer *writer, double value);
 void strut_put_pair(strut_writer *writer, const double pair[2]);
 /** Appends text in double quotes, with escapes. */
 void strut_put_quoted(strut_writer *writer, const char *text);
-/** Appends a thing's name, in quotes where YAML would take it for something else. */
+/** Appends a name, in quotes if YAML would misread it. */
 void strut_put_name(strut_writer *writer, const char *name);
-/** A mapping that is being written: what stands before the next key, and before those after it. */
+/** A mapping under construction: the separators before the next key and before the following ones. */
 typedef struct strut_mapping {
   const char *separator, *next;
 } strut_mapping;
 
 /** Within braces: `{key: value, key: value}`. */
 #define STRUT_MAPPING_INLINE ((strut_mapping){"", ", "})
-/** One line for each key: behind what was written. */
+/** One line per key, each begun by a line break. */
 #define STRUT_MAPPING_LINES(indent) ((strut_mapping){"\n" indent, "\n" indent})
 
 /** Appends the separator and "key: ". */
@@ -46,7 +46,7 @@ void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key
 /** As strut_put_key, with the key's name in the language. */
 void strut_put_key_name(strut_writer *writer, strut_mapping *mapping, int key);
 
-/** Writes a key that has no field, where the object gives it a value. */
+/** Writes a key without a field, if the object has a value for it. */
 typedef void strut_put_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object);
 /**
@@ -65,7 +65,5 @@ void strut_put_experiment(strut_writer *writer);
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping);
 /** write_shapes.c: configurations, the search for equilibria, the initial state. */
 void strut_put_shapes(strut_writer *writer);
-/** "[[n1, n4], [n2]]": always a list of lists, which cannot be mistaken for a position. */
-void strut_put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count);
 
 #endif

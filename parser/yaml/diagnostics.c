@@ -20,7 +20,7 @@ void strut_diagnostics_source(strut_diagnostics *diagnostics, const char *file, 
   diagnostics->length = length;
 }
 
-/* Cuts where a character begins and makes controls harmless: a message is one line. */
+/* Cuts an overlong message between two characters, and replaces control characters by blanks. */
 static void tidy(char *message, int written) {
   if (written >= MESSAGE_MOST) {
     size_t end = MESSAGE_MOST - 4;
@@ -99,7 +99,7 @@ typedef struct text_builder {
   bool failed; /* memory was out: the text is not whole */
 } text_builder;
 
-/* Code points of a long line that are shown, and how many of them stand before the place. */
+/* Code points shown of a long line, and how many of them precede the place. */
 enum { SHOWN_MOST = 100, SHOWN_BEFORE = 40 };
 
 static bool make_text_room(text_builder *out, size_t more) {
@@ -138,7 +138,7 @@ static void append_bytes(text_builder *out, const char *bytes, size_t size) {
   out->text[out->length] = '\0';
 }
 
-/* Cells of a terminal that a character takes. */
+/* Width of a character in terminal cells. */
 static int cells(uint32_t code) {
   static const struct range {
     uint32_t first, last;
@@ -180,7 +180,7 @@ static window choose_window(strut_cursor *line, strut_place place) {
   return shown;
 }
 
-/* Calls for each shown character: the source itself, or what stands below it up to the place. */
+/* Appends the shown stretch of the line. */
 static void append_source(text_builder *out, strut_cursor cursor, window shown) {
   for (uint32_t i = cursor.column - 1; i < shown.end; i++) {
     uint32_t code;
@@ -208,7 +208,7 @@ static void append_caret(text_builder *out, strut_cursor cursor, window shown, s
     for (int cell = i == from ? 1 : 0; cell < cells(code); cell++)
       append_bytes(out, i == from ? "~" : mark, 1);
   }
-  if (from >= shown.end) append_bytes(out, "^", 1); /* behind the line's last character */
+  if (from >= shown.end) append_bytes(out, "^", 1); /* after the last character of the line */
 }
 
 /* Appends the line in which the cursor stands and a caret line; the cursor moves to where the shown
@@ -282,7 +282,7 @@ void strut_diagnostics_free(strut_diagnostics *diagnostics) {
   *diagnostics = (strut_diagnostics){0};
 }
 
-/* Longer words get no suggestion; more candidates than this are not worth the time. */
+/* Limits of the search for suggestions: code points of a word, number of candidates. */
 enum { WORD_MOST = 64, CANDIDATE_MOST = 10000 };
 
 typedef struct word {

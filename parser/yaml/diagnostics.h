@@ -12,7 +12,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 
-/** A stretch of one line: 1-based, columns count code points. line 0: the file as a whole. */
+/** A stretch of one line, counted from 1; columns are code points. Line 0: the file as a whole. */
 typedef struct strut_place {
   uint32_t line, column, length;
 } strut_place;
@@ -34,18 +34,18 @@ typedef struct strut_diagnostics {
   size_t count, capacity;
   strut_diagnostic *items;
   size_t note_count, note_capacity;
-  strut_diagnostic *notes; /* what is no error; not among the items */
+  strut_diagnostic *notes; /* notes, which are not errors; not among the items */
   size_t unstored;    /* messages beyond STRUT_DIAGNOSTICS_MOST, or lost because memory was out */
   bool out_of_memory; /* a message was lost */
   strut_arena arena;  /* owns the messages */
 } strut_diagnostics;
 
-/** True where a further message would only be counted: its text need not be made. */
+/** True once further messages are only counted, so that their texts need not be formatted. */
 static inline bool strut_diagnostics_full(const strut_diagnostics *diagnostics) {
   return diagnostics->count >= STRUT_DIAGNOSTICS_MOST;
 }
 
-/** Begins: remembers the file's name and its bytes (neither copied). */
+/** Sets the file's name and its bytes; neither is copied. */
 STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const char *file,
                                         const char *text, size_t length);
 /**
@@ -53,7 +53,7 @@ STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const ch
  */
 STRUT_API void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format,
                               ...) __attribute__((format(printf, 3, 4)));
-/** Adds a note, which is no error, unless the place has it already. Lost if memory is out. */
+/** Adds a note (not an error) unless the place already has it. Lost if memory is out. */
 STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
 /** All notes, in order, as strut_diagnostics_render shows messages. NULL: memory is out. */

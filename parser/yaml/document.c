@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/yaml/document.h"
 
+#include <assert.h>
 #include <string.h>
 #include <time.h>
 
@@ -10,7 +11,7 @@
 enum {
   DEPTH_MOST = 64,
   SLAB = 256,          /* nodes taken from the arena at once */
-  RECENT_SLOTS = 1024, /* short scalars seen lately, to share their text */
+  RECENT_SLOTS = 1024, /* recent short scalars, whose texts are shared */
   RECENT_LENGTH = 24,
   PROBLEMS_MOST = 1000, /* then reading stops */
   ANCHOR_MOST = 1000,
@@ -21,8 +22,8 @@ static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
 typedef struct anchored_node {
   const char *name;
   strut_tree *node;
-  uint64_t weight; /* nodes it stands for, aliases inside counted in full; 0: still open */
-  size_t height;   /* levels of lists and mappings in it, aliases inside counted in full */
+  uint64_t weight; /* nodes in it, aliases expanded; 0: still open */
+  size_t height;   /* levels of lists and mappings in it, aliases expanded */
 } anchored_node;
 
 typedef struct anchor_table {
@@ -41,7 +42,7 @@ typedef struct key_table {
 
 enum { SLOT_COUNT = 2048, FEW_KEYS = 8 };
 
-/* Seeds differ from run to run, so that an author of texts cannot aim at one slot. */
+/* Seeds differ from run to run, so that no text can be made to collide on purpose. */
 static uint64_t hash_text(const char *text, size_t length, uint64_t seed) {
   uint64_t hash = seed ^ UINT64_C(0xCBF29CE484222325);
   for (size_t i = 0; i < length; i++)
@@ -51,7 +52,7 @@ static uint64_t hash_text(const char *text, size_t length, uint64_t seed) {
   return hash ^ hash >> 29;
 }
 
-/* The slot of that name, or the empty one where it belongs. */
+/* The slot of that name, or the empty slot in which to store it. */
 static size_t anchor_slot(const anchor_table *anchors, const char *name) {
   size_t slot = (size_t)hash_text(name, strlen(name), anchors->seed) % SLOT_COUNT;
   while (anchors->slots[slot] && strcmp(anchors->items[anchors->slots[slot] - 1].name, name) != 0)
@@ -94,7 +95,7 @@ static bool clear_table(key_table *table, size_t count) {
   return true;
 }
 
-/* The key of the same text met before, else NULL and `key` is remembered. */
+/* An earlier key of the same text; otherwise NULL, and `key` is stored. */
 static strut_tree *find_or_add_key(key_table *table, size_t mask, strut_tree *key) {
   size_t slot = (size_t)hash_text(key->text, strlen(key->text), table->seed) & mask;
   for (; table->slots[slot]; slot = (slot + 1) & mask)
@@ -178,13 +179,13 @@ static strut_place place_of(const yaml_event_t *event) {
                        (uint32_t)length};
 }
 
-/* Functions below return false where reading cannot go on. */
+/* Functions below return false if reading must stop. */
 static bool out_of_memory(reader *r) {
   r->no_memory = true;
   return false;
 }
 
-/* libyaml's mark of an anchored node is its anchor: moves on to the node itself. */
+/* libyaml gives the anchor as the place of an anchored node: this moves it to the node itself. */
 static void skip_anchor(reader *r, const yaml_event_t *event, strut_place *place) {
   strut_cursor *at = &r->cursor;
   strut_cursor_to_index(at, event->start_mark.index);
@@ -274,7 +275,7 @@ static void check_tag(reader *r, const yaml_char_t *tag, const yaml_event_t *eve
   strut_diagnose(r->diagnostics, place, "tags (words that begin with '!') are not allowed");
 }
 
-/* Escapes can make what the text itself must not hold. */
+/* Escapes could produce characters that are forbidden in the text. */
 static bool check_escapes(reader *r, const char *text, size_t length, strut_place place) {
   for (size_t at = 0; at < length;) {
     uint32_t code;
@@ -287,7 +288,7 @@ static bool check_escapes(reader *r, const char *text, size_t length, strut_plac
   return true;
 }
 
-/* The scalar's text in the arena; a short one that was seen lately is shared. */
+/* A copy of the scalar's text in the arena; recent short texts are shared. */
 static const char *keep_text(reader *r, const char *text, size_t length) {
   if (!length) return "";
   if (length > RECENT_LENGTH) return strut_arena_text(&r->document->arena, text, length);
@@ -370,9 +371,10 @@ static bool open_collection(reader *r, const yaml_event_t *event) {
 }
 
 static bool close_collection(reader *r, const yaml_event_t *event) {
+  assert(r->depth > 0 && r->depth <= DEPTH_MOST);
   frame closed = r->stack[--r->depth];
   strut_tree *node = closed.node;
-  /* The length of a bracketed one on one line; a block is shown by its first character. */
+  /* Only a bracketed collection on one line has a length; a block is marked by its first character. */
   size_t line = event->end_mark.line + 1, column = event->end_mark.column + 1;
   if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
       column > node->place.column)
@@ -388,7 +390,7 @@ static bool close_collection(reader *r, const yaml_event_t *event) {
   return true;
 }
 
-/* Behind the document only comments and its end mark may stand; libyaml need not look there. */
+/* After the document only comments and its end mark are allowed. */
 static bool check_rest(reader *r, const yaml_event_t *event) {
   strut_cursor *at = &r->cursor;
   strut_cursor_to_index(at, event->end_mark.index);
@@ -426,7 +428,7 @@ static bool read_end(reader *r, const yaml_event_t *event) {
   return false;
 }
 
-static bool take_event(reader *r, const yaml_event_t *event) {
+static bool handle_event(reader *r, const yaml_event_t *event) {
   switch (event->type) {
     case YAML_SCALAR_EVENT: return read_scalar(r, event);
     case YAML_ALIAS_EVENT: return read_alias(r, event);
@@ -450,7 +452,7 @@ static bool read_events(reader *r) {
   while (fine && !r->ended) {
     yaml_event_t event;
     if (yaml_parser_parse(&r->yaml, &event)) {
-      fine = take_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
+      fine = handle_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
       yaml_event_delete(&event);
     } else {
       const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;

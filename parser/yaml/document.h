@@ -32,7 +32,7 @@ typedef struct strut_tree {
   struct strut_tree *first, *next; /* first child; next sibling */
 } strut_tree;
 
-/** The tree and what it stands in. Zero-initialise; strut_document_free releases all. */
+/** The tree and the arena that owns it. Zero-initialise; release with strut_document_free. */
 typedef struct strut_document {
   strut_arena arena;
   strut_tree *root; /* NULL when the text could not be read to its end */

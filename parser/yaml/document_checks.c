@@ -5,7 +5,7 @@
 #include "parser/yaml/document_parts.h"
 #include "parser/yaml/text.h"
 
-/* Forbidden characters that are reported one by one. */
+/* Most forbidden characters that are reported. */
 enum { REPORT_MOST = 10 };
 
 static strut_place place_of(const strut_cursor *cursor) {
@@ -27,8 +27,9 @@ static size_t find_forbidden(const char *text, size_t length, size_t at, uint32_
   return length;
 }
 
-/* Reports one character; false where looking further would only repeat it. */
-static bool report(strut_diagnostics *diagnostics, const strut_cursor *cursor, uint32_t code) {
+/* Reports one character; false if the following ones would be reported likewise. */
+static bool report_character(strut_diagnostics *diagnostics, const strut_cursor *cursor,
+                             uint32_t code) {
   unsigned byte = (unsigned char)cursor->text[cursor->offset];
   if (code == STRUT_BAD_CODE) {
     strut_diagnose(diagnostics, place_of(cursor),
@@ -55,7 +56,7 @@ static bool scan_characters(strut_diagnostics *diagnostics) {
   while ((at = find_forbidden(text, length, at, &code)) < length && reported < REPORT_MOST) {
     strut_cursor_to_offset(&cursor, at);
     reported++;
-    if (!report(diagnostics, &cursor, code)) break;
+    if (!report_character(diagnostics, &cursor, code)) break;
     at += strut_text_decode(text + at, length - at, &code);
   }
   return reported == 0;
@@ -108,14 +109,14 @@ bool strut_document_scan(strut_diagnostics *diagnostics) {
   return scan_characters(diagnostics) && scan_directives(diagnostics);
 }
 
-/* What libyaml says, in whose context, and what a person wants to hear. */
+/* libyaml's problem and context, and the message that replaces them. */
 static const struct rule {
   const char *problem, *context; /* stretches of libyaml's words; NULL: any */
   const char *message;
   const char *begun; /* what began in the context's line, appended; or NULL */
   bool at_context;   /* the place is where the context begins */
   bool is_key;       /* the place is that of a key without a value */
-  bool at_margin;    /* true only where the line begins; elsewhere something is left over */
+  bool at_margin; /* holds only at the beginning of a line; elsewhere a value is followed by text */
 } rules[] = {
     {.problem = "mapping values are not allowed",
      .message = "unexpected ':'; a key begins a new line, and a text that holds ': ' needs quotes"},
@@ -190,7 +191,7 @@ static void report_start(strut_diagnostics *diagnostics, strut_place place, char
     strut_diagnose(diagnostics, place, "a value cannot begin with '%c'; put it in quotes", here);
 }
 
-/* True where something else than blanks stands before the place in its line. */
+/* True if the line has anything but blanks before the place. */
 static bool behind_something(const strut_diagnostics *diagnostics, strut_place place) {
   strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   strut_cursor_to_line(&cursor, place.line);
@@ -202,7 +203,7 @@ static bool behind_something(const strut_diagnostics *diagnostics, strut_place p
   return false;
 }
 
-/* Does a word at the place have a colon and no space behind it, as in `mass:1 kg`? */
+/* Is the word at the place followed by a colon without a space after it, as in `mass:1 kg`? */
 static bool lacks_space(const strut_diagnostics *diagnostics, strut_place place) {
   strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   strut_cursor_to_line(&cursor, place.line);
@@ -222,7 +223,7 @@ bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *
     return true;
   }
   if (here == '\0' && open && !has(parser->context, "quoted scalar")) {
-    /* At the end of the text the place of interest is where the bracket stands. */
+    /* At the end of the text the open bracket is reported, at its place. */
     strut_diagnose(diagnostics, open->place, "this '%c' is never closed",
                    open->kind == STRUT_TREE_LIST ? '[' : '{');
     return true;

@@ -12,7 +12,7 @@
 
 #include "parser/yaml/document.h"
 
-/** Finds what libyaml must not see: bad UTF-8, controls, directives. False with the messages. */
+/** Reports what must not reach libyaml: bad UTF-8, control characters, directives. False if any. */
 bool strut_document_scan(strut_diagnostics *diagnostics);
 
 /**

@@ -8,21 +8,21 @@
 #include "engine/base/memory_limit.h"
 #include "parser/yaml/document.h"
 
-/* MOST_PER_BYTE: of tree for a byte of text, as in [1,2,3]. */
+/* MOST_PER_BYTE: largest number of bytes of tree per byte of text, as in [1,2,3]. */
 enum { DEPTH_MOST = 64, WORDS = 400, SHORT = 100000, MOST_PER_BYTE = 1 + sizeof(strut_tree) / 2 };
 
-/* Where a look at a text is: brackets that are open, and what stood before. */
-typedef struct look {
+/* State of the scan: the open brackets and the previous character. */
+typedef struct scan_state {
   uint64_t list; /* bit d: the bracket at depth d is a list's */
   int depth;
   double values;
   char before;
-} look;
+} scan_state;
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/* Behind the comment or the quoted text that begins at `at`; `at` where none does. */
-static size_t skip(const look *l, const char *text, size_t length, size_t at) {
+/* The end of the comment or quoted text that begins at `at`; `at` if none begins there. */
+static size_t skip_text(const scan_state *l, const char *text, size_t length, size_t at) {
   char c = text[at];
   bool begins = is_blank(l->before) || l->before == '[' || l->before == '{' || l->before == ',';
   if (!begins || (c != '#' && c != '"' && c != '\'')) return at;
@@ -32,8 +32,8 @@ static size_t skip(const look *l, const char *text, size_t length, size_t at) {
   return i < length ? i : length;
 }
 
-/* A pair for each colon, an item for each comma of a list in brackets and for its first. */
-static void take(look *l, char c, char next) {
+/* Two values per colon, and one per comma of a bracketed list and for its first item. */
+static void count_values(scan_state *l, char c, char next) {
   bool listed = l->depth > 0 && l->depth < DEPTH_MOST && (l->list >> l->depth & 1);
   if (c == ':' && is_blank(next)) l->values += 2.0;
   if (c == ',' && listed) l->values += 1.0;
@@ -47,11 +47,11 @@ static void take(look *l, char c, char next) {
 }
 
 double strut_document_needs(const char *text, size_t length) {
-  look l = {.before = '\n'};
+  scan_state l = {.before = '\n'};
   for (size_t at = 0; at < length; at++) {
-    at = skip(&l, text, length, at);
+    at = skip_text(&l, text, length, at);
     if (at >= length) break;
-    take(&l, text[at], at + 1 < length ? text[at + 1] : '\n');
+    count_values(&l, text[at], at + 1 < length ? text[at + 1] : '\n');
     l.before = text[at];
   }
   return l.values * (double)sizeof(strut_tree) + (double)length;

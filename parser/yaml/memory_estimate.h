@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Is there memory to read a text? Asked before its tree is begun.
+ * Memory needed to read a text, estimated before its tree is built.
  */
 #ifndef STRUT_PARSER_YAML_MEMORY_ESTIMATE_H
 #define STRUT_PARSER_YAML_MEMORY_ESTIMATE_H
@@ -10,15 +10,15 @@
 #include "engine/base/status.h"
 
 /**
- * What the text and its tree take at least [B], from one look at its brackets, colons and commas. A
- * colon in running text counts for a pair: not much in a text so large that it matters.
+ * A lower estimate of the size of the text and its tree [B], from its brackets, colons and commas. A
+ * colon in running text counts as a pair, which is negligible in texts large enough to matter.
  */
 STRUT_API double strut_document_needs(const char *text, size_t length);
 
-/** STRUT_NO_MEMORY with what is needed and what there is (memory_limit.h), or STRUT_OK. */
+/** STRUT_OK, or STRUT_NO_MEMORY with the needed and the available memory (memory_limit.h). */
 STRUT_API strut_status strut_memory_check_document(const char *name, const char *text,
                                                    size_t length, strut_error *error);
-/** STRUT_NO_MEMORY in the same words, where memory has run out all the same. */
+/** STRUT_NO_MEMORY with the same message, for memory that ran out in spite of the check. */
 STRUT_API strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
                                                   strut_error *error);
 

@@ -16,7 +16,7 @@
 
 /** Reads one code point; returns its bytes (1 to 4). A bad byte: STRUT_BAD_CODE and 1. left >= 1. */
 size_t strut_text_decode(const char *text, size_t left, uint32_t *code);
-/** Bytes of the line break that begins here (1 to 3), or 0 where none does. */
+/** Bytes of the line break that begins here (1 to 3), or 0. */
 size_t strut_text_break(const char *text, size_t left);
 /** Code points in text[0..length); a bad byte counts as one. */
 size_t strut_text_points(const char *text, size_t length);
@@ -27,7 +27,7 @@ size_t strut_text_mark(const char *text, size_t length);
 /** True for a code point that no text may hold: controls except tab and breaks, U+FEFF, ... */
 bool strut_text_forbidden(uint32_t code);
 
-/** A place that moves forward only. It begins behind a byte order mark. */
+/** A position that moves forward only. It starts after a byte order mark. */
 typedef struct strut_cursor {
   const char *text;
   size_t length, offset; /* bytes */
@@ -36,13 +36,13 @@ typedef struct strut_cursor {
 } strut_cursor;
 
 strut_cursor strut_cursor_begin(const char *text, size_t length);
-/** One code point or line break onward; false at the end. */
+/** Advances by one code point or line break; false at the end. */
 bool strut_cursor_step(strut_cursor *cursor);
-/** Onward until its byte offset is at least `offset`. */
+/** Advances until the byte offset is at least `offset`. */
 void strut_cursor_to_offset(strut_cursor *cursor, size_t offset);
-/** Onward until its count of code points is at least `index`. */
+/** Advances until the number of code points before it is at least `index`. */
 void strut_cursor_to_index(strut_cursor *cursor, size_t index);
-/** Onward to the beginning of the line with that number, or to the end of the text. */
+/** Advances to the beginning of the line with that number, or to the end of the text. */
 void strut_cursor_to_line(strut_cursor *cursor, uint32_t line);
 
 #endif
