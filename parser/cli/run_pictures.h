@@ -27,6 +27,8 @@ typedef struct strut_run_pictures {
   STRUT_PLOT_OPTIONS,                                                                              \
       {STRUT_OPTION_DRAW, "draw", "WHAT", "overview (if not given), period, snapshots or curves"}, \
       {STRUT_OPTION_SCALE, "scale", "X,Y", "draw the motion of a period so many times"},           \
+      {STRUT_OPTION_TITLE, "title", "TEXT",                                                        \
+       "title above the figure, instead of the model's name"},                                     \
       {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},   \
       STRUT_RUN_FILM_OPTIONS
 

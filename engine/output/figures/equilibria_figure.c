@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +14,7 @@ static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
 
 /* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
 static const double *drawn_shape(const strut_equilibria *all, size_t i) {
+  assert(i < all->count);
   const strut_equilibrium *e = &all->list[i];
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
 }
