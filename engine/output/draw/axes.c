@@ -382,7 +382,7 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *t
 
 /* The scale of colours beside a drawing. */
 
-enum { CELLS = 60 };
+enum { CELLS = 48 };
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2;
 

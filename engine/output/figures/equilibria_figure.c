@@ -363,8 +363,9 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
 
-  snprintf(text, sizeof text, "%zu equilibri%s on the ground%s", p->standing_count,
+  snprintf(text, sizeof text, "%zu stable equilibri%s%s%s", p->standing_count,
            p->standing_count == 1 ? "um" : "a",
+           p->model->scene->ground.present ? " on the ground" : "",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
   strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
   y = draw_cards(p, canvas, y, &good);
