@@ -217,6 +217,7 @@ def check_refusals(here, model):
     refuse = lambda err, *words, code=1: run(model, "-q", *words, code=code, err=err)
     refuse("did you mean 'overview'", "--plot", file, "--draw", "overveiw")
     refuse("--draw needs --plot FILE", "--draw", "curves")
+    refuse("--title needs --plot FILE", "--title", "Own title")
     refuse("--scale goes with", "--plot", file, "--scale", "10,2")
     refuse("--times goes with", "--plot", file, "--draw", "period", "--times", "1 s")
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "10")
@@ -231,6 +232,10 @@ def check_refusals(here, model):
     if os.path.exists(file):
         fail("a run that was refused left a picture")
     run(coarse, "-q", "--plot", file)  # an overview there is
+    plain = open(file).read()
+    run(coarse, "-q", "--plot", file, "--title", "Own title")
+    if open(file).read() == plain:
+        fail("--title changes nothing")
 
 
 def check_stopped(here, model):

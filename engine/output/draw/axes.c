@@ -156,6 +156,7 @@ static void logarithmic_ticks(const strut_axis *axis, int wanted, strut_tick_set
 
 void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
   strut_c_locale locale = strut_c_locale_enter();
+  assert(!(axis->low > axis->high));
   *set = (strut_tick_set){0};
   if (axis->logarithmic) {
     logarithmic_ticks(axis, wanted, set);
@@ -381,7 +382,7 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *t
 
 /* The scale of colours beside a drawing. */
 
-enum { CELLS = 60 };
+enum { CELLS = 48 };
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2;
 

@@ -64,6 +64,7 @@ static bool place_points(plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
   const strut_axes axes = axes_of(p, s);
   size_t used = 0, start = 0;
+  assert(!s->count || (s->x && s->y));
   double(*points)[2] = strut_allocate(2 * s->count + 2, sizeof *points);
   p->points[i] = points;
   if (!points) return false;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/map.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -161,6 +162,9 @@ static void settle_axes(const strut_map *map, strut_axis *x, strut_axis *y) {
 strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map *map) {
   mapper m = {.canvas = canvas, .map = map};
   strut_axis x, y;
+  assert(map->columns > 0 && map->rows > 0 && (map->category || map->value));
+  for (size_t i = 1; i < map->columns; i++) assert(map->xs[i] > map->xs[i - 1]);
+  for (size_t i = 1; i < map->rows; i++) assert(map->ys[i] > map->ys[i - 1]);
   double legend[2] = {0, 0}, right = map->category ? 0 : SCALE_WIDTH;
   m.entries = strut_allocate(map->category_count + 2, sizeof *m.entries);
   if (!m.entries) return STRUT_NO_MEMORY;

@@ -2,6 +2,7 @@
 #include "engine/output/draw/structure.h"
 #include "engine/base/vec.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -31,6 +32,7 @@ void strut_bounds_add(strut_bounds *b, const strut_model *model, const double *q
 }
 
 strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
+  assert(box.width > 0 && box.height > 0);
   double width = b.high[0] - b.low[0], height = b.high[1] - b.low[1];
   bool empty = !(width >= 0 && height >= 0);
   double middle[2] = {empty ? 0 : b.low[0] + 0.5 * width, empty ? 0 : b.low[1] + 0.5 * height};

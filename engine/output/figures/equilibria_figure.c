@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +14,7 @@ static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
 
 /* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
 static const double *drawn_shape(const strut_equilibria *all, size_t i) {
+  assert(i < all->count);
   const strut_equilibrium *e = &all->list[i];
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
 }
@@ -361,8 +363,9 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
 
-  snprintf(text, sizeof text, "%zu equilibri%s on the ground%s", p->standing_count,
+  snprintf(text, sizeof text, "%zu stable equilibri%s%s%s", p->standing_count,
            p->standing_count == 1 ? "um" : "a",
+           p->model->scene->ground.present ? " on the ground" : "",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
   strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
   y = draw_cards(p, canvas, y, &good);

@@ -289,7 +289,8 @@ enum { ITEMS = 8 };
 static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
                        strut_key_item items[ITEMS]) {
   size_t count = 0;
-  snprintf(at, TITLE, "rest shape %.*s%s", strut_text_bytes(f->modes->at, 150), f->modes->at,
+  snprintf(at, TITLE, "%s %.*s%s", f->modes->at_rest ? "equilibrium" : "shape",
+           strut_text_bytes(f->modes->at, 150), f->modes->at,
            f->modes->at_rest ? "" : " (no equilibrium)");
   describe_omitted(f, rest);
   items[count++] = (strut_key_item){
@@ -301,9 +302,8 @@ static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
     items[count++] =
         (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = arrow_pen(), .text = "displacement"};
   if (f->model->scene->member_count)
-    items[count++] = (strut_key_item){.sign = STRUT_KEY_SIGNED,
-                                      .before = "shortens",
-                                      .text = "stretches (relative to the largest in each mode)"};
+    items[count++] = (strut_key_item){
+        .sign = STRUT_KEY_SIGNED, .before = "shortens", .text = "stretches, relative per mode"};
   if (rest[0]) items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = rest};
   return count;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -389,6 +390,7 @@ static double curve_height(const strut_path *path, double value, const double *r
 
 static void add_vertex(path_picture *p, double value, const double *q, const double *force,
                        const double *reaction, bool unstable) {
+  assert(p->count < p->path->point_count + p->path->event_count);
   p->vertices[p->count++] =
       (path_vertex){.value = value,
                     .motion = p->sign * (q[p->coordinate] - p->path->points[0].q[p->coordinate]),
@@ -399,6 +401,7 @@ static void add_vertex(path_picture *p, double value, const double *q, const dou
 }
 
 static path_stop *add_stop(path_picture *p, size_t vertex) {
+  assert(p->stop_count < MOST_STOPS && vertex < p->count);
   path_stop *stop = &p->stops[p->stop_count++];
   stop->vertex = vertex;
   return stop;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,10 +27,23 @@ typedef struct panel {
   const char *labels[MOST_CURVES];
 } panel;
 
+static size_t count_items(const strut_run_scene *run, int kind) {
+  const strut_trajectory *m = run->motion;
+  switch (kind) {
+    case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
+    case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
+    case STRUT_RUN_DRIVE: return (size_t)run->model->drives.count;
+    case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
+    case STRUT_RUN_FORCES: return m->force ? m->member_count : 0;
+    default: return m->energy ? 4 : 0;
+  }
+}
+
 /* One value of a kind at a frame. */
 static double value_at(const strut_run_scene *run, int kind, size_t item, size_t f) {
   const strut_trajectory *m = run->motion;
   const double *q = strut_run_positions(run, f);
+  assert(item < count_items(run, kind));
   switch (kind) {
     case STRUT_RUN_DISPLACEMENT: return strut_run_measured(run, f, (int)item);
     case STRUT_RUN_NORMALS: return m->contact[2 * (f * m->contact_count + item)];
@@ -48,18 +62,6 @@ static bool comes_down(const strut_run_scene *run, size_t contact) {
   for (size_t f = 0; f < run->frames; f++)
     if (value_at(run, STRUT_RUN_HEIGHTS, contact, f) < CLOSED * run->model->size) return true;
   return false;
-}
-
-static size_t count_items(const strut_run_scene *run, int kind) {
-  const strut_trajectory *m = run->motion;
-  switch (kind) {
-    case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
-    case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
-    case STRUT_RUN_DRIVE: return (size_t)run->model->drives.count;
-    case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
-    case STRUT_RUN_FORCES: return m->force ? m->member_count : 0;
-    default: return m->energy ? 4 : 0;
-  }
 }
 
 static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
@@ -343,7 +345,7 @@ static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_i
   if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
   if (has_visible_paths(run)) {
     double span = strut_run_time_from(run, first_of_paths(run));
-    snprintf(texts[count], 120, "node trajectories over the last %s, dark to bright",
+    snprintf(texts[count], 120, "node paths, last %s, dark to bright",
              strut_drawn_quantity(span, 3, "s").text);
     items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
     count++;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/figures/run_figure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -55,6 +56,7 @@ strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_
 }
 
 const double *strut_run_positions(const strut_run_scene *run, size_t frame) {
+  assert(frame < run->motion->frames);
   return run->motion->position + 2 * frame * run->motion->node_count;
 }
 
@@ -86,6 +88,10 @@ void strut_run_count_frames(strut_run_scene *run) {
   if (run->frames > 1 && fine && period > 0) run->period = period;
 }
 
+static const char *title_of(const strut_run_scene *run) {
+  return run->figure->title ? run->figure->title : run->model->scene->name;
+}
+
 strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
                                    const strut_model *model, const strut_trajectory *motion,
                                    const strut_summary *summary, strut_error *error) {
@@ -98,7 +104,7 @@ strut_status strut_run_figure_draw(const char *path, const strut_run_figure *fig
   strut_status status = strut_canvas_open_pixels(1, 1, 1, &run.ruler, error);
   if (status == STRUT_OK)
     status = strut_canvas_open(path, figure->width, views[figure->view].height(&run),
-                               model->scene->name, &canvas, error);
+                               title_of(&run), &canvas, error);
   if (status == STRUT_OK) {
     status = views[figure->view].draw(&run, canvas);
     if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
@@ -332,7 +338,7 @@ void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, cons
     snprintf(line, sizeof line, "%s", what);
   if (velocity) append_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);
   strut_draw_text(canvas, x, STRUT_RUN_EDGE,
-                  strut_text_fit(canvas, run->model->scene->name, title, room, 0, fitted), title);
+                  strut_text_fit(canvas, title_of(run), title, room, 0, fitted), title);
   strut_text_fit(canvas, line, below, v != 0 ? room - arrow - 6 : room, 0, fitted);
   strut_draw_text(canvas, x, y, fitted, below);
   if (v == 0) return;

@@ -19,6 +19,7 @@ typedef enum strut_run_view {
 
 typedef struct strut_run_figure {
   strut_run_view view;
+  const char *title;   /* NULL: the scene's name */
   double width;        /* [pt] */
   double scale[2];     /* of PERIOD: enlargement of motion along x and y; 0: 1 */
   size_t time_count;   /* of SNAPSHOTS; 0: six, spread over the record */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -344,6 +345,7 @@ static grid lay_out_grid(const strut_run_scene *run) {
     g.cell[0] = cell;
     g.cell[1] = scale * g.size[1] + other;
   }
+  assert(g.columns > 0 && g.columns * g.rows >= g.count);
   return g;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/figures/table_figure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -313,6 +314,8 @@ static strut_status draw_page(maker *m, const char *path, strut_error *error) {
 
 static strut_status draw_table(const char *path, const strut_table_figure *figure,
                                const strut_table *table, strut_error *error) {
+  assert(figure->y_count > 0 && figure->y_count <= STRUT_MOST_Y);
+  assert(figure->x >= 0 && (size_t)figure->x < table->column_count);
   maker m = {.figure = figure, .table = table};
   strut_status status = strut_table_numbers(table, figure->x, error);
   for (int k = 0; k < figure->y_count && status == STRUT_OK; k++)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/figures/table_figure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +46,7 @@ static double *distinct_values(mapper *m, int column, size_t *count) {
 
 /* Index of the nearest of (count) ascending positions. */
 static size_t nearest_index(const double *at, size_t count, double value) {
+  assert(count > 0);
   size_t low = 0, high = count - 1;
   while (low < high) {
     size_t middle = (low + high) / 2;

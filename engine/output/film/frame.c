@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/film/frame.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -111,6 +112,7 @@ static void interpolate_rows(double *to, const double *rows, size_t count, size_
 void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_t frames,
                      double time) {
   const double *t = motion->time;
+  assert(frames > 0 && moment->frame < frames);
   size_t i = moment->frame;
   while (i + 1 < frames && t[i + 1] <= time) i++;
   size_t j = i + 1 < frames ? i + 1 : i;

@@ -22,6 +22,7 @@ size_t strut_rows_taken(const strut_rows *rows) {
 }
 
 const double *strut_rows_at(const strut_rows *rows, size_t i) {
+  assert(i < strut_rows_taken(rows));
   size_t frame = i * rows->every;
   if (frame >= rows->frames) frame = rows->frames - 1;
   return rows->values + frame * rows->columns;
