@@ -7,10 +7,8 @@
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/equilibria_report.h"
-#include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/yaml/diagnostics.h"
 
@@ -20,7 +18,7 @@ static const int64_t MOST_STARTS = 1000000000, MOST_SEED = 9007199254740992;
 static const char *const file_names[] = {"equilibria.json", NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold only these contact nodes, such as n1,n4"},
     {STRUT_OPTION_STARTS, "starts", "N", "number of random starts per search (default automatic)"},
     {STRUT_OPTION_SEED, "seed", "S", "seed of the random starts (default as the scene says)"},

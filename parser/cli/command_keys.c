@@ -11,6 +11,6 @@ static strut_status run(const strut_arguments *arguments) {
 
 const strut_command strut_command_keys = {
     .name = "keys",
-    .summary = "prints every key of the language, as a page of Markdown",
+    .summary = "prints all keys of the modelling language, as Markdown",
     .run = run,
 };

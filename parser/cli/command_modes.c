@@ -6,7 +6,6 @@
 #include "engine/output/report/modes_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 
 enum { MOST_MODES = 1000 };
@@ -14,10 +13,11 @@ enum { MOST_MODES = 1000 };
 static const char *const file_names[] = {"modes.json", "modes.csv", NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
-    {STRUT_OPTION_AT, "at", "NAME", "at this configuration's equilibrium, or 'drawn'"},
-    {STRUT_OPTION_COUNT, "count", "N", "the lowest N modes"},
-    {STRUT_OPTION_STUCK, "stuck", NULL, "hold nodes that touch along the ground too"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_AT, "at", "NAME",
+     "equilibrium to linearise about (default: that of the start), or drawn"},
+    {STRUT_OPTION_COUNT, "count", "N", "number of modes, lowest first"},
+    {STRUT_OPTION_STUCK, "stuck", NULL, "treat closed contacts as stuck instead of frictionless"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write modes.json and modes.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
@@ -81,11 +81,11 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_modes = {
     .name = "modes",
     .model = "MODEL",
-    .summary = "natural frequencies and shapes of small motions about an equilibrium",
+    .summary = "computes natural frequencies and mode shapes about an equilibrium",
     .details =
-        "\nContacts that are closed there stay closed, and slide without friction unless\n"
-        "--stuck holds them. Without --at it is the equilibrium that the start comes to\n"
-        "rest in. Up to 400 coordinates all modes are computed, above the ten lowest.\n",
+        "\nClosed contacts stay closed and slide without friction, unless --stuck holds them.\n"
+        "Without --at, the equilibrium is the one in which the start comes to rest. All modes are\n"
+        "computed up to 400 coordinates, beyond that the ten lowest.\n",
     .options = options,
     .run = run,
     .timed = true,

@@ -7,7 +7,6 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/table_figure.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
 #include "parser/yaml/diagnostics.h"
@@ -179,8 +178,8 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
   return good ? strut_table_map(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-static strut_status draw_bargains(const strut_arguments *arguments, const strut_plot *plot,
-                                  const strut_table *table, strut_error *error) {
+static strut_status draw_work_precision(const strut_arguments *arguments, const strut_plot *plot,
+                                        const strut_table *table, strut_error *error) {
   strut_table_savings_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
                                        .width = plot->width,
                                        .y = table->column_count > 1 ? 1 : 0,
@@ -213,11 +212,11 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
   return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-/* Kinds of diagrams, with the options that go with one of them only. */
+/* Kinds of diagrams, and the options that only some of them have. */
 static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_table *table,
-                                     strut_error *error) = {draw_curves, draw_map, draw_bargains};
+                                     const strut_table *table, strut_error *error) = {
+    draw_curves, draw_map, draw_work_precision};
 static const struct {
   strut_option_id id;
   const char *name;
@@ -235,7 +234,7 @@ static strut_status read_kind(const strut_arguments *arguments, int *kind) {
       strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_KIND, kinds, kind);
   for (size_t i = 0; i < sizeof limited / sizeof *limited && status == STRUT_OK; i++) {
     if (!strut_option_text(arguments, limited[i].id) || limited[i].kinds >> *kind & 1) continue;
-    fprintf(stderr, "strut plot: --kind %s knows no --%s\n", kinds[*kind], limited[i].name);
+    fprintf(stderr, "strut plot: --kind %s has no option --%s\n", kinds[*kind], limited[i].name);
     status = STRUT_USAGE;
   }
   return status;
@@ -250,7 +249,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_plot, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   if (!plot.path) {
-    fprintf(stderr, "strut plot: where to? give --plot FILE\n");
+    fprintf(stderr, "strut plot: missing --plot FILE\n");
     return STRUT_USAGE;
   }
   status = strut_table_read(arguments->model, &table);
@@ -264,7 +263,7 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_plot = {
     .name = "plot",
     .model = "TABLE",
-    .summary = "draws curves, a map or a work-precision diagram of a table",
+    .summary = "draws curves, a map or a work-precision diagram from a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
         "strut writes it, or - for the standard input. Units get prefixes, curves are told\n"

@@ -4,16 +4,15 @@
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/rigidity_report.h"
-#include "parser/cli/named_shape.h"
 #include "parser/cli/open_model.h"
-#include "parser/cli/plot_options.h"
+#include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 
 static const char *const file_names[] = {"rigidity.json", NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
@@ -71,12 +70,12 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_rigidity = {
     .name = "rigidity",
     .model = "MODEL",
-    .summary = "counts states of self-stress and mechanisms, and says which they are",
+    .summary = "computes self-stress states and mechanisms, and classifies them",
     .details =
-        "\nThe rank of the equilibrium matrix with the gap that decides it, states of\n"
-        "self-stress, mechanisms (rigid-body, infinitesimal, finite), super stability, and the\n"
-        "member forces in the shape. Held coordinates are those of the scene; the ground is no\n"
-        "support here.\n",
+        "\nPrints the rank of the equilibrium matrix with its spectral gap, self-stress states,\n"
+        "mechanisms (rigid-body, infinitesimal, finite), super stability, and the\n"
+        "member forces in the shape. Supports are those of the scene; the ground does not\n"
+        "count as one.\n",
     .options = options,
     .run = run,
     .timed = true,

@@ -6,7 +6,7 @@
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -22,10 +22,10 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_write = {
     .name = "write",
     .model = "MODEL",
-    .summary = "prints a model as it would be run",
+    .summary = "prints the scene that a run would use",
     .details =
-        "\nParameters, groups and units are resolved: every value stands where it is used,\n"
-        "in SI units, and running the text gives the same bits.\n",
+        "\nParameters, groups and units are resolved: every value appears where it is used, in SI\n"
+        "units. A run of the printed scene gives bit-identical results.\n",
     .options = options,
     .run = run,
 };

@@ -9,6 +9,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/** Whether the user's locale writes UTF-8. */
+bool strut_terminal_unicode(void);
+/** Columns of the terminal on that descriptor, else what COLUMNS says, else `usual`. */
+int strut_terminal_columns(int descriptor, int usual);
+
 typedef struct strut_progress {
   bool wanted;       /* stderr is a terminal, and --quiet is not given */
   bool colour;       /* the terminal knows escape sequences and NO_COLOR is not set */

@@ -5,6 +5,8 @@
 #ifndef STRUT_PARSER_CLI_STREAMS_H
 #define STRUT_PARSER_CLI_STREAMS_H
 
+#include <signal.h>
+
 #include "parser/cli/options.h"
 
 /** Opens /dev/null for standard streams that are closed, so that no file of results gets their place. */
@@ -29,5 +31,8 @@ strut_status strut_print_out_of_memory(void);
 /** Prints "strut COMMAND: MESSAGE" on stderr; returns STRUT_USAGE. */
 strut_status strut_print_usage_error(const strut_command *command, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/** From now on SIGINT and SIGTERM set the flag that is returned; a moment later they kill. */
+const volatile sig_atomic_t *strut_interrupt_watch(void);
 
 #endif

@@ -338,7 +338,7 @@ bool strut_expression_unknown_function(strut_expression_reader *r, size_t begin,
   if (strut_expression_reserved(r->text + begin, length) ||
       strut_expression_lookup(r, r->text + begin, length, &ignored) != 0)
     return strut_expression_fail(r, begin, begin + length,
-                                 "'%.*s' is no function; write '*' to multiply",
+                                 "'%.*s' is not a function; write '*' to multiply",
                                  length > SHOWN_MOST ? SHOWN_MOST : (int)length, r->text + begin);
   return fail_with_hint(r, begin, length, "function", false, true, false);
 }

@@ -218,7 +218,7 @@ static bool check_end(strut_expression_reader *r, size_t begin) {
   size_t word = strut_expression_word(r, r->at), end = r->at + (word ? word : 1);
   if (c == '.')
     return strut_expression_fail(r, begin, end,
-                                 "a number has one decimal point and digits behind it");
+                                 "a number has one decimal point and digits after it");
   if (c == '_') return strut_expression_fail(r, begin, end, "digits cannot be grouped with '_'");
   if ((c == 'x' || c == 'X') && r->at == begin + 1 && r->text[begin] == '0')
     return strut_expression_fail(r, begin, end, "hexadecimal numbers are not allowed");

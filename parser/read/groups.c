@@ -109,7 +109,7 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   return count;
 }
 
-/* Does every name in `group:` name a group? Says so where not. */
+/* Does every name in `group:` name a group? Unknown ones are reported. */
 static bool check_names(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner) {
   bool fine = true,
@@ -175,7 +175,7 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   while (count > 0) apply_group(reader, fields, groups[--count], owner);
   if (fine) return;
   reader->groups_unknown = true;
-  fields->broken = true; /* what the unknown group would have given is not missing */
+  fields->broken = true; /* the unknown group may have given what seems to be missing */
   strut_suppress_missing(fields);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes with a name, which of them a run begins in, and how equilibria are looked for.
+/* Named shapes, the one in which a run starts, and the search for equilibria.
    See reader.h. */
 #include <math.h>
 #include <string.h>
@@ -70,8 +70,8 @@ static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner 
 }
 
 /*
- * Is the key one of a configuration, not a node that is called so? Where there is such a node, two
- * scalars behind `contacts` are its position, and so is all but a mapping behind `shape`.
+ * Is this a key of a configuration rather than a node of that name? If there is such a node, a list of
+ * two scalars for `contacts` is its position, and so is anything but a mapping for `shape`.
  */
 static bool is_key(strut_reader *reader, const strut_tree *key) {
   const strut_tree *value = key->next;
@@ -84,7 +84,7 @@ static bool is_key(strut_reader *reader, const strut_tree *key) {
            value->first->next->kind == STRUT_TREE_SCALAR);
 }
 
-/* Reports nodes that stand beside `contacts` or `shape`; true where there are none. */
+/* Reports nodes beside `contacts` or `shape`; true if there are none. */
 static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner owner) {
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {

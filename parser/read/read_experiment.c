@@ -4,14 +4,14 @@
 
 #include "parser/read/reader.h"
 
-static void take_start(strut_reader *reader, int32_t node, const double pair[2],
-                       const strut_tree *value) {
+static void store_start(strut_reader *reader, int32_t node, const double pair[2],
+                        const strut_tree *value) {
   (void)value;
   memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
 }
 
-static void take_velocity(strut_reader *reader, int32_t node, const double pair[2],
-                          const strut_tree *value) {
+static void store_velocity(strut_reader *reader, int32_t node, const double pair[2],
+                           const strut_tree *value) {
   memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
   if (reader->velocity_source) reader->velocity_source[node] = value;
 }
@@ -35,7 +35,7 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
   strut_store_fields(reader, &reader->settle, &reader->scene->arena, settle, sizeof *settle);
 }
 
-/* Positions and velocities: the general first, then what is said of single nodes. */
+/* Positions and velocities: of all nodes first, then of single ones. */
 static void read_state(strut_reader *reader, int32_t configuration) {
   strut_scene *scene = reader->scene;
   const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
@@ -47,7 +47,7 @@ static void read_state(strut_reader *reader, int32_t configuration) {
   if (positions->state == STRUT_GIVEN)
     strut_read_node_pairs(reader, positions->value,
                           (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
-                          take_start);
+                          store_start);
   if (velocity->state == STRUT_GIVEN)
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
@@ -57,10 +57,10 @@ static void read_state(strut_reader *reader, int32_t configuration) {
                                                   sizeof *reader->velocity_source);
   strut_read_node_pairs(reader, velocities->value,
                         (strut_owner){"'velocities' of the initial state", NULL},
-                        STRUT_DIM_VELOCITY, take_velocity);
+                        STRUT_DIM_VELOCITY, store_velocity);
 }
 
-/* An equilibrium says where every node is, and that it rests. */
+/* An equilibrium determines all positions, and that the structure is at rest. */
 static void read_equilibrium(strut_reader *reader) {
   static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
                                STRUT_KEY_INITIAL_SETTLE};
@@ -98,7 +98,7 @@ static const char *driver_name(const void *context, size_t i) {
   return i < reader->named_count ? reader->named[i].name : NULL;
 }
 
-/* What `of` names: an actuator, a load or a signal. */
+/* The signal of the actuator or load that `of` names, or the signal of that name. */
 static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
   const strut_scene *scene = reader->scene;
   int32_t a = strut_name_map_find(&reader->actuator_names, value->text);
@@ -160,7 +160,7 @@ static void read_of(strut_reader *reader) {
   }
 }
 
-/* A window: in periods where the run is, else in seconds; skipped where that is unknown. */
+/* The length of a window: in periods if the run is in periods, otherwise in seconds. */
 static void read_last(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
                       double *last) {
   const strut_slot *slot = strut_slot_of(fields, key);
@@ -169,7 +169,8 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
   if (slot->state != STRUT_GIVEN) return;
   if (!periods->key && !duration->key) {
     fields->broken = true;
-    if (reader->purpose == STRUT_FOR_STATICS) /* else what is missing is about to be said */
+    if (reader->purpose ==
+        STRUT_FOR_STATICS) /* otherwise the missing length of the run is reported */
       strut_report_error(reader, slot->key->place,
                          "'last' of %s needs a run with a duration or periods", owner.kind);
     return;
@@ -227,8 +228,8 @@ static void read_run(strut_reader *reader) {
 }
 
 /*
- * Settling keeps the file's step, whatever step, method or accuracy the run is given later: it then
- * ends in the same bits. Below zero: by the stability limit.
+ * Settling uses the file's step even if the run is later given another step, method or accuracy, so that
+ * it always ends in the same bits. A step below zero is chosen by the stability limit.
  */
 static void choose_settling_step(strut_reader *reader) {
   strut_settle *settle = &reader->scene->settle;

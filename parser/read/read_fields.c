@@ -90,7 +90,7 @@ int strut_key_named(strut_reader *reader, strut_section section, const strut_tre
   return strut_key_find(section, spelling->current);
 }
 
-/* The words of a key, each with its end, for suggestions. */
+/* The words of a key, for suggestions. */
 typedef struct words_context {
   char word[32][24];
   int count;
@@ -141,7 +141,7 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
     if (!read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
-      strut_report_error(reader, item->place, "'%s' stands twice in '%s' of %s", item->text,
+      strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
                          key->name, strut_owner_text(reader, owner));
       fine = false;
     } else {
@@ -160,7 +160,8 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
   return read_words(reader, &in_list, value, owner, bits);
 }
 
-static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
+static bool refuse_value(strut_reader *reader, int key, const strut_tree *value,
+                         strut_owner owner) {
   char expected[300];
   strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
                      strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
@@ -169,7 +170,7 @@ static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut
   return false;
 }
 
-/* Is the value of a shape that the type allows? What is inside is somebody else's to read. */
+/* Is the value a scalar, list or mapping, as the type requires? Its content is not looked at. */
 static bool shape_fits(strut_key_type type, const strut_tree *value) {
   bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
   switch (type) {
@@ -194,7 +195,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_TEXT:
     case STRUT_TYPE_NAME:
     case STRUT_TYPE_EXPRESSION: return scalar;
-    default: return true; /* numbers and words say it themselves */
+    default: return true; /* the readers of numbers and words report it */
   }
 }
 
@@ -207,7 +208,7 @@ static bool read_version(strut_reader *reader, const strut_tree *value) {
   return false;
 }
 
-/* The value proper; false where it has been reported. */
+/* Reads the value; false if it was reported. */
 static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
                        strut_owner owner, strut_slot *slot) {
   strut_dimension dimension = strut_measure_dimension(key->measure);
@@ -236,7 +237,7 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
   const strut_key *k = strut_key_at(key);
   *slot = (strut_slot){.key = key_tree, .value = value};
   bool fine = shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
-                                         : refuse(reader, key, value, owner);
+                                         : refuse_value(reader, key, value, owner);
   slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
 }
 
@@ -314,8 +315,8 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
   if (slot->state == STRUT_BROKEN) fields->broken = true;
 }
 
-/* Of friction: `mu` says both coefficients. */
-static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+/* `mu` sets both coefficients, so that neither may be given beside it. */
+static void check_coefficients(strut_reader *reader, strut_fields *fields, strut_owner owner) {
   const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
@@ -341,7 +342,7 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
   }
   for (const strut_tree *k = map->first; k; k = k->next->next)
     read_pair_of_map(reader, fields, k, owner);
-  if (section == STRUT_SECTION_FRICTION) check_rivals(reader, fields, owner);
+  if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields, owner);
 }
 
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,

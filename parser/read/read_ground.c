@@ -4,7 +4,7 @@
 
 #include "parser/read/reader.h"
 
-/* Friction of one contact while layers of keys are laid over each other. */
+/* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
 typedef struct friction_layers {
   strut_friction friction;
   unsigned given;         /* one bit for each key that some layer gave */
@@ -72,7 +72,7 @@ static bool complete_friction(strut_reader *reader, friction_layers *f,
   return complete;
 }
 
-/* What the contacts of the ground have in common. */
+/* What all contacts of the ground start from. */
 typedef struct ground_defaults {
   strut_contact contact;
   friction_layers friction;
@@ -133,7 +133,7 @@ static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' stands twice in 'nodes' of the ground",
+      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of the ground",
                          item->text);
       fine = false;
     } else {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The whole way from text to a checked scene. See read_scene.h; the parts are in reader.h. */
+/* Reading a whole scene: text, tree, sections, check. See read_scene.h; the parts are in reader.h. */
 #include "parser/read/read_scene.h"
 
 #include <errno.h>
@@ -10,7 +10,7 @@
 #include "parser/read/reader.h"
 #include "parser/yaml/document.h"
 
-/* The scene's own numbers may use parameters, which are read before them but after its other keys. */
+/* The scene's own numbers may use parameters: they are read here, when these are known. */
 static void read_head(strut_reader *reader) {
   strut_owner owner = {"the scene", NULL};
   for (int i = 0; i < strut_section_size(STRUT_SECTION_SCENE); i++) {
@@ -43,8 +43,8 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
   if (!reader->failed) strut_report_idle_settings(reader);
 }
 
-/* The mappings of which there is one: before they are read, and where they are not there. */
-static void prepare(strut_reader *reader) {
+/* Sets the section of every singleton mapping, so that absent ones can be queried. */
+static void clear_sections(strut_reader *reader) {
   reader->ground.section = STRUT_SECTION_GROUND;
   reader->initial.section = STRUT_SECTION_INITIAL;
   reader->settle.section = STRUT_SECTION_SETTLE;
@@ -56,21 +56,21 @@ static void prepare(strut_reader *reader) {
   reader->output.section = STRUT_SECTION_OUTPUT;
 }
 
-/* Does the file say anything about a run? */
-static bool speaks_of_a_run(strut_reader *reader) {
+/* Does the file describe a run? */
+static bool describes_run(strut_reader *reader) {
   const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
   const char *step = strut_key_at(STRUT_KEY_SOLVER_STEP)->name;
   return strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN)->key != NULL ||
          (solver->state == STRUT_GIVEN && strut_tree_find(solver->value, step, NULL));
 }
 
-/* A study in the place of a model would be wrong in every line. */
+/* A study instead of a model gets one message instead of one for each line. */
 static bool is_study(const strut_tree *root) {
   return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
          !strut_tree_find(root, "nodes", NULL);
 }
 
-/* Everything that can be said once there is a tree. */
+/* Reads and checks the tree; reports all errors. */
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
@@ -83,7 +83,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
   if (reader->purpose == STRUT_FOR_ANY)
-    reader->purpose = speaks_of_a_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
+    reader->purpose = describes_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;
@@ -106,7 +106,7 @@ static void free_reader(strut_reader *reader) {
   strut_document_free(&reader->document);
 }
 
-/* From a tree that belongs to somebody else, or from the text where there is none yet. */
+/* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
 static strut_status read_from(const strut_document *document, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
                               strut_scene *scene) {
@@ -120,7 +120,7 @@ static strut_status read_from(const strut_document *document, const strut_settin
   reader->scene = scene;
   reader->diagnostics = diagnostics;
   reader->purpose = purpose;
-  prepare(reader);
+  clear_sections(reader);
   strut_c_locale locale = strut_c_locale_enter();
   if (document)
     reader->document.root = document->root;
@@ -173,7 +173,7 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
   return STRUT_OK;
 }
 
-/* The parameters only. */
+/* Reads nothing but the parameters. */
 static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
   strut_scene scene;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
@@ -181,7 +181,7 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   strut_scene_init(&scene);
   reader->scene = &scene;
   reader->diagnostics = diagnostics;
-  prepare(reader);
+  clear_sections(reader);
   reader->document.root = source->document.root;
   strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root,
                     (strut_owner){"the scene", NULL}, &reader->top);
@@ -209,7 +209,7 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   strut_c_locale_leave(locale);
   strut_diagnostics_free(&unused);
   if (status == STRUT_OK) return status;
-  strut_scene scene; /* once more, for everything that can be said */
+  strut_scene scene; /* read again to report all errors */
   if (status == STRUT_BAD_SCENE)
     status = strut_scene_read(&scene, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
   if (status == STRUT_OK) strut_scene_free(&scene);

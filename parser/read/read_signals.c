@@ -167,7 +167,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
     return -1;
   }
   if (reader->signal_depth >= STRUT_DEEPEST_SIGNAL) {
-    strut_report_error(reader, named->key->place, "signals contain each other more than %d deep",
+    strut_report_error(reader, named->key->place, "signals are nested more than %d deep",
                        STRUT_DEEPEST_SIGNAL);
     return -1;
   }

@@ -288,8 +288,8 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
   plain.quoted = false;
   if (length && !*c && length <= LONGEST_NAME && !strut_is_null(&plain)) return true;
   if (length > LONGEST_NAME && !*c)
-    strut_report_error(reader, key->place, "the name of a %s may have %d bytes, found %zu", kind,
-                       (int)LONGEST_NAME, length);
+    strut_report_error(reader, key->place, "the name of a %s may have at most %d bytes, found %zu",
+                       kind, (int)LONGEST_NAME, length);
   else
     strut_report_error(
         reader, key->place,

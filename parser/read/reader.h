@@ -19,20 +19,20 @@
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/document.h"
 
-/** Whom a message is about: "member 'm1'"; name may be NULL: "the solver". */
+/** The subject of a message: "member 'm1'", or "the solver" where name is NULL. */
 typedef struct strut_owner {
   const char *kind, *name;
 } strut_owner;
 
 typedef enum strut_slot_state { STRUT_ABSENT, STRUT_GIVEN, STRUT_BROKEN } strut_slot_state;
 
-/** The value of one key, as far as the table says how to read it. */
+/** The value of one key, as far as the table determines it. */
 typedef struct strut_slot {
   strut_slot_state state;
   int word;                      /* WORD: its index; WORDS: bits; FIXED: 1 x, 2 y */
   double number[2];              /* NUMBER, PAIR; SI */
-  const strut_tree *key, *value; /* where it stands */
-  struct strut_group_item *from; /* the key of a group that it came from, or NULL: its own */
+  const strut_tree *key, *value; /* its place in the tree */
+  struct strut_group_item *from; /* the group's key that gave it; NULL: its own */
 } strut_slot;
 
 /** The keys of one mapping. */
@@ -43,7 +43,7 @@ typedef struct strut_fields {
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
-/** One key of a group, and what it is called in the sections that may use the group. */
+/** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
   int key[3];           /* in member, node, contact; -1: not there */
@@ -72,7 +72,7 @@ typedef struct strut_parameter_state {
   strut_quantity quantity;
 } strut_parameter_state;
 
-/** A thing with a name: where it stands, and whether findings about it make sense. */
+/** A named thing: its place, and whether it was read completely, so that findings about it make sense. */
 typedef struct strut_source {
   const strut_tree *key, *value;
   bool broken;
@@ -93,7 +93,7 @@ typedef struct strut_named_signal {
   int32_t index; /* into the signals; -1: it could not be read */
 } strut_named_signal;
 
-/** How many parameters may wait for each other, and how many signals. */
+/** Longest chains of parameters and of signals that refer to each other. */
 enum { STRUT_DEEPEST_PARAMETER = 200, STRUT_DEEPEST_SIGNAL = 64 };
 
 typedef struct strut_reader {
@@ -124,10 +124,10 @@ typedef struct strut_reader {
   const char *asking_set;   /* or the parameter whose setting is */
   unsigned spellings;       /* one bit for each former name that was noted */
   size_t suggestions;       /* names compared so far, to bound the effort */
-  bool holes;               /* the text lacks what was refused in it: nothing is missing */
-  bool ends_unknown;        /* some member or load could not be tied to its nodes */
-  bool masses_unknown;      /* some mass could not be read */
-  bool groups_unknown;      /* somebody's groups could not be read */
+  bool holes;          /* refused parts are missing from the tree: absent keys are not reported */
+  bool ends_unknown;   /* some member or load could not be tied to its nodes */
+  bool masses_unknown; /* some mass could not be read */
+  bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
 } strut_reader;
 
@@ -148,7 +148,7 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
                        const void *context, size_t count);
 /** True while suggestions may still be looked for: they are bounded for the file as a whole. */
 bool strut_hints_left(const strut_reader *reader);
-/** "a list", "a mapping", "nothing", "'text'": what a value is instead; lives in scratch. */
+/** "a list of 3", "a mapping", "nothing", "'text'": the value in a message; lives in scratch. */
 const char *strut_found(strut_reader *reader, const strut_tree *value);
 /** The beginning of the file, for what is about all of it. */
 strut_place strut_root_place(const strut_reader *reader);
@@ -184,7 +184,7 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
                              strut_owner owner, const char *kind, const strut_name_map *map,
                              strut_names *names, size_t count);
-/** May a thing be called so? If not, that is reported. */
+/** Is the name allowed? If not, that is reported. */
 bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *kind);
 /** Adds a name to a map; remembers when memory is out. */
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
@@ -197,7 +197,7 @@ void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t cou
  */
 size_t strut_next_entry(const strut_reader *reader, size_t *count);
 
-/** A copy in the scene's own memory; "" where that is out. */
+/** A copy in the scene's arena; "" if memory is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
 
 /* read_fields.c: mappings */
@@ -224,12 +224,12 @@ int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_s
  */
 void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
                         void *object, size_t object_size);
-/** Marks every absent key as broken, so that nothing is said to be missing. */
+/** Marks every absent key as broken, so that none is reported as missing. */
 void strut_suppress_missing(strut_fields *fields);
-/** True where the mapping behind a key of the scene is there and could be read. */
+/** Reads the mapping of a key of the scene; true if it is present and a mapping. */
 bool strut_read_section(strut_reader *reader, int key, strut_section section, const char *owner,
                         strut_fields *fields);
-/** The mapping of things behind a key of the scene, or NULL. */
+/** The mapping of names to things that is the value of a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
 
 /* groups.c */
@@ -246,9 +246,9 @@ void strut_report_unused_groups(strut_reader *reader);
 /* parameters.c */
 
 void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count);
-/** The record of what was used, for the scene. */
+/** Stores the parameters as they were used in the scene, for the record. */
 void strut_keep_parameters(strut_reader *reader);
-/** A setting that changes nothing is an error: it cannot be what was meant. */
+/** Reports settings of parameters that nothing uses. */
 void strut_report_idle_settings(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
 /** The parameter of that name, or NULL. */

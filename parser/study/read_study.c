@@ -59,7 +59,7 @@ static void read_settings(strut_study_reader *r, const strut_slot *slot, size_t 
   }
 }
 
-/* --set of what the study itself varies is a contradiction. */
+/* Reports --set of parameters that the study itself varies or derives. */
 static void check_overrides(strut_study_reader *r, size_t overrides) {
   strut_study_file *file = r->file;
   for (size_t i = 0; i < overrides; i++) {
@@ -85,7 +85,7 @@ static const strut_tree *quantities_of(strut_scene_source *source) {
   return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
 }
 
-/* What `keep` may name: the words of the table of keys, then the model's quantities. */
+/* The names that `keep` may contain: words of the table of keys, then the model's quantities. */
 typedef struct kept_names {
   char word[32][24];
   size_t word_count;
@@ -138,7 +138,7 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
     bool scalar = item->kind == STRUT_TREE_SCALAR;
     int word = scalar ? strut_word_find(words, item->text) : -1;
     if (scalar && is_twice(slot->value, item))
-      strut_report_error(r->reader, item->place, "'%s' stands twice in 'keep' of the study",
+      strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
     else if (word >= 0)
       study->keep |= 1u << word;
@@ -156,7 +156,7 @@ static void require_column(strut_study_reader *r, const strut_fields *fields, co
                      kind, key->text, name);
 }
 
-/* What a kind cannot do without. */
+/* Reports columns that the kind of figure needs. */
 static void require_columns(strut_study_reader *r, const strut_fields *fields,
                             const strut_tree *key, const strut_study_figure *f) {
   static const char *const kinds[] = {"figure", "map", "figure", "", ""};
@@ -217,7 +217,7 @@ static size_t size_of(const strut_slot *slot) {
   return slot->state == STRUT_GIVEN ? slot->value->count : 0;
 }
 
-/* What refers to the model's parameters. */
+/* Reads what refers to the model's parameters: set, derive and axes. */
 static void read_points(strut_study_reader *r, strut_fields *top, const strut_override *overrides,
                         size_t count) {
   strut_study_file *file = r->file;
@@ -236,7 +236,7 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   check_overrides(r, count);
 }
 
-/* A model in the place of a study would be wrong in every line. */
+/* A model instead of a study gets one message instead of one for each line. */
 static bool is_model(const strut_tree *root) {
   return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "nodes", NULL) &&
          !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
@@ -381,7 +381,7 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
   if (status != STRUT_BAD_SCENE) return status;
   format_values(file, values, text, sizeof text);
-  strut_diagnose(&file->diagnostics, (strut_place){0}, "there is no model to run at %s", text);
+  strut_diagnose(&file->diagnostics, (strut_place){0}, "the model cannot be run at %s", text);
   return status;
 }
 

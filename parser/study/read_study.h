@@ -32,7 +32,7 @@ typedef struct strut_study_file {
 
 /**
  * Reads the study at `path` and its model. On STRUT_BAD_SCENE strut_study_messages has every finding;
- * STRUT_FILE_TROUBLE with the reason in `error`. overrides (--set) are kept as they are.
+ * STRUT_FILE_TROUBLE with the reason in `error`. overrides (--set) are not copied.
  */
 STRUT_API strut_status strut_study_open(const char *path, const strut_override *overrides,
                                         size_t override_count, strut_study_file *file,
@@ -48,7 +48,7 @@ STRUT_API const char *strut_study_notes(strut_study_file *file);
 STRUT_API strut_status strut_study_scene(const strut_study_file *file,
                                          const strut_study_value *values, strut_scene *scene,
                                          strut_error *error);
-/** The same for one thread: on STRUT_BAD_SCENE all findings go to the messages, and the values. */
+/** Like strut_study_scene, for one thread: all findings go to the messages, with the values of the axes. */
 STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
 /**
  * All that decides the results, as a text that does not change with comments, blanks and the order

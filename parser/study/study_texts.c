@@ -64,7 +64,7 @@ static void put_number(strut_writer *w, double value) {
   strut_put(w, " ");
 }
 
-/* Texts with their length, so that no two trees read alike. */
+/* Texts are preceded by their length, so that different trees give different texts. */
 static void put_word(strut_writer *w, const char *text) {
   put_number(w, (double)strlen(text));
   strut_put(w, text);

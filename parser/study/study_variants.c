@@ -5,7 +5,7 @@
 #include "parser/language/keys.h"
 #include "parser/study/study_reader.h"
 
-/* Keys that a key laid over replaces besides its own name. */
+/* Pairs of keys of which the first, laid over, also replaces the second. */
 static const char *const rivals[][2] = {
     {"duration", "periods"},      {"duration", "of"},         {"periods", "duration"},
     {"step", "accuracy"},         {"integrator", "accuracy"}, {"equilibrium", "configuration"},
@@ -17,7 +17,7 @@ strut_place strut_overlay_place(strut_place place) {
   return place;
 }
 
-/* A node as it is, its children shared; NULL: memory is out. */
+/* A copy of the node that shares its children; NULL: memory is out. */
 static strut_tree *copied(strut_arena *arena, const strut_tree *node) {
   strut_tree *copy = strut_arena_allocate(arena, 1, sizeof *copy);
   if (!copy) return NULL;
@@ -26,7 +26,7 @@ static strut_tree *copied(strut_arena *arena, const strut_tree *node) {
   return copy;
 }
 
-/* All of it, marked. Documents are no deeper than 64 levels. */
+/* A copy of the whole tree with marked places. Documents have at most 64 levels. */
 static strut_tree *marked(strut_arena *arena, const strut_tree *node) {
   strut_tree *copy = copied(arena, node);
   if (!copy) return NULL;
@@ -114,7 +114,7 @@ static bool lay_map_over(strut_document *document, const char *section, const st
   if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
   strut_tree *below = strut_tree_find(root, section, NULL);
   if (!below) return append(document, section, value);
-  if (below->kind != STRUT_TREE_MAP) return true; /* what is wrong with it will be said */
+  if (below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
   strut_tree *map = merged(&document->arena, strut_section_find(section), below, value);
   if (!map) return false;
   below->first = map->first;
@@ -218,8 +218,8 @@ static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_
 static void check_name(strut_study_reader *r, const strut_tree *key) {
   strut_read_name(r->reader, key, "variant");
   if (strlen(key->text) >= 24)
-    strut_report_error(r->reader, key->place, "names of variants may have 23 bytes, found %zu",
-                       strlen(key->text));
+    strut_report_error(r->reader, key->place,
+                       "names of variants may have at most 23 bytes, found %zu", strlen(key->text));
 }
 
 static strut_status open_variants(strut_study_reader *r, strut_fields *top,

@@ -328,7 +328,8 @@ static bool read_alias(reader *r, const yaml_event_t *event) {
   if (!anchor || !anchor->weight) {
     strut_diagnose(
         r->diagnostics, place,
-        anchor ? "alias '*%.64s' stands inside what it repeats" : "unknown alias '*%.64s'", name);
+        anchor ? "alias '*%.64s' refers to a value that contains it" : "unknown alias '*%.64s'",
+        name);
     return false;
   }
   r->expanded += anchor->weight;
@@ -410,8 +411,9 @@ static bool check_rest(reader *r, const yaml_event_t *event) {
   if (at->offset >= at->length) return true;
   bool next = at->length - at->offset >= 3 && memcmp(at->text + at->offset, "---", 3) == 0;
   strut_place place = {at->line, at->column, next ? 3 : 1};
-  strut_diagnose(r->diagnostics, place,
-                 next ? "a second document; a file holds one" : "text behind the document's end");
+  strut_diagnose(
+      r->diagnostics, place,
+      next ? "a second document; a file holds one" : "text after the end of the document");
   return false;
 }
 

@@ -128,20 +128,22 @@ static const struct rule {
      .context = "quoted scalar",
      .at_context = true,
      .message = "this quote is not closed before the document ends"},
-    {.problem = "expected ',' or ']'", .begun = "the list begun", .message = "expected ',' or ']'"},
+    {.problem = "expected ',' or ']'",
+     .begun = "the list that begins",
+     .message = "expected ',' or ']'"},
     {.problem = "expected ',' or '}'",
-     .begun = "the mapping begun",
+     .begun = "the mapping that begins",
      .message = "expected ',' or '}'"},
     {.problem = "could not find expected ':'",
      .at_context = true,
      .is_key = true,
-     .message = "expected ':' and a value behind this key"},
+     .message = "expected ':' and a value after this key"},
     {.problem = "expected key",
-     .begun = "the mapping begun",
+     .begun = "the mapping that begins",
      .at_margin = true,
      .message = "expected a key at the same indentation as the other keys"},
     {.problem = "expected '-' indicator",
-     .begun = "the list begun",
+     .begun = "the list that begins",
      .at_margin = true,
      .message = "expected '- ' at the same indentation as the other items"},
     {.problem = "block sequence entries are not allowed",
@@ -156,16 +158,16 @@ static const struct rule {
     {.problem = "invalid Unicode", .message = "the escape is not a character of Unicode"},
     {.problem = "alphabetic or numeric character",
      .context = "anchor",
-     .message = "expected a name behind '&'; a text that begins with '&' needs quotes"},
+     .message = "expected a name after '&'; a text that begins with '&' needs quotes"},
     {.problem = "alphabetic or numeric character",
      .context = "alias",
-     .message = "expected a name behind '*'; a text that begins with '*' needs quotes"},
+     .message = "expected a name after '*'; a text that begins with '*' needs quotes"},
     {.problem = "undefined tag handle",
      .message = "tags (words that begin with '!') are not allowed"},
     {.context = "a tag", .message = "tags (words that begin with '!') are not allowed"},
     {.problem = "incompatible YAML document", .message = "only YAML 1.1 and 1.2 can be read"},
     {.context = "directive", .message = "expected '%YAML 1.2'"},
-    {.problem = "<document start>", .message = "expected '---' behind a %YAML line"},
+    {.problem = "<document start>", .message = "expected '---' after a %YAML line"},
     {.context = "block scalar", .message = "expected '|' or '>' and then a new line"},
 };
 
@@ -234,7 +236,7 @@ bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *
       return true;
     }
     if (rule->at_margin && behind_something(diagnostics, place))
-      strut_diagnose(diagnostics, place, "unexpected text behind a value");
+      strut_diagnose(diagnostics, place, "unexpected text after a value");
     else if (rule->begun)
       strut_diagnose(diagnostics, place, "%s (%s in line %zu)", rule->message, rule->begun,
                      parser->context_mark.line + 1);

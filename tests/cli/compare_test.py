@@ -76,7 +76,7 @@ def check_rigidity(path, v):
 def check_states(path, model):
     told, v = read("equilibria", path), model["values"]
     stands = {e["name"]: (e["rest"] or e)["energy"] for e in told["equilibria"]
-              if e["fate"] == "stands"}
+              if e["outcome"] == "stands"}
     if {s["name"]: s["energy"] for s in model["states"]} != stands:
         fail(f"{path}: states {model['states']}, not {stands}")
     energies = [s["energy"] for s in model["states"]]
@@ -193,7 +193,7 @@ check_frequencies(CRAWLER, crawler["values"])
 check_motion(CRAWLER, crawler)
 same("mass", crawler["values"]["mass"], 0.14)
 if crawler["values"]["lowest_energy"] is not None or \
-        crawler["why_empty"]["lowest_energy"] != "not asked for":
+        crawler["reasons"]["lowest_energy"] != "not asked for":
     fail("states that were not asked for")
 
 # ---- unlike structures, settings, CSV ----
@@ -209,12 +209,12 @@ if by["x-frame"]["without_parameters"] != ["frequency", "start"] or \
     fail("parameters that a model does not have are not told")
 check_motion(CRAWLER, by["crawler"], "--set", "frequency=10.5 Hz", "--set", "start=II")
 if by["x-frame"]["values"]["velocity"] is not None or "drive" not in \
-        by["x-frame"]["why_empty"]["drive_frequency"]:
+        by["x-frame"]["reasons"]["drive_frequency"]:
     fail("a structure without drive")
 for model in both["models"]:
     for key, value in model["values"].items():
-        if (value is None) != (key in model["why_empty"]):
-            fail(f"{model['model']}: {key} is {value}, the reason {model['why_empty'].get(key)}")
+        if (value is None) != (key in model["reasons"]):
+            fail(f"{model['model']}: {key} is {value}, the reason {model['reasons'].get(key)}")
 told = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
 rows = list(csv.DictReader(io.StringIO(told)))
 alone = read("compare", CRAWLER, X, "--no-states")["models"]
@@ -255,7 +255,7 @@ members:
         fail("the first differs from itself")
     # stiffer by a factor: a spring from a wall, whose stiffness along it is its own
     same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
-    if found["models"][0]["why_empty"].get("stiffness_y") is None:
+    if found["models"][0]["reasons"].get("stiffness_y") is None:
         fail("a spring without tension resists across")
     out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
     for line in ("two against one", "+ members.ac", "- parameters.unlike",

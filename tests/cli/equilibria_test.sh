@@ -22,8 +22,8 @@ expect 0 equilibria "$crawler" --json -o results
 cp out all.json
 same all.json results/equilibria.json
 files results equilibria.json
-for key in name strut_version seed starts missed chance bound remark equilibria label energy \
-  potential contacts supports fate verdict tips_over ends_as shape placements found collapsed crossings nodes forces \
+for key in name strut_version seed starts missed probability smallest_basin remark equilibria label energy \
+  potential contacts supports outcome verdict tips_over ends_as shape congruent_copies found collapsed crossings nodes forces \
   reactions below_ground eigenvalues negative_eigenvalues zero_eigenvalues rest residual down \
   barriers from to height saddle via direct direct_saddle; do
   out_has "\"$key\":"
@@ -43,7 +43,7 @@ grep -q '"supports":	\["n2", "n4"\]' out && fail "--supports holds others too"
 cp out seed-7
 expect 0 equilibria "$crawler" --json --seed 8 --supports n1,n4
 for file in seed-7 out; do
-  jq -r '.equilibria[] | select(.fate == "stands") | "\(.name) \(.energy * 1e6 | round)"' $file |
+  jq -r '.equilibria[] | select(.outcome == "stands") | "\(.name) \(.energy * 1e6 | round)"' $file |
     grep -v n1-n2-n3-n4-n5 | sort >$file.names
 done
 same seed-7.names out.names

@@ -185,7 +185,7 @@ def check_cards(driver, name, listed):
     stable = [e for e in listed if e["label"] in ("stable", "floppy")]
     left_out = run(driver, "strut.data.equilibria_left_out || 0")
     check(len(cards) + left_out >= len(stable) and cards, f"{name}: {len(cards)} cards")
-    standing = [e for e in listed if e["fate"] == "stands"]
+    standing = [e for e in listed if e["outcome"] == "stands"]
     shown = [card for card in cards if card.is_displayed()]
     check(len(shown) == len(standing), f"{name}: {len(shown)} cards of {len(standing)} that stand")
     for card in shown[:3]:

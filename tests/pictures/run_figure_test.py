@@ -216,7 +216,7 @@ def check_refusals(here, model):
     file = os.path.join(here, "none.svg")
     refuse = lambda err, *words, code=1: run(model, "-q", *words, code=code, err=err)
     refuse("did you mean 'overview'", "--plot", file, "--draw", "overveiw")
-    refuse("give --plot FILE too", "--draw", "curves")
+    refuse("--draw needs --plot FILE", "--draw", "curves")
     refuse("--scale goes with", "--plot", file, "--scale", "10,2")
     refuse("--times goes with", "--plot", file, "--draw", "period", "--times", "1 s")
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "10")

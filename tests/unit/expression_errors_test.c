@@ -15,7 +15,7 @@
 
 static void malformed_numbers_are_named(void **state) {
   (void)state;
-  const char *point = "a number has one decimal point and digits behind it";
+  const char *point = "a number has one decimal point and digits after it";
   expect_error("1.", 0, 2, point);
   expect_error("1.2.3", 0, 4, point);
   expect_error("2*1..5", 2, 2, point);
@@ -63,7 +63,7 @@ static void names_are_looked_up(void **state) {
   expect_error("1 + tow", 4, 3, "unknown parameter 'tow'; did you mean 'two'?");
   expect_error("xyzzy", 0, 5, "unknown parameter 'xyzzy'");
   expect_error("sine(1)", 0, 4, "unknown function 'sine'; did you mean 'sin'?");
-  expect_error("two(1)", 0, 3, "'two' is no function; write '*' to multiply");
+  expect_error("two(1)", 0, 3, "'two' is not a function; write '*' to multiply");
   expect_error("sin", 0, 3, "the function 'sin' needs its arguments in parentheses");
   expect_error("2*lost", 2, 4, ""); /* the lookup has said why */
   strut_quantity q;
@@ -78,9 +78,10 @@ static void names_are_looked_up(void **state) {
 
 static void wrong_dimensions_are_named(void **state) {
   (void)state;
-  expect_error("2*(1 m + 1 s)", 3, 9, "'+' joins a length and a time, expected one dimension");
-  expect_error("1 m - f", 0, 7, "'-' joins a length and a frequency, expected one dimension");
-  expect_error("min(1 m, 1 kg)", 0, 14, "'min' joins a length and a mass, expected one dimension");
+  expect_error("2*(1 m + 1 s)", 3, 9, "'+' joins a length and a time, expected equal dimensions");
+  expect_error("1 m - f", 0, 7, "'-' joins a length and a frequency, expected equal dimensions");
+  expect_error("min(1 m, 1 kg)", 0, 14,
+               "'min' joins a length and a mass, expected equal dimensions");
   expect_error("2^(1 m)", 0, 7, "the exponent is a length, expected a number without unit");
   expect_error("sin(1 m)", 0, 8, "'sin' takes an angle, got a length");
   expect_error("sin(1 Hz * (1 s) * 1 kg)", 0, 24, "'sin' takes an angle, got a mass");

@@ -13,7 +13,7 @@
 
 /* Round numbers on axes, and how they are written. */
 
-/* More significant digits than this are an offset's business. */
+/* Ticks with more significant digits get a common offset. */
 enum { MOST_DIGITS = 5 };
 
 static double round_step(double rough) {
@@ -21,7 +21,7 @@ static double round_step(double rough) {
   return power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
 }
 
-/* The number with the fewest digits that is no farther from the middle than five ranges. */
+/* The number with fewest digits within five ranges of the middle. */
 static double common_part(double low, double high) {
   double middle = low + 0.5 * (high - low), near = middle;
   for (int k = (int)floor(log10(fabs(middle))); k >= (int)floor(log10(high - low)); k--) {
@@ -39,7 +39,7 @@ size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_
   double step = round_step((high - low) / wanted);
   double first = ceil(low / step - 1e-9);
   for (double k = first; k * step <= high + 1e-9 * step && count < STRUT_MOST_TICKS; k++) {
-    if (count && k * step <= ticks[count - 1]) break; /* below what doubles tell apart */
+    if (count && k * step <= ticks[count - 1]) break; /* closer than doubles resolve */
     ticks[count++] = k == 0 ? 0 : k * step;
   }
   return count;
@@ -106,7 +106,7 @@ static void linear_ticks(const strut_axis *axis, int wanted, strut_tick_set *set
   set->count = strut_ticks(axis->low, axis->high, wanted, set->at);
   double step = set->count > 1 ? set->at[1] - set->at[0] : axis->high - axis->low;
   bool far = largest / step > 2 * pow(10.0, MOST_DIGITS);
-  if (far) { /* what all ticks have in common is said once */
+  if (far) { /* the common part of all ticks goes into the label */
     offset = common_part(axis->low, axis->high);
     largest = fmax(fabs(axis->low - offset), fabs(axis->high - offset));
   }
@@ -168,7 +168,8 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TITLE_SIZE = 8.5, TICK = 2.5, GAP = 2.5;
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
 
-/* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's size. */
+/* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's
+   size. */
 static const double ROUNDING = 1e-12, LEAST_LENGTH = 1e-13;
 
 bool strut_is_noise(double *low, double *high, const char *unit) {
@@ -201,7 +202,7 @@ void strut_axis_settle(strut_axis *axis, double room) {
   bool constant = strut_is_noise(&axis->low, &axis->high, axis->unit);
   double span = axis->high - axis->low;
   double size = fmax(fabs(axis->low), fabs(axis->high));
-  if (constant || !isfinite(span)) { /* a constant stands in the middle */
+  if (constant || !isfinite(span)) { /* a constant is drawn in the middle */
     span = size > 1e-300 ? fmin(size, 1e300) : 1;
     room = isfinite(axis->high - axis->low) ? 0.1 : 0;
   }
@@ -209,7 +210,7 @@ void strut_axis_settle(strut_axis *axis, double room) {
   axis->high += room * span;
 }
 
-/* How many ticks go along: by the room that their texts take. */
+/* The number of ticks whose texts fit into the width. */
 static int ticks_along_x(strut_canvas *canvas, const strut_axis *axis, double width) {
   for (int wanted = 10; wanted > 1; wanted--) {
     strut_tick_set set;
@@ -272,14 +273,14 @@ strut_axes strut_axes_right(const strut_axes *axes) {
   return swapped;
 }
 
-static double place(const strut_axis *axis, double value) {
+static double axis_fraction(const strut_axis *axis, double value) {
   if (axis->logarithmic) return log10(value / axis->low) / log10(axis->high / axis->low);
   return (value - axis->low) / (axis->high - axis->low);
 }
 
 void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]) {
-  point[0] = axes->frame.x + axes->frame.width * place(&axes->x, x);
-  point[1] = axes->frame.y + axes->frame.height * (1.0 - place(&axes->y, y));
+  point[0] = axes->frame.x + axes->frame.width * axis_fraction(&axes->x, x);
+  point[1] = axes->frame.y + axes->frame.height * (1.0 - axis_fraction(&axes->y, y));
 }
 
 static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
@@ -395,7 +396,7 @@ static void draw_strip(strut_canvas *canvas, strut_box strip, bool upright,
   for (int i = 0; i < CELLS; i++) {
     const strut_fill fill = {.colour = colour_at(scale, (i + 0.5) / CELLS)};
     strut_box cell = strip;
-    if (upright) { /* from the top: each covers what is left below the one before */
+    if (upright) { /* from the top: each cell covers the rest of the strip */
       cell.height = strip.height * (CELLS - i) / CELLS;
       const strut_fill from_top = {.colour = colour_at(scale, 1 - (i + 0.5) / CELLS)};
       cell.y = strip.y + strip.height - cell.height;

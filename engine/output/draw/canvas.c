@@ -25,7 +25,7 @@ struct strut_canvas {
   bool is_svg, is_png;
 };
 
-/* Beyond this Cairo's fixed-point numbers end; nothing on a page is so far away [pt]. */
+/* Limit of Cairo's fixed-point numbers; nothing on a page is as far away [pt]. */
 static const double FARTHEST = 1e6;
 
 /* Sets the colour of what is drawn next. */
@@ -43,10 +43,11 @@ static double clamp_coordinate(double coordinate) {
   return coordinate < FARTHEST ? coordinate : FARTHEST;
 }
 
-/* Cairo numbers an SVG's surfaces through the life of the process: here from 0 in every picture, so
-   that its bytes do not tell what was drawn before. */
+/* Cairo numbers the surfaces of SVG files through the life of the process. Numbering them from 0
+   in every picture makes its bytes independent of what was drawn before. */
 
-/* How Cairo 1.16 and 1.18 call what carries such a number. Texts are outlines: none can look so. */
+/* Prefixes of numbered names in Cairo 1.16 and 1.18. Texts are outlines, so no other text
+   matches. */
 static const char *const prefixes[] = {"surface", "source-"};
 
 typedef struct numbers {
@@ -55,7 +56,7 @@ typedef struct numbers {
 } numbers;
 
 /* The place of `number` among those seen so far; false when memory is out. */
-static bool place_of(numbers *n, unsigned long number, size_t *place) {
+static bool find_index(numbers *n, unsigned long number, size_t *place) {
   for (*place = 0; *place < n->count; ++*place)
     if (n->seen[*place] == number) return true;
   if (n->count == n->room) {
@@ -91,7 +92,7 @@ static bool renumber_surfaces(char *svg) {
     }
     char *end;
     unsigned long number = strtoul(in + length, &end, 10);
-    good = place_of(&n, number, &place);
+    good = find_index(&n, number, &place);
     memmove(out, in, length);
     /* The i-th that appears cannot have a number below i: the new one is never longer. */
     char digits[24];
@@ -107,7 +108,7 @@ static bool renumber_surfaces(char *svg) {
 
 /* Texts, set by Pango: any script, either direction, taken literally. */
 
-/* One family by name, so that pictures look alike on every machine that has it. */
+/* A fixed family: pictures look alike on every machine that has it. */
 static const char *const FAMILY = "DejaVu Sans, Liberation Sans, sans-serif";
 static const double USUAL_SIZE = 8.0, HALO = 2.4;
 
@@ -157,7 +158,7 @@ static void set_text(strut_canvas *c, const char *text, const strut_font *font) 
 }
 
 /* The layout's size [pt]. */
-static void measure(strut_canvas *c, double *width, double *height) {
+static void measure_layout(strut_canvas *c, double *width, double *height) {
   PangoRectangle logical;
   pango_layout_get_extents(c->layout, NULL, &logical);
   *width = (double)logical.width / PANGO_SCALE;
@@ -167,14 +168,14 @@ static void measure(strut_canvas *c, double *width, double *height) {
 void strut_text_size(strut_canvas *c, const char *text, strut_font font, double *width,
                      double *height) {
   set_text(c, text, &font);
-  measure(c, width, height);
+  measure_layout(c, width, height);
 }
 
 void strut_draw_text(strut_canvas *c, double x, double y, const char *text, strut_font font) {
   double width, height;
   if (!text || !*text) return;
   set_text(c, text, &font);
-  measure(c, &width, &height);
+  measure_layout(c, &width, &height);
   PangoRectangle logical;
   pango_layout_get_extents(c->layout, NULL, &logical);
   cairo_save(c->cairo);
@@ -215,9 +216,7 @@ static ending ending_of(const char *path) {
 strut_status strut_canvas_check_name(const char *path, strut_error *error) {
   if (ending_of(path) != NO_ENDING) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
-                    "the name of a picture says how it is written: '%s' should end with .svg, .pdf "
-                    "or .png",
-                    path);
+                    "unknown picture format '%s': the name must end with .svg, .pdf or .png", path);
 }
 
 static cairo_status_t gather_bytes(void *context, const unsigned char *bytes, unsigned int count) {
@@ -233,9 +232,9 @@ static cairo_status_t write_bytes(void *context, const unsigned char *bytes, uns
                                                         : CAIRO_STATUS_WRITE_ERROR;
 }
 
-/* The drawing context on a surface, which it takes over. */
-static strut_status start(strut_canvas *c, cairo_surface_t *surface, double scale,
-                          strut_error *error) {
+/* Opens a drawing context on a surface and takes ownership of the surface. */
+static strut_status open_context(strut_canvas *c, cairo_surface_t *surface, double scale,
+                                 strut_error *error) {
   c->cairo = cairo_create(surface);
   cairo_surface_destroy(surface); /* the context keeps it */
   cairo_scale(c->cairo, scale, scale);
@@ -259,7 +258,7 @@ static cairo_surface_t *surface_for(strut_canvas *c, ending kind, const char *ti
       cairo_pdf_surface_create_for_stream(write_bytes, &c->file, width, height);
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title);
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "strut " STRUT_VERSION);
-  /* Without one of ours it takes the clock's. */
+  /* A fixed date keeps the bytes reproducible. */
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "1970-01-01T00:00:00Z");
   return surface;
 }
@@ -275,7 +274,7 @@ strut_status strut_canvas_open(const char *path, double width, double height, co
   status = strut_file_open_path(&c->file, path, error);
   if (status == STRUT_OK) {
     ending kind = ending_of(path);
-    status = start(c, surface_for(c, kind, title), kind == PNG ? PNG_SCALE : 1.0, error);
+    status = open_context(c, surface_for(c, kind, title), kind == PNG ? PNG_SCALE : 1.0, error);
   }
   if (status == STRUT_OK) {
     strut_canvas_clear(c, (strut_colour){1, 1, 1, 1});
@@ -293,7 +292,7 @@ strut_status strut_canvas_open_pixels(int width, int height, double scale, strut
   if (!c) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   *c = (strut_canvas){.box = {0, 0, width / scale, height / scale}};
   strut_status status =
-      start(c, cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), scale, error);
+      open_context(c, cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), scale, error);
   if (status == STRUT_OK) {
     strut_canvas_clear(c, (strut_colour){1, 1, 1, 1});
     *canvas = c;

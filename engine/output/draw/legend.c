@@ -13,20 +13,21 @@ enum { SHADES = 34 };
 
 static strut_font letters(void) { return (strut_font){.size = 7.5, .down = 0.5}; }
 
-static double width_of(strut_canvas *canvas, const char *text) {
+static double text_width(strut_canvas *canvas, const char *text) {
   double width = 0, height;
   if (text && *text) strut_text_size(canvas, text, letters(), &width, &height);
   return width;
 }
 
-/* What stands left of the text. */
+/* Width of the sign left of the text. */
 static double sign_width(strut_canvas *canvas, const strut_key_item *item) {
   switch (item->sign) {
     case STRUT_KEY_LINE:
     case STRUT_KEY_ARROW: return SIGN + SIGN_GAP;
     case STRUT_KEY_DOT:
-      return 2 * DOT + SIGN_GAP + (item->letter ? width_of(canvas, item->letter) + SIGN_GAP : 0.0);
-    case STRUT_KEY_SIGNED: return width_of(canvas, item->before) + SCALE + 2 * SIGN_GAP;
+      return 2 * DOT + SIGN_GAP +
+             (item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0.0);
+    case STRUT_KEY_SIGNED: return text_width(canvas, item->before) + SCALE + 2 * SIGN_GAP;
     case STRUT_KEY_WORDS: break;
   }
   return 0.0;
@@ -44,9 +45,9 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
       break;
     case STRUT_KEY_SIGNED:
       strut_draw_text(canvas, x, y, item->before, font);
-      x += width_of(canvas, item->before) + SIGN_GAP;
+      x += text_width(canvas, item->before) + SIGN_GAP;
       for (int i = 0; i < SHADES; i++) {
-        /* Each reaches below the next, or the white between them would show. */
+        /* Shades overlap, so that no viewer shows seams. */
         const strut_fill fill = {.colour = strut_palette_signed(2.0 * i / (SHADES - 1) - 1.0)};
         double at = SCALE * i / SHADES;
         strut_draw_box(canvas, (strut_box){x + at, y - BAND / 2, SCALE - at, BAND}, &fill, NULL);
@@ -56,7 +57,7 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
   }
 }
 
-/* Lays the items out, and draws them where asked to; returns the height. */
+/* Lays the items out, draws them if `draw`, and returns the height. */
 static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                           size_t count, bool draw) {
   double x = 0.0, y = LINE / 2;
@@ -65,7 +66,7 @@ static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_i
     double sign = sign_width(canvas, &items[i]);
     double room = box.width - sign;
     const char *text = strut_text_fit(canvas, items[i].text, letters(), room, 0.0, fitted);
-    double width = sign + width_of(canvas, text);
+    double width = sign + text_width(canvas, text);
     if (x > 0 && x + width > box.width) x = 0.0, y += LINE;
     if (draw) {
       draw_sign(canvas, &items[i], box.x + x, box.y + y);
@@ -117,7 +118,7 @@ const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font fo
   }
 }
 
-/* How curves are told apart: colour, dashes and markers at once; and the legend that names them. */
+/* Styles of series, and the legend that names them. */
 
 static const double TEXT = 7.5, SAMPLE = 20, GAP = 4, ROW_GAP = 1.5, PADDING = 3;
 
@@ -126,7 +127,7 @@ strut_pen strut_series_pen(size_t look) {
   static const double dashes[DASHES][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
                                            {3, 1.5}, {8, 2}, {2, 3}};
   strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
-  /* Where the colours come again, the dashes are others. */
+  /* When colours repeat, dashes differ. */
   size_t dash = (look + 3 * (look / STRUT_PALETTE_THINGS)) % DASHES;
   for (int i = 0; i < 4; i++) pen.dash[i] = dashes[dash][i];
   pen.butt = pen.dash[0] > 0;
@@ -184,7 +185,8 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
     size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
     for (int k = 0; k < 4; k++) {
       if (k > 0 && pick[k] == pick[k - 1]) continue;
-      points[kept][0] = points[pick[k]][0]; /* kept never overtakes what is still needed */
+      points[kept][0] =
+          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
       points[kept++][1] = points[pick[k]][1];
     }
     first = last + 1;
@@ -192,7 +194,7 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
   return kept;
 }
 
-/* Where each entry goes; calls draw for it if there is a canvas to draw on. */
+/* Lays the entries out, draws them if `draw`, and measures the whole. */
 static void lay_out_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
                            double width, const double corner[2], bool draw, double size[2]) {
   double x = 0, y = 0, row = 0;
@@ -245,4 +247,16 @@ void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, 
     strut_draw_box(canvas, (strut_box){x, y, size[0], size[1]}, &white, &edge);
   }
   lay_out_legend(canvas, entries, count, width, corner, true, size);
+}
+
+void strut_draw_heading(strut_canvas *canvas, double edge, const char *name, const char *note) {
+  static const double NOTE_BELOW = 12; /* [pt] */
+  const strut_font bold = {.size = 9, .bold = true};
+  const strut_font grey = {.size = 8, .colour = strut_grey(0.3)};
+  double inner = strut_canvas_box(canvas).width - 2 * edge;
+  char fitted[STRUT_FITTED_TEXT];
+  strut_draw_text(canvas, edge, edge, strut_text_fit(canvas, name, bold, inner, 0, fitted), bold);
+  if (*note)
+    strut_draw_text(canvas, edge, edge + NOTE_BELOW,
+                    strut_text_fit(canvas, note, grey, inner, 0, fitted), grey);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Colours that stay apart in grey and to colour-blind eyes.
+ * Colours that remain distinguishable in grey print and with colour blindness.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_PALETTE_H
 #define STRUT_ENGINE_OUTPUT_DRAW_PALETTE_H
@@ -8,9 +8,9 @@
 #include "engine/output/draw/canvas.h"
 
 /**
- * A signed quantity, -1 to 1 (beyond: as the end), such as a force over the largest: from deep blue
- * (compression) over grey to orange (tension), growing brighter all the way, so that grey tells the
- * sign too; never so bright that it is lost on white.
+ * A signed quantity from -1 to 1 (clamped), such as a force relative to the largest: from deep blue
+ * (compression) over grey to orange (tension). Brightness increases throughout, so that grey print
+ * shows the sign too, and stays visible on white.
  */
 STRUT_API strut_colour strut_palette_signed(double value);
 /** A quantity from 0 to 1, dark to bright: time along a path, height of a field. */
@@ -29,12 +29,12 @@ typedef enum strut_colours {
 /** The colour of `value` on a scale from low to high; not AUTO. */
 STRUT_API strut_colour strut_palette_at(strut_colours colours, double value, double low,
                                         double high);
-/** The i-th of things without order; from STRUT_PALETTE_THINGS on they come again. */
+/** The i-th colour for unordered things; repeats after STRUT_PALETTE_THINGS. */
 STRUT_API strut_colour strut_palette_thing(size_t i);
 enum { STRUT_PALETTE_THINGS = 7 };
 /** Greys for frames, notes and areas: 0 black to 1 white. */
 STRUT_API strut_colour strut_grey(double brightness);
-/** The same colour, that much opaque. */
+/** The same colour with its opacity multiplied by alpha. */
 STRUT_API strut_colour strut_faded(strut_colour colour, double alpha);
 
 #endif

@@ -55,7 +55,7 @@ static void find_member_ends(const strut_window *w, const strut_model *model, co
   for (int k = 0; k < 2; k++) strut_window_point(w, q + 2 * m->node[k], ends[k]);
 }
 
-/* What stands around a structure: supports, ground, forces on it, ways, a yardstick. */
+/* Around a structure: supports, ground, contact forces, node paths, the scale bar. */
 
 enum { TRAIL_SHADES = 64 };
 
@@ -102,7 +102,7 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
     double tip[2];
     if (!fixed[0] && !fixed[1]) continue;
     strut_window_point(w, q + 2 * i, tip);
-    /* Held along x only: from the side, where the structure is not. */
+    /* Fixed in x only: drawn from the side away from the structure. */
     const double below[2] = {0, 1}, side[2] = {q[2 * i] <= middle ? -1 : 1, 0};
     draw_support(canvas, tip, fixed[1] ? below : side, !(fixed[0] && fixed[1]), size, opacity);
   }
@@ -154,7 +154,7 @@ void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
   for (int32_t i = 0; i < contacts->count && limit > 0; i++) {
     double at[2], normal = force[i][0] / limit * longest, along = force[i][1] / limit * longest;
     strut_window_point(w, q + contacts->at[i], at);
-    if (fabs(normal) > 0.3) /* it pushes from below: its tip is at the node */
+    if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
       strut_draw_arrow(canvas, at[0] - normal * contacts->normal[0],
                        at[1] + normal * contacts->normal[1], at[0], at[1], 5, pen);
     if (fabs(along) > 0.3)
@@ -173,7 +173,7 @@ void strut_draw_trail(strut_canvas *canvas, const strut_window *w, const double 
     size_t last = (shade + 1) * (count - 1) / TRAIL_SHADES, used = 0;
     if (last == first) continue;
     pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
-    for (size_t i = first; i <= last; i++) { /* long ones in pieces of the array's size */
+    for (size_t i = first; i <= last; i++) { /* in pieces of the array's size */
       strut_window_point(w, positions[i], points[used++]);
       if (used < 66 && i < last) continue;
       strut_draw_line(canvas, (const double(*)[2])points, used, pen);
@@ -186,7 +186,7 @@ void strut_draw_trail(strut_canvas *canvas, const strut_window *w, const double 
 
 void strut_draw_yardstick(strut_canvas *canvas, const strut_window *w) {
   double room = 0.3 * w->box.width / w->scale, power = pow(10.0, floor(log10(room)));
-  /* Round, and never more than the room. */
+  /* The largest of 1, 2 or 5 times a power of ten that fits. */
   double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
   double x = w->box.x + 3, y = w->box.y + w->box.height - 4, end = x + length * w->scale;
   const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
@@ -207,13 +207,13 @@ static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 static const double HATCHED = 2.0, FREE = 1.0,
                     FAR = 6.0; /* cost, enough freedom, second try [pt] */
 
-/* Everything that names should keep away from. */
+/* What names must not cover. */
 typedef struct obstacles {
   size_t member_count, label_count;
   double (*ends)[2]; /* (2 member_count) [pt] */
   strut_box *labels; /* those placed so far */
   strut_box inside;  /* names stay in here */
-  bool ground;       /* its body lies below the segment `surface`, as deep as it is hatched */
+  bool ground;       /* hatched to GROUND_DEPTH below the segment `surface` */
   double surface[2][2];
 } obstacles;
 
@@ -232,8 +232,9 @@ static bool is_on_hatching(const obstacles *o, const double p[2]) {
   return o->ground && depth > 0 && depth < GROUND_DEPTH;
 }
 
-/* How free a box is: its distance from what is drawn; below zero where it covers another name. */
-static double freedom(const obstacles *o, strut_box box) {
+/* Distance of a box from all that is drawn; negative where it covers another name or leaves the
+   page. */
+static double clearance(const obstacles *o, strut_box box) {
   double least = HUGE_VAL;
   for (int i = 0; i <= 4; i++)
     for (int k = 0; k <= 2; k++) {
@@ -272,19 +273,20 @@ static strut_box beside(const double at[2], int direction, double gap, double wi
   return (strut_box){x - 0.5 * width, y - 0.5 * height, width, height};
 }
 
-static void place_name(strut_canvas *canvas, obstacles *o, const double at[2], double gap,
-                       const char *name) {
+static void draw_name(strut_canvas *canvas, obstacles *o, const double at[2], double gap,
+                      const char *name) {
   double width, height, best = -HUGE_VAL;
   char fitted[STRUT_FITTED_TEXT];
   strut_box chosen = {0};
   name = strut_text_fit(canvas, name, name_font(), MOST_WIDTH, 0, fitted);
   strut_text_size(canvas, name, name_font(), &width, &height);
   for (int k = 0; k < 2 * DIRECTIONS; k++) {
-    /* Up and to the right first, and far enough is good enough; farther away where nothing near is. */
+    /* Start at the upper right; any clearance of 4 pt is enough. A second ring is tried if the
+       first is full. */
     int direction = (k + DIRECTIONS / 8) % DIRECTIONS;
     if (k == DIRECTIONS && best > FREE) break;
     strut_box box = beside(at, direction, gap + (k < DIRECTIONS ? 0 : FAR), width, height);
-    double free = fmin(freedom(o, box), 4.0);
+    double free = fmin(clearance(o, box), 4.0);
     if (free > best + 1e-9) {
       best = free;
       chosen = box;
@@ -294,7 +296,7 @@ static void place_name(strut_canvas *canvas, obstacles *o, const double at[2], d
   strut_draw_text(canvas, chosen.x, chosen.y, name, name_font());
 }
 
-/* The sides of supports below nodes count as members too. */
+/* Adds the sides of supports below nodes as segments. */
 static void add_supports(const strut_window *w, const strut_model *model, const double *q,
                          obstacles *o) {
   for (int32_t i = 0; i < model->node_count; i++) {
@@ -308,8 +310,8 @@ static void add_supports(const strut_window *w, const strut_model *model, const 
   }
 }
 
-static bool gather(const strut_window *w, const strut_model *model, const double *q, size_t others,
-                   obstacles *o, strut_arena *arena) {
+static bool collect_obstacles(const strut_window *w, const strut_model *model, const double *q,
+                              size_t others, obstacles *o, strut_arena *arena) {
   size_t members = model->scene->member_count, nodes = (size_t)model->node_count;
   o->member_count = members;
   o->ends = strut_arena_allocate(arena, 2 * (members + 1 + 2 * nodes + others), sizeof *o->ends);
@@ -317,7 +319,7 @@ static bool gather(const strut_window *w, const strut_model *model, const double
   o->inside = w->box;
   if (!o->ends || !o->labels) return false;
   for (size_t j = 0; j < members; j++) find_member_ends(w, model, q, j, o->ends + 2 * j);
-  if (model->scene->ground.present) { /* its line counts as one more member */
+  if (model->scene->ground.present) { /* its line is one more segment */
     find_ground_line(w, model, o->ends + 2 * members);
     memcpy(o->surface, o->ends + 2 * members, sizeof o->surface);
     o->ground = true;
@@ -333,20 +335,20 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_m
   const strut_scene *scene = model->scene;
   strut_arena arena = {0};
   obstacles o = {0};
-  if (scene->node_count <= MOST_NAMED && gather(w, model, q, other_count, &o, &arena)) {
+  if (scene->node_count <= MOST_NAMED && collect_obstacles(w, model, q, other_count, &o, &arena)) {
     if (other_count) memcpy(o.ends + 2 * o.member_count, others, 2 * other_count * sizeof *others);
     o.member_count += other_count;
     for (size_t i = 0; i < scene->node_count && nodes; i++) {
       double at[2];
       strut_window_point(w, q + 2 * i, at);
-      if (isfinite(at[0]) && isfinite(at[1])) place_name(canvas, &o, at, GAP, scene->nodes[i].name);
+      if (isfinite(at[0]) && isfinite(at[1])) draw_name(canvas, &o, at, GAP, scene->nodes[i].name);
     }
     for (size_t j = 0; j < scene->member_count && members; j++) {
       /* the middle of its line */
       const double at[2] = {0.5 * (o.ends[2 * j][0] + o.ends[2 * j + 1][0]),
                             0.5 * (o.ends[2 * j][1] + o.ends[2 * j + 1][1])};
       if (isfinite(at[0]) && isfinite(at[1]))
-        place_name(canvas, &o, at, 1.5, scene->members[j].name);
+        draw_name(canvas, &o, at, 1.5, scene->members[j].name);
     }
   }
   strut_arena_free(&arena);
@@ -354,7 +356,7 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_m
 
 /* Members and nodes. */
 
-/* How much thinner than usual things are, for members of this mean length on the page. */
+/* Factor for line widths, from the mean length of the members on the page. */
 static double thinning(const strut_window *w, const strut_model *model, const double *q) {
   double sum = 0;
   size_t count = model->scene->member_count, finite = 0;
@@ -367,7 +369,7 @@ static double thinning(const strut_window *w, const strut_model *model, const do
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
 }
 
-/* One way to draw some of the members: they share a pen. */
+/* Members drawn together, with one pen. */
 typedef struct batch {
   strut_canvas *canvas;
   strut_pen pen;
@@ -375,49 +377,49 @@ typedef struct batch {
   double ends[2 * BATCH][2];
 } batch;
 
-static void flush(batch *b) {
+static void draw_batch(batch *b) {
   strut_draw_segments(b->canvas, (const double(*)[2])b->ends, b->count, b->pen);
   b->count = 0;
 }
 
-static void add(batch *b, const double ends[2][2]) {
+static void add_segment(batch *b, const double ends[2][2]) {
   for (int k = 0; k < 2; k++)
     for (int d = 0; d < 2; d++) b->ends[2 * b->count + (size_t)k][d] = ends[k][d];
-  if (++b->count == BATCH) flush(b);
+  if (++b->count == BATCH) draw_batch(b);
 }
 
-typedef struct look {
+typedef struct drawing {
   const strut_window *window;
   const strut_model *model;
   const double *q;
   const strut_structure_style *style;
   double thin, opacity;
-} look;
+} drawing;
 
-static bool is_slack(const look *l, size_t j) {
-  if (l->model->scene->members[j].kind != STRUT_CABLE) return false;
-  if (l->style->slack_forces) return !(l->style->slack_forces[j] > 0);
-  const strut_member *m = &l->model->scene->members[j];
-  const double *a = l->q + 2 * m->node[0], *b = l->q + 2 * m->node[1];
-  return hypot(b[0] - a[0], b[1] - a[1]) < l->model->members.rest[j] * (1 - 1e-12);
+static bool is_slack(const drawing *d, size_t j) {
+  if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
+  if (d->style->slack_forces) return !(d->style->slack_forces[j] > 0);
+  const strut_member *m = &d->model->scene->members[j];
+  const double *a = d->q + 2 * m->node[0], *b = d->q + 2 * m->node[1];
+  return hypot(b[0] - a[0], b[1] - a[1]) < d->model->members.rest[j] * (1 - 1e-12);
 }
 
-static double width_of(const look *l, size_t j) {
-  strut_member_kind kind = l->model->scene->members[j].kind;
+static double width_of(const drawing *d, size_t j) {
+  strut_member_kind kind = d->model->scene->members[j].kind;
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
-  return width * l->thin / (1.0 + l->style->thinness);
+  return width * d->thin / (1.0 + d->style->thinness);
 }
 
-/* The shade of a member, -1 where it has none of its own. */
-static int shade_of(const look *l, size_t j) {
-  if (l->style->colouring != STRUT_COLOUR_FORCE || !l->style->values) return -1;
-  double limit = l->style->limit, value = l->style->values[j];
+/* Index of a member's force colour; -1 where members are not coloured by force. */
+static int shade_of(const drawing *d, size_t j) {
+  if (d->style->colouring != STRUT_COLOUR_FORCE || !d->style->values) return -1;
+  double limit = d->style->limit, value = d->style->values[j];
   double part = limit > 0 && isfinite(value) ? fmax(-1.0, fmin(1.0, value / limit)) : 0;
   return (int)lround(0.5 * (part + 1.0) * (SHADES - 1));
 }
 
-static strut_colour colour_of(const look *l, strut_member_kind kind, bool slack, int shade) {
-  if (l->style->colouring == STRUT_COLOUR_ONE) return l->style->colour;
+static strut_colour colour_of(const drawing *d, strut_member_kind kind, bool slack, int shade) {
+  if (d->style->colouring == STRUT_COLOUR_ONE) return d->style->colour;
   if (slack) return strut_grey(0.55);
   if (shade >= 0) return strut_palette_signed(2.0 * shade / (SHADES - 1) - 1.0);
   return kind == STRUT_BAR      ? strut_grey(0.15)
@@ -425,62 +427,62 @@ static strut_colour colour_of(const look *l, strut_member_kind kind, bool slack,
                                 : strut_palette_thing(1);
 }
 
-/* A dark edge keeps light colours apart from the paper. */
-static void draw_casings(strut_canvas *canvas, const look *l, strut_member_kind kind) {
+/* A dark edge separates light colours from the paper. */
+static void draw_casings(strut_canvas *canvas, const drawing *d, strut_member_kind kind) {
   batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(strut_grey(0.1), l->opacity);
-  for (size_t j = 0; j < l->model->scene->member_count; j++) {
+  b.pen.colour = strut_faded(strut_grey(0.1), d->opacity);
+  for (size_t j = 0; j < d->model->scene->member_count; j++) {
     double ends[2][2];
-    if (l->model->scene->members[j].kind != kind) continue;
-    b.pen.width = width_of(l, j) + CASING * l->thin;
-    find_member_ends(l->window, l->model, l->q, j, ends);
-    add(&b, (const double(*)[2])ends);
+    if (d->model->scene->members[j].kind != kind) continue;
+    b.pen.width = width_of(d, j) + CASING * d->thin;
+    find_member_ends(d->window, d->model, d->q, j, ends);
+    add_segment(&b, (const double(*)[2])ends);
   }
-  flush(&b);
+  draw_batch(&b);
 }
 
-/* All members of one kind, slackness and shade, in one piece. */
-static void draw_alike(strut_canvas *canvas, const look *l, strut_member_kind kind, bool slack,
+/* Draws all members of one kind, slackness and shade. */
+static void draw_alike(strut_canvas *canvas, const drawing *d, strut_member_kind kind, bool slack,
                        int shade) {
   batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(colour_of(l, kind, slack, shade), l->opacity);
+  b.pen.colour = strut_faded(colour_of(d, kind, slack, shade), d->opacity);
   if (slack) {
-    b.pen.dash[0] = 2.5 * l->thin;
-    b.pen.dash[1] = 2.0 * l->thin;
+    b.pen.dash[0] = 2.5 * d->thin;
+    b.pen.dash[1] = 2.0 * d->thin;
     b.pen.butt = true;
   }
-  for (size_t j = 0; j < l->model->scene->member_count; j++) {
+  for (size_t j = 0; j < d->model->scene->member_count; j++) {
     double ends[2][2];
-    if (l->model->scene->members[j].kind != kind || is_slack(l, j) != slack) continue;
-    if (!slack && shade_of(l, j) != shade) continue;
-    b.pen.width = width_of(l, j);
-    find_member_ends(l->window, l->model, l->q, j, ends);
-    add(&b, (const double(*)[2])ends);
+    if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
+    if (!slack && shade_of(d, j) != shade) continue;
+    b.pen.width = width_of(d, j);
+    find_member_ends(d->window, d->model, d->q, j, ends);
+    add_segment(&b, (const double(*)[2])ends);
   }
-  flush(&b);
+  draw_batch(&b);
 }
 
-/* Thin things lie above thick ones, so that a cable along a bar is seen. */
-static void draw_members(strut_canvas *canvas, const look *l) {
+/* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
+static void draw_members(strut_canvas *canvas, const drawing *d) {
   static const strut_member_kind order[] = {STRUT_BAR, STRUT_SPRING, STRUT_CABLE};
-  bool shaded = l->style->colouring == STRUT_COLOUR_FORCE && l->style->values;
+  bool shaded = d->style->colouring == STRUT_COLOUR_FORCE && d->style->values;
   for (int k = 0; k < 3; k++) {
-    if (shaded && order[k] != STRUT_CABLE) draw_casings(canvas, l, order[k]);
-    if (order[k] == STRUT_CABLE) draw_alike(canvas, l, order[k], true, -1);
-    if (!shaded) draw_alike(canvas, l, order[k], false, -1);
+    if (shaded && order[k] != STRUT_CABLE) draw_casings(canvas, d, order[k]);
+    if (order[k] == STRUT_CABLE) draw_alike(canvas, d, order[k], true, -1);
+    if (!shaded) draw_alike(canvas, d, order[k], false, -1);
     for (int shade = 0; shaded && shade < SHADES; shade++)
-      draw_alike(canvas, l, order[k], false, shade);
+      draw_alike(canvas, d, order[k], false, shade);
   }
 }
 
-static void draw_nodes(strut_canvas *canvas, const look *l) {
-  double thin = l->thin / (1.0 + l->style->thinness), point[2];
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), l->opacity)};
-  strut_colour edge = l->style->colouring == STRUT_COLOUR_ONE ? l->style->colour : strut_grey(0.1);
-  const strut_pen pen = {.colour = strut_faded(edge, l->opacity), .width = 0.8 * thin};
-  if (l->thin < 0.3) return; /* a texture has none */
-  for (int32_t i = 0; i < l->model->node_count; i++) {
-    strut_window_point(l->window, l->q + 2 * i, point);
+static void draw_nodes(strut_canvas *canvas, const drawing *d) {
+  double thin = d->thin / (1.0 + d->style->thinness), point[2];
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), d->opacity)};
+  strut_colour edge = d->style->colouring == STRUT_COLOUR_ONE ? d->style->colour : strut_grey(0.1);
+  const strut_pen pen = {.colour = strut_faded(edge, d->opacity), .width = 0.8 * thin};
+  if (d->thin < 0.3) return; /* too small to be drawn */
+  for (int32_t i = 0; i < d->model->node_count; i++) {
+    strut_window_point(d->window, d->q + 2 * i, point);
     strut_draw_circle(canvas, point[0], point[1], 1.9 * thin, &white, &pen);
   }
 }
@@ -488,15 +490,15 @@ static void draw_nodes(strut_canvas *canvas, const look *l) {
 void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                           const strut_model *model, const double *q,
                           const strut_structure_style *style) {
-  const look l = {.window = window,
-                  .model = model,
-                  .q = q,
-                  .style = style,
-                  .thin = thinning(window, model, q),
-                  .opacity = style->opacity > 0 ? style->opacity : 1.0};
-  if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(l.thin, 0.3), l.opacity);
-  draw_members(canvas, &l);
-  if (!style->no_nodes) draw_nodes(canvas, &l);
+  const drawing d = {.window = window,
+                     .model = model,
+                     .q = q,
+                     .style = style,
+                     .thin = thinning(window, model, q),
+                     .opacity = style->opacity > 0 ? style->opacity : 1.0};
+  if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(d.thin, 0.3), d.opacity);
+  draw_members(canvas, &d);
+  if (!style->no_nodes) draw_nodes(canvas, &d);
   if (style->node_names || style->member_names)
     strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);
 }

@@ -23,26 +23,26 @@ static double drawn_energy(const strut_equilibria *all, size_t i) {
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
 }
 
-/* States as levels of energy, and what it takes from one to the other. */
+/* The energy ladder: states as levels, with the barriers between them. */
 
 enum { ARC = 40, FEW = 4 };
 
 static const double LEVEL = 0.3; /* half the width of a level, in places */
 
-static int place_of(const size_t *chosen, size_t count, int32_t state) {
+static int level_of(const size_t *chosen, size_t count, int32_t state) {
   for (size_t k = 0; k < count; k++)
     if ((int32_t)chosen[k] == state) return (int)k;
   return -1;
 }
 
-/* The barrier's two ends among the chosen; false where it is of others. */
+/* Finds a barrier's two ends among the chosen states; false if one is missing. */
 static bool ends_of(const strut_barrier *b, const size_t *chosen, size_t count, int ends[2]) {
-  ends[0] = place_of(chosen, count, b->from);
-  ends[1] = place_of(chosen, count, b->to);
+  ends[0] = level_of(chosen, count, b->from);
+  ends[1] = level_of(chosen, count, b->to);
   return ends[0] >= 0 && ends[1] >= 0 && ends[0] != ends[1];
 }
 
-/* What leads straight there where it is known, else the lowest way of all. */
+/* The height of the direct pass where it is known, else of the lowest path. */
 static double barrier_height(const strut_barrier *b) {
   return isfinite(b->direct) ? b->direct : b->height;
 }
@@ -54,7 +54,7 @@ static bool has_barriers(const strut_equilibria *all, const size_t *chosen, size
   return false;
 }
 
-/* A smooth way from one level over the pass to the other. */
+/* A smooth curve from one level over the barrier to the other. */
 static void draw_barrier(strut_canvas *canvas, const strut_axes *axes, const int ends[2],
                          const double energy[2], double top) {
   double points[ARC + 1][2];
@@ -81,11 +81,11 @@ static void draw_barriers(strut_canvas *canvas, const strut_axes *axes, const st
     const double energy[2] = {drawn_energy(all, (size_t)b->from) - zero,
                               drawn_energy(all, (size_t)b->to) - zero};
     double top = energy[0] + barrier_height(b), at[2];
-    /* Among many only the ways between neighbours can be told apart. */
-    bool told = abs(ends[0] - ends[1]) == 1 || count <= FEW;
-    if (ends[0] < ends[1] && told) draw_barrier(canvas, axes, ends, energy, top);
+    /* Among many states, only curves between neighbours remain readable. */
+    bool drawn = abs(ends[0] - ends[1]) == 1 || count <= FEW;
+    if (ends[0] < ends[1] && drawn) draw_barrier(canvas, axes, ends, energy, top);
     if (abs(ends[0] - ends[1]) != 1) continue;
-    /* What it takes, beside the slope that it is taken on. */
+    /* The barrier height for this direction, beside its slope. */
     char text[80];
     bool right = ends[1] > ends[0];
     snprintf(text, sizeof text, right ? "%s \xe2\x86\x92" : "\xe2\x86\x90 %s",
@@ -98,7 +98,7 @@ static void draw_barriers(strut_canvas *canvas, const strut_axes *axes, const st
 
 static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
                         const size_t *chosen, size_t count, double zero) {
-  /* Many names stand in two lines in turn, each with the room of two. */
+  /* Many names alternate between two lines, each with the width of two places. */
   int lines = count <= FEW ? 1 : 2;
   double room = lines * axes->frame.width / (double)count - 2;
   for (size_t k = 0; k < count; k++) {
@@ -118,7 +118,7 @@ static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const stru
 static strut_status draw_ladder(strut_canvas *canvas, strut_box box, const strut_equilibria *all,
                                 const size_t *chosen, size_t count) {
   strut_axis x = {.name = "", .unit = "", .low = -0.5, .high = (double)count - 0.5};
-  if (count > FEW) { /* names reach beyond their levels */
+  if (count > FEW) { /* names are wider than their levels */
     x.low -= 0.3;
     x.high += 0.3;
   }
@@ -134,7 +134,7 @@ static strut_status draw_ladder(strut_canvas *canvas, strut_box box, const strut
                                  barrier_height(&all->barriers[i]));
   strut_axis_settle(&y, 0.2);
   strut_axes axes = strut_axes_place(canvas, box, x, y, NULL, NULL);
-  axes.frame.height = box.y + box.height - axes.frame.y - 4; /* places have no numbers */
+  axes.frame.height = box.y + box.height - axes.frame.y - 4; /* the x axis has no numbers */
   strut_draw_vertical_axis(canvas, &axes);
   strut_canvas_clip(canvas, axes.frame);
   draw_barriers(canvas, &axes, all, chosen, count, zero);
@@ -148,11 +148,11 @@ static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110,
                     LADDER = 150;
 enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
-/* The figure's plan: which are drawn, and how large. */
+/* Which equilibria are drawn, and how large. */
 typedef struct plan {
   const strut_model *model;
   const strut_equilibria *all;
-  size_t *standing, standing_count; /* those that stand, by energy */
+  size_t *standing, standing_count; /* stable on the ground, by energy */
   size_t *aside, aside_count;       /* further stable ones, by energy */
   size_t cards, columns, small, small_columns;
   double width, size[2], cell[2], small_cell[2], force_limit, contact_limit, largest_energy;
@@ -160,8 +160,8 @@ typedef struct plan {
   strut_arena arena;
 } plan;
 
-/* What rounding leaves of no energy at all is written as none. */
-static double told_energy(const plan *p, double energy) {
+/* Rounding noise of an energy is written as zero. */
+static double drop_rounding(const plan *p, double energy) {
   return fabs(energy) > 1e-12 * p->largest_energy ? energy : 0;
 }
 
@@ -179,7 +179,7 @@ static bool is_stable(const strut_equilibrium *e) {
   return e->point.label == STRUT_STABLE || e->point.label == STRUT_FLOPPY;
 }
 
-static bool choose(plan *p) {
+static bool choose_equilibria(plan *p) {
   size_t count = p->all->count;
   p->standing = strut_arena_allocate(&p->arena, count, sizeof *p->standing);
   p->aside = strut_arena_allocate(&p->arena, count, sizeof *p->aside);
@@ -204,8 +204,8 @@ static strut_bounds bounds_of(const plan *p, size_t i) {
   return b;
 }
 
-/* Largest forces, so that all cards share their scales. */
-static void measure(plan *p, size_t i) {
+/* Widens the scales that all cards share to hold equilibrium i. */
+static void widen_scales(plan *p, size_t i) {
   const strut_equilibrium *e = &p->all->list[i];
   strut_bounds b = bounds_of(p, i);
   for (size_t k = 0; k < p->all->count; k++)
@@ -217,15 +217,15 @@ static void measure(plan *p, size_t i) {
     p->contact_limit = fmax(p->contact_limit, fabs(e->normal[k]));
 }
 
-static void lay_out(plan *p) {
+static void lay_out_cards(plan *p) {
   double inner = p->width - 2 * EDGE;
   p->cards = p->standing_count < MOST_CARDS ? p->standing_count : MOST_CARDS;
-  for (size_t k = 0; k < p->cards; k++) measure(p, p->standing[k]);
+  for (size_t k = 0; k < p->cards; k++) widen_scales(p, p->standing[k]);
   p->small_columns = (size_t)fmax(1, floor(inner / 82));
   if (p->small_columns > MOST_SMALL) p->small_columns = MOST_SMALL;
   p->small = p->aside_count < p->small_columns ? p->aside_count : p->small_columns;
   if (!p->cards)
-    for (size_t k = 0; k < p->small; k++) measure(p, p->aside[k]);
+    for (size_t k = 0; k < p->small; k++) widen_scales(p, p->aside[k]);
   p->columns = (size_t)fmax(1, fmin(3, floor(inner / NARROW)));
   if (p->columns > p->cards && p->cards) p->columns = p->cards;
   p->cell[0] = inner / (double)p->columns;
@@ -237,7 +237,7 @@ static void lay_out(plan *p) {
   p->ladder = p->cards > 1 && has_barriers(p->all, p->standing, p->cards);
 }
 
-static double height_of(const plan *p) {
+static double figure_height(const plan *p) {
   double rows = ceil((double)p->cards / (double)p->columns);
   return 2 * EDGE + TITLE + rows * p->cell[1] + (p->cards ? SCALE : 0) + (p->ladder ? LADDER : 0) +
          (p->small ? p->small_cell[1] + 16 : 0);
@@ -298,7 +298,8 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
-           strut_drawn_quantity(told_energy(p, drawn_energy(p->all, i)), 6, "J").text, e->verdict);
+           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 6, "J").text,
+           e->verdict);
   strut_draw_text(canvas, cell.x + 4, cell.y + 11,
                   strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
   strut_canvas_clip(canvas, cell);
@@ -312,7 +313,7 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   return good;
 }
 
-static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
+static void draw_small_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   const strut_equilibrium *e = &p->all->list[i];
   char text[300], fitted[STRUT_FITTED_TEXT];
   strut_font note = {.size = 6.5, .colour = strut_grey(0.35), .width = cell.width - 6};
@@ -324,7 +325,7 @@ static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) 
   strut_draw_ground(canvas, &window, p->model);
   strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
   snprintf(text, sizeof text, "%s: %s",
-           strut_drawn_quantity(told_energy(p, e->energy), 5, "J").text, e->verdict);
+           strut_drawn_quantity(drop_rounding(p, e->energy), 5, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
                   strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
   strut_canvas_unclip(canvas);
@@ -353,19 +354,17 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
   return y + SCALE;
 }
 
-static strut_status draw(plan *p, strut_canvas *canvas) {
+static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   char text[400], fitted[STRUT_FITTED_TEXT];
   bool good = true;
-  strut_font title = {.size = 9, .bold = true};
+
   strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
-  strut_draw_text(canvas, EDGE, EDGE,
-                  strut_text_fit(canvas, p->model->scene->name, title, inner, 0, fitted), title);
-  snprintf(text, sizeof text, "%zu equilibri%s at rest%s", p->standing_count,
+
+  snprintf(text, sizeof text, "%zu equilibri%s on the ground%s", p->standing_count,
            p->standing_count == 1 ? "um" : "a",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
-  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
-                  note);
+  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
   y = draw_cards(p, canvas, y, &good);
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
@@ -381,9 +380,9 @@ static strut_status draw(plan *p, strut_canvas *canvas) {
            p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
   strut_draw_text(canvas, EDGE, y + 2, strut_text_fit(canvas, text, note, inner, 0, fitted), note);
   for (size_t k = 0; k < p->small; k++)
-    draw_small(p, canvas, p->aside[k],
-               (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
-                           p->small_cell[1]});
+    draw_small_card(p, canvas, p->aside[k],
+                    (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
+                                p->small_cell[1]});
   return STRUT_OK;
 }
 
@@ -391,14 +390,15 @@ strut_status strut_equilibria_figure(const char *path, double width, const strut
                                      const strut_equilibria *equilibria, strut_error *error) {
   plan p = {.model = model, .all = equilibria, .width = width};
   strut_canvas *canvas = NULL;
-  strut_status status =
-      choose(&p) ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = choose_equilibria(&p)
+                            ? STRUT_OK
+                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
   if (status == STRUT_OK) {
-    lay_out(&p);
-    status = strut_canvas_open(path, width, height_of(&p), model->scene->name, &canvas, error);
+    lay_out_cards(&p);
+    status = strut_canvas_open(path, width, figure_height(&p), model->scene->name, &canvas, error);
   }
   if (status == STRUT_OK) {
-    status = draw(&p, canvas);
+    status = draw_figure(&p, canvas);
     if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
   }
   if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);

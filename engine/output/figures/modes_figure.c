@@ -21,7 +21,7 @@ static const double TALLEST = 190.0;                       /* drawing inside a p
 static const double COVERED = 0.12;                        /* of a panel, by names */
 static const double NODE = 2.3;                            /* radius of a node as drawn [pt] */
 static const double NAME_LINE = 16.0, TITLE_LINE = 11.5, WORD_LINES = 19.0;
-static const double UNSTRAINED = 1e-9; /* strain that is rounding, in units of motion over size */
+static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
 
 typedef struct figure {
   strut_canvas *canvas;
@@ -47,8 +47,8 @@ static bool allocate_arrays(figure *f) {
   return f->moved && f->arrows && f->strain && f->taut;
 }
 
-/* Which modes get a panel: those that are no rigid motion first. */
-static void choose(figure *f, size_t panels) {
+/* Chooses the modes with panels: rigid-body motions only if there are no others. */
+static void choose_modes(figure *f, size_t panels) {
   size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
   if (most > STRUT_MODES_FIGURE_MOST) most = STRUT_MODES_FIGURE_MOST;
   for (size_t i = 0; i < f->modes->count; i++) others += f->modes->list[i].kind != STRUT_MODE_RIGID;
@@ -120,7 +120,7 @@ static void find_bounds(figure *f) {
   }
 }
 
-/* What the panels of a row show: as wide as all, as high as the row needs. */
+/* Bounds of the panels in a row: one width for all rows, the height of this row. */
 static strut_bounds row_bounds(const figure *f, size_t row) {
   strut_bounds bounds = f->all;
   bounds.low[1] = HUGE_VAL;
@@ -147,7 +147,7 @@ static void arrange(figure *f, double width) {
     if (panel < NARROWEST && columns > 1) break;
     double tallest = fmin(TALLEST, fmax(width / (double)rows - f->head, 40.0));
     double scale = fmin((panel - 2 * MARGIN) / wide, (tallest - 2 * MARGIN) / high);
-    if (scale < f->scale * (1 - 1e-9)) continue; /* of equal ones the one with fewest rows */
+    if (scale < f->scale * (1 - 1e-9)) continue; /* of equal scales the fewest rows win */
     f->scale = scale;
     f->columns = columns;
     f->rows = rows;
@@ -155,7 +155,7 @@ static void arrange(figure *f, double width) {
   }
 }
 
-static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
+static void write_title(const strut_mode *mode, size_t number, char title[TITLE]) {
   strut_c_locale locale = strut_c_locale_enter();
   if (mode->kind == STRUT_MODE_ELASTIC) {
     int used = snprintf(title, TITLE, "mode %zu: %s", number,
@@ -171,8 +171,8 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
   strut_c_locale_leave(locale);
 }
 
-/* What moves; which members give way is told by colours. */
-static void words_of(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
+/* Which nodes move. Colours show the strained members. */
+static void describe_mode(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
   const char *end = strchr(mode->description, ';');
   char growth[TITLE / 2] = "";
   if (mode->kind == STRUT_MODE_UNSTABLE) {
@@ -195,10 +195,10 @@ static void draw_head(figure *f, strut_box box, size_t number) {
   const strut_font bold = {.size = 8, .bold = true};
   const strut_font plain = word_font(box.width);
   char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
-  title_of(mode, number + 1, text);
+  write_title(mode, number + 1, text);
   strut_draw_text(f->canvas, box.x, box.y,
                   strut_text_fit(f->canvas, text, bold, box.width, 0, fitted), bold);
-  words_of(mode, text);
+  describe_mode(mode, text);
   strut_draw_text(f->canvas, box.x, box.y + TITLE_LINE,
                   strut_text_fit(f->canvas, text, plain, box.width, WORD_LINES, fitted), plain);
 }
@@ -208,8 +208,8 @@ static strut_pen arrow_pen(void) {
 }
 static strut_pen contact_pen(void) { return (strut_pen){.colour = strut_grey(0.1), .width = 0.9}; }
 
-/* Arrows from the nodes at rest to where they are displaced; their ends go to f->arrows. Returns how
-   many are long enough to be drawn. */
+/* Arrows from the nodes at rest to where they are displaced; their ends go to f->arrows. Returns
+   how many are long enough to be drawn. */
 static size_t draw_arrows(figure *f, const strut_window *window) {
   size_t count = 0;
   for (int32_t i = 0; i < f->model->node_count && f->model->node_count <= LED; i++) {
@@ -225,7 +225,7 @@ static size_t draw_arrows(figure *f, const strut_window *window) {
   return count;
 }
 
-/* Whether names cover little enough of the drawing; words name those that matter anyway. */
+/* Whether names cover little of the drawing; the texts name the moving nodes anyway. */
 static bool names_fit(figure *f, strut_box box) {
   double covered = 0.0;
   if (f->model->node_count > NAMED) return false;
@@ -308,9 +308,9 @@ static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
   return count;
 }
 
-/* Heights of the panels' heads and of the key, by the letters that they are set in. */
-static strut_status measure(figure *f, double width, const strut_key_item *items, size_t count,
-                            double *key, strut_error *error) {
+/* Measures the heights of the panels' texts and of the key. */
+static strut_status measure_texts(figure *f, double width, const strut_key_item *items,
+                                  size_t count, double *key, strut_error *error) {
   strut_canvas *ruler;
   strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &ruler, error);
   if (status != STRUT_OK) return status;
@@ -319,7 +319,7 @@ static strut_status measure(figure *f, double width, const strut_key_item *items
   for (size_t k = 0; k < f->count; k++) {
     char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
     double wide, high;
-    words_of(&f->modes->list[f->shown[k]], text);
+    describe_mode(&f->modes->list[f->shown[k]], text);
     const strut_font font = word_font(f->panel_width);
     strut_text_fit(ruler, text, font, f->panel_width, WORD_LINES, fitted);
     strut_text_size(ruler, fitted, font, &wide, &high);
@@ -330,22 +330,18 @@ static strut_status measure(figure *f, double width, const strut_key_item *items
   return STRUT_OK;
 }
 
-static strut_status draw(figure *f, const char *path, double width, strut_error *error) {
+static strut_status draw_figure(figure *f, const char *path, double width, strut_error *error) {
   char at[TITLE], rest[TITLE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(f, at, rest, items);
   double key, height = 2 * EDGE;
-  strut_status status = measure(f, width, items, count, &key, error);
+  strut_status status = measure_texts(f, width, items, count, &key, error);
   if (status != STRUT_OK) return status;
   for (size_t row = 0; row < f->rows; row++) height += row_height(f, row) + GAP;
   height += NAME_LINE + key - 0.5 * GAP;
   status = strut_canvas_open(path, width, height, f->model->scene->name, &f->canvas, error);
   if (status != STRUT_OK) return status;
-  const strut_font bold = {.size = 9, .bold = true};
-  char fitted[STRUT_FITTED_TEXT];
-  strut_draw_text(
-      f->canvas, EDGE, EDGE,
-      strut_text_fit(f->canvas, f->model->scene->name, bold, width - 2 * EDGE, 0, fitted), bold);
+  strut_draw_heading(f->canvas, EDGE, f->model->scene->name, "");
   strut_box box = {EDGE, EDGE + NAME_LINE, f->panel_width, 0};
   for (size_t row = 0; row < f->rows; row++, box.y += box.height + GAP) {
     box.height = row_height(f, row);
@@ -364,13 +360,13 @@ static strut_status draw(figure *f, const char *path, double width, strut_error 
 strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
                                 const strut_modes *modes, size_t panels, strut_error *error) {
   figure f = {.model = model, .modes = modes, .head = TITLE_LINE + WORD_LINES + 2.0};
-  choose(&f, panels);
+  choose_modes(&f, panels);
   strut_status status = STRUT_NO_MEMORY;
   if (allocate_arrays(&f)) {
     find_taut(&f);
     find_bounds(&f);
     arrange(&f, width);
-    status = draw(&f, path, width, error);
+    status = draw_figure(&f, path, width, error);
   } else {
     strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }

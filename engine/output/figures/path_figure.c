@@ -17,9 +17,9 @@ enum { MOST_STOPS = 10, STOP_TEXT = 160 };
 
 /* A point or an event of the path. */
 typedef struct path_vertex {
-  double value, motion; /* the parameter [its unit]; what moves [m] */
-  double height;        /* what the curve shows of it: a load [N], a reaction [N], or the value */
-  bool unstable;        /* what leads from here to the next */
+  double value, motion;    /* the parameter [its unit]; the displacement [m] */
+  double height;           /* drawn: a load [N], a reaction [N], or the value */
+  bool unstable;           /* of the edge to the next vertex */
   const double *q, *force; /* (length) [m], (members) [N] */
 } path_vertex;
 
@@ -36,21 +36,21 @@ typedef struct path_picture {
   const strut_model *model;
   const strut_path *path;
   bool upright;       /* the motion is drawn upwards, over the parameter */
-  int32_t coordinate; /* index into q of what the curve is drawn over */
-  double sign;        /* 1 or -1: the way that it goes */
+  int32_t coordinate; /* index into q of the displacement drawn */
+  double sign;        /* 1 or -1: its direction */
   size_t count, stop_count;
   path_vertex *vertices; /* (count) */
   path_stop stops[MOST_STOPS];
   size_t events_left;  /* that did not get a stop */
-  double larger;       /* motion is drawn so many times larger than it is */
-  double *shape;       /* (length) for a shape on its way to the page */
+  double larger;       /* factor by which displacements are enlarged */
+  double *shape;       /* (length) scratch for an enlarged shape */
   double *taut;        /* (members) its cables: 0 where slack */
   double (*points)[2]; /* (count) likewise for lines */
   size_t other_count, other_room;
   double (*others)[2]; /* (other_room, 2) lines that names keep off [pt] */
 } path_picture;
 
-/* Whether a load of the scene belongs to what grows along the path. */
+/* Whether the path scales this load. */
 static bool load_grows(const strut_path *path, const strut_load *load) {
   if (path->over != STRUT_PATH_OVER_LOAD) return false;
   if (path->load) return strcmp(load->name, path->load) == 0;
@@ -63,8 +63,8 @@ enum { NAMED = 12, LABEL = 200, DIRECTIONS = 12 };
 
 static const double MARKER = 2.7, LETTER = 8.5, MARGIN = 15.0, ARROW = 22.0; /* [pt] */
 
-/* One more line that names keep off. */
-static void keep_off(path_picture *p, const double a[2], const double b[2]) {
+/* Adds a segment that names avoid. */
+static void add_obstacle(path_picture *p, const double a[2], const double b[2]) {
   if (p->other_count >= p->other_room) return;
   double(*ends)[2] = p->others + 2 * p->other_count++;
   for (int d = 0; d < 2; d++) {
@@ -73,7 +73,7 @@ static void keep_off(path_picture *p, const double a[2], const double b[2]) {
   }
 }
 
-/* Letters beside the stops, where the line through p->points and other letters leave room. */
+/* Draws letters beside the stops, clear of the line through p->points and of each other. */
 static void draw_letters(path_picture *p, strut_box inside, const double (*points)[2]) {
   double placed[MOST_STOPS][2];
   size_t count = 0;
@@ -107,7 +107,7 @@ static void draw_letters(path_picture *p, strut_box inside, const double (*point
       const double *at = placed[count], half = 3.0;
       const double low[2] = {at[0] - half, at[1] - side * half};
       const double high[2] = {at[0] + half, at[1] + side * half};
-      keep_off(p, low, high);
+      add_obstacle(p, low, high);
     }
     count++;
   }
@@ -122,35 +122,35 @@ static void draw_markers(path_picture *p, const double (*points)[2]) {
 }
 
 /* A name cut to a width, in `text`. */
-static const char *cut(path_picture *p, const char *name, double width,
-                       char text[STRUT_FITTED_TEXT]) {
+static const char *fit_name(path_picture *p, const char *name, double width,
+                            char text[STRUT_FITTED_TEXT]) {
   return strut_text_fit(p->canvas, name, (strut_font){.size = 8}, width, 0, text);
 }
 
-/* What the curve shows of the parameter, in words; cut to a width. */
+/* Writes the label of the parameter's axis, cut to a width. */
 static void name_height(path_picture *p, double width, char label[LABEL]) {
   char fitted[STRUT_FITTED_TEXT];
   const strut_path *path = p->path;
   bool force = path->reference > 0, all = path->over == STRUT_PATH_OVER_LOAD && !path->load;
   if (path->over == STRUT_PATH_OVER_LOAD)
     snprintf(label, LABEL, "%s of %.100s", force ? "force" : "factor",
-             !all                     ? cut(p, path->name, width - 100, fitted)
+             !all                     ? fit_name(p, path->name, width - 100, fitted)
              : force && path->several ? "each load"
                                       : "the load");
   else if (path->coordinate >= 0)
-    snprintf(label, LABEL, "reaction of %.100s", cut(p, path->name, width - 100, fitted));
+    snprintf(label, LABEL, "reaction of %.100s", fit_name(p, path->name, width - 100, fitted));
   else
-    snprintf(label, LABEL, "%.100s", cut(p, path->name, width - 40, fitted));
+    snprintf(label, LABEL, "%.100s", fit_name(p, path->name, width - 40, fitted));
 }
 
 static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABEL]) {
-  static const char *const ways[] = {"to the left", "to the right", "downwards", "upwards"};
+  static const char *const directions[] = {"to the left", "to the right", "downwards", "upwards"};
   char fitted[STRUT_FITTED_TEXT];
   const char *node = p->model->scene->nodes[p->coordinate / 2].name;
   bool force = p->path->reference > 0 || p->path->coordinate >= 0;
-  snprintf(labels[0], LABEL, "motion of %.100s %s",
-           cut(p, node, p->upright ? box.height - 125 : box.width - 170, fitted),
-           ways[2 * (p->coordinate % 2) + (p->sign > 0)]);
+  snprintf(labels[0], LABEL, "displacement of %.100s %s",
+           fit_name(p, node, p->upright ? box.height - 125 : box.width - 170, fitted),
+           directions[2 * (p->coordinate % 2) + (p->sign > 0)]);
   name_height(p, p->upright ? box.width : box.height, labels[1]);
   strut_axis motion = {.name = labels[0], .unit = "m", .low = (double)NAN, .high = (double)NAN};
   strut_axis height = {.name = labels[1],
@@ -209,7 +209,7 @@ static const double *enlarged(path_picture *p, const double *q) {
   return p->shape;
 }
 
-/* Which cables pull there; of other members it does not matter. */
+/* Flags the taut cables at a vertex; other members ignore it. */
 static const double *flag_taut_cables(path_picture *p, const path_vertex *vertex) {
   for (size_t j = 0; j < p->model->scene->member_count; j++)
     p->taut[j] = vertex->force[j] > 0 ? 1.0 : 0.0;
@@ -221,7 +221,7 @@ static strut_bounds bounds_of(path_picture *p) {
   strut_bounds bounds = strut_bounds_none();
   for (size_t i = 0; i < p->stop_count; i++)
     strut_bounds_add(&bounds, p->model, enlarged(p, p->vertices[p->stops[i].vertex].q));
-  for (size_t k = 0; k < p->count; k++) { /* the way of the node between them */
+  for (size_t k = 0; k < p->count; k++) { /* the path of the node between them */
     const double *at = enlarged(p, p->vertices[k].q) + p->coordinate / 2 * 2;
     for (int d = 0; d < 2; d++) {
       bounds.low[d] = fmin(bounds.low[d], at[d]);
@@ -269,7 +269,7 @@ static bool load_arrow(const path_picture *p, const strut_window *window, const 
 static strut_window find_window(path_picture *p, strut_box box) {
   strut_bounds bounds = bounds_of(p), all = bounds;
   strut_window window = strut_window_fit(box, bounds, MARGIN);
-  for (int pass = 0; pass < 3; pass++) { /* arrows are of the page, not of the plane */
+  for (int pass = 0; pass < 3; pass++) { /* arrows have a length on the page, not in the plane */
     all = bounds;
     for (size_t l = 0; l < p->model->scene->load_count; l++) {
       double ends[2][2];
@@ -308,7 +308,7 @@ static void draw_node_path(path_picture *p, const strut_window *window, double s
 static void draw_shapes(path_picture *p, strut_box box) {
   double stops[MOST_STOPS][2], arrow[2][2];
   strut_window window = find_window(p, box);
-  p->other_count = 0; /* the curve's letters are elsewhere */
+  p->other_count = 0; /* discard those of the curve */
   strut_draw_ground(p->canvas, &window, p->model);
   for (size_t i = 0; i < p->stop_count; i++) {
     const path_vertex *vertex = &p->vertices[p->stops[i].vertex];
@@ -323,14 +323,14 @@ static void draw_shapes(path_picture *p, strut_box box) {
       const int32_t *node = p->model->scene->members[j].node;
       double ends[2][2];
       for (int k = 0; k < 2; k++) strut_window_point(&window, p->shape + 2 * node[k], ends[k]);
-      keep_off(p, ends[0], ends[1]);
+      add_obstacle(p, ends[0], ends[1]);
     }
   }
   for (size_t l = 0; l < p->model->scene->load_count; l++) {
     if (!load_arrow(p, &window, &p->model->scene->loads[l], arrow)) continue;
     strut_draw_arrow(p->canvas, arrow[0][0], arrow[0][1], arrow[1][0], arrow[1][1], 6,
                      (strut_pen){.colour = strut_palette_thing(1), .width = 1.4});
-    keep_off(p, arrow[0], arrow[1]);
+    add_obstacle(p, arrow[0], arrow[1]);
   }
   draw_node_path(p, &window, stops);
   draw_markers(p, (const double(*)[2])stops);
@@ -342,7 +342,7 @@ static void draw_shapes(path_picture *p, strut_box box) {
 
 /* The path put in order, places to stop at, the page. */
 
-static const double EDGE = 4.0, BETWEEN = 12.0, WIDE = 330.0; /* [pt] */
+static const double EDGE = 4.0, BETWEEN = 12.0, WIDE = 330.0, HEADING = 16.0; /* [pt] */
 static const double CURVE_SHAPE = 0.72;        /* height over width of the curve's box */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
 static const char MINUS[] = "\xE2\x88\x92";
@@ -350,7 +350,7 @@ enum { NAME = 28 };              /* bytes of a name in the key */
 static const double SAME = 1e-7; /* of the whole arc: events so close are one */
 
 /* Largest motion of a coordinate, with its sign. */
-static double motion_of(const strut_path *path, int32_t coordinate) {
+static double largest_motion(const strut_path *path, int32_t coordinate) {
   double most = 0.0;
   for (size_t k = 0; k < path->point_count; k++) {
     double here = path->points[k].q[coordinate] - path->points[0].q[coordinate];
@@ -363,9 +363,9 @@ static double motion_of(const strut_path *path, int32_t coordinate) {
 static void choose_coordinate(path_picture *p) {
   const strut_scene *scene = p->model->scene;
   double most = -1.0;
-  if (p->path->coordinate >= 0) { /* the one that is displaced */
+  if (p->path->coordinate >= 0) { /* the displaced coordinate */
     p->coordinate = p->path->coordinate;
-    p->sign = motion_of(p->path, p->coordinate) < 0 ? -1.0 : 1.0;
+    p->sign = largest_motion(p->path, p->coordinate) < 0 ? -1.0 : 1.0;
     return;
   }
   for (int pass = 0; pass < 3 && most < 0; pass++)
@@ -373,7 +373,7 @@ static void choose_coordinate(path_picture *p) {
       bool loaded = pass == 2 || (pass == 1 && !p->model->fixed[i]);
       for (size_t l = 0; l < scene->load_count; l++)
         loaded = loaded || (scene->loads[l].node == i / 2 && load_grows(p->path, &scene->loads[l]));
-      double here = motion_of(p->path, i);
+      double here = largest_motion(p->path, i);
       if (!loaded || fabs(here) <= most * (1 + 1e-9)) continue;
       most = fabs(here);
       p->coordinate = i;
@@ -381,8 +381,8 @@ static void choose_coordinate(path_picture *p) {
     }
 }
 
-/* The force of a load that the value stands for, the reaction to a displacement, or the value. */
-static double height_of(const strut_path *path, double value, const double *reaction) {
+/* The drawn ordinate: a load, the reaction to a displacement, or the parameter itself. */
+static double curve_height(const strut_path *path, double value, const double *reaction) {
   if (path->coordinate >= 0) return reaction[path->coordinate];
   return path->reference > 0 ? value * path->reference : value;
 }
@@ -392,7 +392,7 @@ static void add_vertex(path_picture *p, double value, const double *q, const dou
   p->vertices[p->count++] =
       (path_vertex){.value = value,
                     .motion = p->sign * (q[p->coordinate] - p->path->points[0].q[p->coordinate]),
-                    .height = height_of(p->path, value, reaction),
+                    .height = curve_height(p->path, value, reaction),
                     .unstable = unstable,
                     .q = q,
                     .force = force};
@@ -415,7 +415,7 @@ static void describe_event(const path_picture *p, const strut_path_event *event,
   if (event->kind == STRUT_PATH_TOUCHDOWN || event->kind == STRUT_PATH_LIFT_OFF)
     name = scene->nodes[event->index].name;
   int length = strut_text_bytes(name, NAME);
-  if (used + NAME + 60 > STOP_TEXT) return; /* of so many at one place these do */
+  if (used + NAME + 60 > STOP_TEXT) return; /* no room: the rest of the events here is not named */
   if (before && before->kind == event->kind)
     snprintf(text + used, room, "%s%.*s", length ? ", " : "", length, name);
   else
@@ -429,7 +429,7 @@ static void add_event(path_picture *p, size_t index, double whole) {
   bool same = before && event->arc - before->arc <= SAME * whole;
   if (same && p->stop_count > 1 && !p->events_left) {
     describe_event(p, event, before, p->stops[p->stop_count - 1].text);
-  } else if (p->stop_count + 1 < MOST_STOPS) { /* the end wants one too */
+  } else if (p->stop_count + 1 < MOST_STOPS) { /* one is kept for the end */
     path_stop *stop = add_stop(p, p->count - 1);
     snprintf(stop->letter, sizeof stop->letter, "%c", (char)('A' + (int)p->stop_count - 2));
     describe_event(p, event, NULL, stop->text);
@@ -438,7 +438,7 @@ static void add_event(path_picture *p, size_t index, double whole) {
   }
 }
 
-/* Points and events in the order of their arcs. An edge is as stable as what it begins at says. */
+/* Orders points and events by arc length. The start of an edge determines its stability. */
 static void put_in_order(path_picture *p) {
   const strut_path *path = p->path;
   double whole = fmax(path->points[path->point_count - 1].arc, 1e-300);
@@ -474,16 +474,16 @@ static void put_in_order(path_picture *p) {
 static void choose_enlargement(path_picture *p) {
   double most = 0.0, steps[] = {1, 2, 5};
   for (int32_t i = 0; i < 2 * p->model->node_count; i++)
-    most = fmax(most, fabs(motion_of(p->path, i)));
+    most = fmax(most, fabs(largest_motion(p->path, i)));
   p->larger = 1.0;
-  /* Beside the ground, which is where it is, shapes are too. */
+  /* Beside a ground nothing is enlarged: contact would look wrong. */
   if (!(most > 0) || most >= SEEN * p->model->size || p->model->scene->ground.present) return;
   double wanted = LARGE * p->model->size / most, power = pow(10.0, floor(log10(wanted)));
   for (int i = 0; i < 3; i++)
     if (steps[i] * power <= wanted) p->larger = fmax(1.0, steps[i] * power);
 }
 
-static bool prepare(path_picture *p, strut_arena *arena) {
+static bool prepare_picture(path_picture *p, strut_arena *arena) {
   size_t most = p->path->point_count + p->path->event_count;
   p->vertices = strut_arena_allocate(arena, most, sizeof *p->vertices);
   p->points = strut_arena_allocate(arena, most, sizeof *p->points);
@@ -521,13 +521,14 @@ static size_t make_key(const path_picture *p, char notes[2][NOTE], strut_key_ite
         .pen = {.colour = strut_grey(0.15), .width = 1.2, .dash = {3, 2}, .butt = true},
         .text = "unstable"};
   if (p->larger > 1) {
-    snprintf(notes[1], NOTE, "shapes: motion drawn %.0f times larger", p->larger);
+    snprintf(notes[1], NOTE, "shapes: displacements enlarged %.0f times", p->larger);
     items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = notes[1]};
   }
   return count;
 }
 
-static strut_status draw(path_picture *p, const char *name, double width, strut_error *error) {
+static strut_status draw_picture(path_picture *p, const char *name, double width,
+                                 strut_error *error) {
   char notes[2][NOTE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(p, notes, items);
@@ -537,7 +538,7 @@ static strut_status draw(path_picture *p, const char *name, double width, strut_
   double inside = width - 2 * EDGE, key = strut_key_height(ruler, inside, items, count);
   strut_canvas_free(ruler);
   bool wide = width >= WIDE;
-  strut_box curve = {EDGE, EDGE, wide ? 0.5 * (inside - BETWEEN) : inside, 0};
+  strut_box curve = {EDGE, EDGE + HEADING, wide ? 0.5 * (inside - BETWEEN) : inside, 0};
   curve.height = CURVE_SHAPE * curve.width;
   strut_box shapes = curve;
   if (wide) {
@@ -550,6 +551,7 @@ static strut_status draw(path_picture *p, const char *name, double width, strut_
   status =
       strut_canvas_open(name, width, below + key + EDGE, p->model->scene->name, &p->canvas, error);
   if (status != STRUT_OK) return status;
+  strut_draw_heading(p->canvas, EDGE, p->model->scene->name, "");
   draw_curve(p, curve);
   draw_shapes(p, shapes);
   strut_draw_key(p->canvas, (strut_box){EDGE, below, inside, key}, items, count);
@@ -562,8 +564,8 @@ strut_status strut_path_figure(const char *path_name, double width, const strut_
                                const strut_path *path, strut_error *error) {
   strut_arena arena = {0};
   path_picture picture = {.model = model, .path = path};
-  strut_status status = prepare(&picture, &arena)
-                            ? draw(&picture, path_name, width, error)
+  strut_status status = prepare_picture(&picture, &arena)
+                            ? draw_picture(&picture, path_name, width, error)
                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   strut_arena_free(&arena);
   return status;

@@ -6,13 +6,14 @@
 #include "engine/output/draw/curves.h"
 #include "engine/output/figures/run_parts.h"
 
-/* Curves of what was recorded: one kind of quantity in each panel. */
+/* Curves over time, one kind of quantity in each panel, and the overview that shows some below
+   the shape. */
 
 enum { MOST_CURVES = 6, MOST_DRIVEN = 3, CURVES_HEIGHT = 122 };
 
-static const double LEVEL = 1e-3;    /* of a force or an energy: less is drawn as level */
-static const double STANDING = 1e-6; /* of the model's size: less is no motion */
-static const double CLOSED = 1e-3;   /* of that: less above the ground is on it */
+static const double LEVEL = 1e-3;    /* of a force or an energy: smaller changes look level */
+static const double STANDING = 1e-6; /* of the model's size: smaller motion is none */
+static const double CLOSED = 1e-3;   /* of the model's size: closer to the ground is contact */
 static const double ROUNDING = 1e-9; /* of an energy */
 static const double ROOM = 0.06;     /* above and below the curves */
 
@@ -30,7 +31,7 @@ static double value_at(const strut_run_scene *run, int kind, size_t item, size_t
   const strut_trajectory *m = run->motion;
   const double *q = strut_run_positions(run, f);
   switch (kind) {
-    case STRUT_RUN_WAY: return strut_run_measured(run, f, (int)item);
+    case STRUT_RUN_DISPLACEMENT: return strut_run_measured(run, f, (int)item);
     case STRUT_RUN_NORMALS: return m->contact[2 * (f * m->contact_count + item)];
     case STRUT_RUN_HEIGHTS: {
       size_t node = (size_t)m->contact_node[item];
@@ -42,17 +43,17 @@ static double value_at(const strut_run_scene *run, int kind, size_t item, size_t
   }
 }
 
-/* Whether a contact comes down to the ground: heights of others tell little. */
+/* Whether a contact ever touches the ground; heights of others are omitted. */
 static bool comes_down(const strut_run_scene *run, size_t contact) {
   for (size_t f = 0; f < run->frames; f++)
     if (value_at(run, STRUT_RUN_HEIGHTS, contact, f) < CLOSED * run->model->size) return true;
   return false;
 }
 
-static size_t items_of(const strut_run_scene *run, int kind) {
+static size_t count_items(const strut_run_scene *run, int kind) {
   const strut_trajectory *m = run->motion;
   switch (kind) {
-    case STRUT_RUN_WAY: return run->model->scene->ground.present ? 1 : 2;
+    case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
     case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
     case STRUT_RUN_DRIVE: return (size_t)run->model->drives.count;
     case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
@@ -66,18 +67,20 @@ static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
   static const char *const axes[] = {"along x", "along y"};
   const strut_scene *scene = run->model->scene;
   switch (kind) {
-    case STRUT_RUN_WAY: return axes[item];
+    case STRUT_RUN_DISPLACEMENT: return axes[item];
     case STRUT_RUN_FORCES: return scene->members[item].name;
     case STRUT_RUN_ENERGIES: return energies[item];
     default: return scene->nodes[run->motion->contact_node[item]].name;
   }
 }
 
-/* Kinds whose curves start at zero: only how far things went is of interest. */
-static bool from_start(int kind) { return kind == STRUT_RUN_WAY || kind == STRUT_RUN_ENERGIES; }
+/* Kinds drawn as changes from the first frame. */
+static bool from_start(int kind) {
+  return kind == STRUT_RUN_DISPLACEMENT || kind == STRUT_RUN_ENERGIES;
+}
 
-/* How far a curve moves; of a kind whose zero means something, from there. */
-static double liveliness(const strut_run_scene *run, int kind, size_t item, size_t first) {
+/* Range of a curve; contact forces include zero. */
+static double variation(const strut_run_scene *run, int kind, size_t item, size_t first) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   if (kind == STRUT_RUN_HEIGHTS && !comes_down(run, item)) return 0;
   for (size_t f = first; f < run->frames; f++) {
@@ -90,33 +93,34 @@ static double liveliness(const strut_run_scene *run, int kind, size_t item, size
   return high > low ? high - low : 0;
 }
 
-/* A change of less than this is rounding. */
+/* Smaller changes are rounding. */
 static double least_range(const strut_run_scene *run, int kind) {
-  bool length = kind == STRUT_RUN_WAY || kind == STRUT_RUN_HEIGHTS || kind == STRUT_RUN_DRIVE;
+  bool length =
+      kind == STRUT_RUN_DISPLACEMENT || kind == STRUT_RUN_HEIGHTS || kind == STRUT_RUN_DRIVE;
   double most = 0;
   if (length) return STANDING * run->model->size;
-  for (size_t i = 0; i < items_of(run, kind) && kind == STRUT_RUN_ENERGIES; i++)
+  for (size_t i = 0; i < count_items(run, kind) && kind == STRUT_RUN_ENERGIES; i++)
     most = fmax(most, fabs(value_at(run, kind, i, 0)));
   return ROUNDING * most;
 }
 
 bool strut_run_panel_wanted(const strut_run_scene *run, int kind) {
-  size_t items = items_of(run, kind);
+  size_t items = count_items(run, kind);
   if (kind == STRUT_RUN_DRIVE) return items > 0;
   for (size_t i = 0; i < items; i++)
-    if (liveliness(run, kind, i, 0) > least_range(run, kind)) return true;
+    if (variation(run, kind, i, 0) > least_range(run, kind)) return true;
   return false;
 }
 
-/* The liveliest items, in the scene's order. Returns how many. */
-static size_t choose(const strut_run_scene *run, int kind, size_t first,
-                     size_t chosen[MOST_CURVES]) {
+/* Chooses the items that vary most, in the scene's order. Returns how many. */
+static size_t choose_curves(const strut_run_scene *run, int kind, size_t first,
+                            size_t chosen[MOST_CURVES]) {
   double lively[MOST_CURVES];
   size_t count = 0;
-  for (size_t i = 0; i < items_of(run, kind); i++) {
-    double value = liveliness(run, kind, i, first);
+  for (size_t i = 0; i < count_items(run, kind); i++) {
+    double value = variation(run, kind, i, first);
     size_t dullest = 0;
-    if (!(value > least_range(run, kind)) && !(kind == STRUT_RUN_WAY && i == 0)) continue;
+    if (!(value > least_range(run, kind)) && !(kind == STRUT_RUN_DISPLACEMENT && i == 0)) continue;
     if (count == MOST_CURVES) {
       for (size_t k = 1; k < count; k++)
         if (lively[k] < lively[dullest]) dullest = k;
@@ -130,10 +134,10 @@ static size_t choose(const strut_run_scene *run, int kind, size_t first,
   return count;
 }
 
-static bool fill(strut_run_scene *run, int kind, size_t first, panel *p) {
+static bool fill_panel(strut_run_scene *run, int kind, size_t first, panel *p) {
   size_t chosen[MOST_CURVES], frames = run->frames - first;
   double most = 0;
-  p->count = choose(run, kind, first, chosen);
+  p->count = choose_curves(run, kind, first, chosen);
   for (size_t i = 0; i < p->count; i++) {
     double start = from_start(kind) ? value_at(run, kind, chosen[i], first) : 0;
     p->values[i] = strut_arena_allocate(&run->arena, frames, sizeof(double));
@@ -144,12 +148,12 @@ static bool fill(strut_run_scene *run, int kind, size_t first, panel *p) {
     }
     p->labels[i] = label_of(run, kind, chosen[i]);
   }
-  if (kind == STRUT_RUN_WAY && p->count == 1) p->labels[0] = NULL;
+  if (kind == STRUT_RUN_DISPLACEMENT && p->count == 1) p->labels[0] = NULL;
   p->least = fmax(least_range(run, kind), from_start(kind) ? 0 : LEVEL * most);
   return true;
 }
 
-/* What drives a member at a time, beyond its rest length [m]. */
+/* The actuated change of a member's rest length at a time [m]. */
 static double driven_by(const strut_run_scene *run, int32_t member, double time) {
   const strut_drive_table *drives = &run->model->drives;
   double sum = 0;
@@ -168,7 +172,7 @@ static double length_at(const strut_run_scene *run, int32_t member, size_t f) {
   return hypot(q[2 * node[1]] - q[2 * node[0]], q[2 * node[1] + 1] - q[2 * node[0] + 1]);
 }
 
-/* Rest lengths as they are driven, and lengths as they come, both from where they are at first. */
+/* Actuated rest lengths and actual lengths, as changes from the first frame. */
 static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
   const strut_drive_table *drives = &run->model->drives;
   size_t frames = run->frames - first;
@@ -192,7 +196,7 @@ static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
   return true;
 }
 
-/* The range of all curves, widened to what is worth seeing. */
+/* The range of all curves, at least p->least. */
 static void find_range(const panel *p, size_t frames, int kind, strut_axis *axis) {
   for (size_t i = 0; i < p->count; i++)
     for (size_t f = 0; f < frames; f++) strut_axis_include(axis, p->values[i][f]);
@@ -217,15 +221,17 @@ static bool fit_labels(strut_run_scene *run, double width, panel *p) {
 
 strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
                                   int kind, size_t first) {
-  static const char *const names[][2] = {
-      [STRUT_RUN_WAY] = {"displacement", "m"},    [STRUT_RUN_NORMALS] = {"contact force", "N"},
-      [STRUT_RUN_DRIVE] = {"change", "m"},        [STRUT_RUN_HEIGHTS] = {"height", "m"},
-      [STRUT_RUN_FORCES] = {"member force", "N"}, [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
+  static const char *const names[][2] = {[STRUT_RUN_DISPLACEMENT] = {"displacement", "m"},
+                                         [STRUT_RUN_NORMALS] = {"contact force", "N"},
+                                         [STRUT_RUN_DRIVE] = {"change", "m"},
+                                         [STRUT_RUN_HEIGHTS] = {"height", "m"},
+                                         [STRUT_RUN_FORCES] = {"member force", "N"},
+                                         [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
   panel p = {.name = names[kind][0], .unit = names[kind][1]};
   size_t frames = run->frames - first;
-  if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill(run, kind, first, &p)))
+  if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill_panel(run, kind, first, &p)))
     return STRUT_NO_MEMORY;
-  if (kind == STRUT_RUN_WAY && p.count == 1) p.name = "x displacement";
+  if (kind == STRUT_RUN_DISPLACEMENT && p.count == 1) p.name = "x displacement";
   if (!fit_labels(run, 0.4 * box.width, &p)) return STRUT_NO_MEMORY;
   strut_series series[MOST_CURVES];
   for (size_t i = 0; i < p.count; i++)
@@ -268,15 +274,16 @@ strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas) {
 
 /* The overview of a run: where it ended, how it got there, and curves of the last periods. */
 
-enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_WAYS = 300 };
+enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_PATHS = 300 };
 
 static const double YARDSTICK = 14, KEY_LINE = 11; /* [pt] */
 static const double SCALE = 46, CHART = 118, MARGIN = 27, GAP = 6, WIDE = 380;
-static const double PERIODS = 5, PART = 0.1; /* of what was recorded, where nothing is periodic */
-static const double SEEN = 2e-3;             /* of the drawing: less is no way */
-static const double REACH = 0.6; /* ways are shown so far around the shape, in its sizes */
+static const double PERIODS = 5, PART = 0.1; /* of the record, where nothing is periodic */
+static const double SEEN = 2e-3;             /* of the drawing: shorter paths are not drawn */
+static const double REACH =
+    0.6; /* paths are shown within this distance of the shape, in its sizes */
 
-static size_t first_of_ways(const strut_run_scene *run) {
+static size_t first_of_paths(const strut_run_scene *run) {
   double all = strut_run_time_from(run, 0);
   return strut_run_since(run, run->period > 0 ? fmin(run->period, all) : PART * all);
 }
@@ -286,11 +293,11 @@ static size_t first_of_curves(const strut_run_scene *run) {
   return strut_run_since(run, run->period > 0 ? fmin(PERIODS * run->period, all) : all);
 }
 
-/* The last shape, with as much of the ways to it as does not make it small. */
+/* Bounds of the last shape and of the paths near it. */
 static strut_bounds bounds_of(const strut_run_scene *run) {
   strut_bounds shape = strut_run_frame_bounds(run, run->frames - 1), all = shape;
   double reach = REACH * strut_run_extent(&shape);
-  for (size_t f = first_of_ways(run); f < run->frames; f++)
+  for (size_t f = first_of_paths(run); f < run->frames; f++)
     strut_bounds_add(&all, run->model, strut_run_positions(run, f));
   for (int d = 0; d < 2; d++) {
     all.low[d] = fmax(all.low[d], shape.low[d] - reach);
@@ -306,37 +313,37 @@ static double drawing_height(const strut_run_scene *run) {
   return strut_run_drawing_height(&b, width, MARGIN, 0.16, 0.62);
 }
 
-static bool beside(const strut_run_scene *run) { return run->figure->width >= WIDE; }
+static bool has_two_columns(const strut_run_scene *run) { return run->figure->width >= WIDE; }
 
 static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
-  static const int order[] = {STRUT_RUN_WAY, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE, STRUT_RUN_HEIGHTS,
-                              STRUT_RUN_FORCES};
-  int count = 0, most = beside(run) ? MOST_PANELS : MOST_STACKED;
+  static const int order[] = {STRUT_RUN_DISPLACEMENT, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE,
+                              STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES};
+  int count = 0, most = has_two_columns(run) ? MOST_PANELS : MOST_STACKED;
   for (size_t i = 0; run->frames > 1 && i < sizeof order / sizeof *order && count < most; i++)
     if (strut_run_panel_wanted(run, order[i])) panels[count++] = order[i];
   return count;
 }
 
-/* Whether any way is long enough to be seen. */
-static bool moves(const strut_run_scene *run) {
+/* Whether any path is long enough to be visible. */
+static bool has_visible_paths(const strut_run_scene *run) {
   size_t last = run->frames - 1, nodes = run->motion->node_count;
   strut_bounds b = bounds_of(run);
-  if (nodes > MOST_WAYS) return false;
+  if (nodes > MOST_PATHS) return false;
   double least = SEEN * strut_run_extent(&b);
-  for (size_t f = first_of_ways(run); f < last; f++)
+  for (size_t f = first_of_paths(run); f < last; f++)
     for (size_t i = 0; i < 2 * nodes; i++)
       if (fabs(strut_run_positions(run, f)[i] - strut_run_positions(run, last)[i]) > least)
         return true;
   return false;
 }
 
-static size_t key_of(strut_run_scene *run, char texts[ITEMS][120], strut_key_item items[ITEMS]) {
+static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_item items[ITEMS]) {
   size_t count = 0;
   strut_run_expect_frame(run, run->frames - 1);
   if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
-  if (moves(run)) {
-    double span = strut_run_time_from(run, first_of_ways(run));
-    snprintf(texts[count], 120, "ways in the last %s, dark to bright",
+  if (has_visible_paths(run)) {
+    double span = strut_run_time_from(run, first_of_paths(run));
+    snprintf(texts[count], 120, "node trajectories over the last %s, dark to bright",
              strut_drawn_quantity(span, 3, "s").text);
     items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
     count++;
@@ -344,7 +351,7 @@ static size_t key_of(strut_run_scene *run, char texts[ITEMS][120], strut_key_ite
   return count;
 }
 
-/* Below the drawing the yardstick stands, and beside it the key. */
+/* The scale bar is below the drawing, the key beside it. */
 static double key_indent(const strut_run_scene *run) {
   return 0.3 * (run->figure->width - 2 * STRUT_RUN_EDGE - SCALE) + 14;
 }
@@ -359,22 +366,22 @@ double strut_run_overview_height(strut_run_scene *run) {
   int panels[MOST_PANELS], count = panels_of(run, panels);
   char texts[ITEMS][120];
   strut_key_item items[ITEMS];
-  size_t keys = key_of(run, texts, items);
+  size_t keys = make_key(run, texts, items);
   double key = foot_height(run, run->ruler, items, keys);
   return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + drawing_height(run) + key + GAP +
-         CHART * (beside(run) ? (count + 1) / 2 : count);
+         CHART * (has_two_columns(run) ? (count + 1) / 2 : count);
 }
 
 static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  size_t last = run->frames - 1, first = first_of_ways(run), nodes = run->motion->node_count;
+  size_t last = run->frames - 1, first = first_of_paths(run), nodes = run->motion->node_count;
   strut_window window = strut_window_fit(box, bounds_of(run), MARGIN);
-  double(*way)[2] = strut_arena_allocate(&run->arena, run->frames - first, sizeof *way);
+  double(*path)[2] = strut_arena_allocate(&run->arena, run->frames - first, sizeof *path);
   double *q = strut_run_shape(run, last);
-  if (!way || !q || !strut_run_draw_frame(run, canvas, &window, last)) return false;
-  for (size_t i = 0; i < nodes && nodes <= MOST_WAYS; i++) {
+  if (!path || !q || !strut_run_draw_frame(run, canvas, &window, last)) return false;
+  for (size_t i = 0; i < nodes && nodes <= MOST_PATHS; i++) {
     for (size_t f = first; f < run->frames; f++)
-      for (size_t d = 0; d < 2; d++) way[f - first][d] = strut_run_positions(run, f)[2 * i + d];
-    strut_run_draw_path(run, canvas, &window, (const double(*)[2])way, run->frames - first, 0.9);
+      for (size_t d = 0; d < 2; d++) path[f - first][d] = strut_run_positions(run, f)[2 * i + d];
+    strut_run_draw_path(run, canvas, &window, (const double(*)[2])path, run->frames - first, 0.9);
   }
   strut_run_draw_reactions(run, canvas, &window, last);
   strut_run_draw_names(run, canvas, &window, q);
@@ -383,9 +390,9 @@ static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box
   return true;
 }
 
-/* Two beside each other where there is room; one that is left over has a row of its own. */
+/* Two charts in a row where there is room; an odd one takes a whole row. */
 static strut_status draw_charts(strut_run_scene *run, strut_canvas *canvas, strut_box box) {
-  int panels[MOST_PANELS], count = panels_of(run, panels), columns = beside(run) ? 2 : 1;
+  int panels[MOST_PANELS], count = panels_of(run, panels), columns = has_two_columns(run) ? 2 : 1;
   for (int i = 0, row = 0; i < count; row++) {
     int in_row = columns == 2 && (count - i) % 2 == 0 ? 2 : 1;
     for (int k = 0; k < in_row; k++, i++) {
@@ -403,7 +410,7 @@ strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
   double width = run->figure->width - 2 * STRUT_RUN_EDGE, height = drawing_height(run);
   char what[100], texts[ITEMS][120];
   strut_key_item items[ITEMS];
-  size_t keys = key_of(run, texts, items);
+  size_t keys = make_key(run, texts, items);
   snprintf(what, sizeof what, "shape at %s",
            strut_drawn_quantity(run->motion->time[run->frames - 1], 5, "s").text);
   strut_run_draw_title(run, canvas, what, true);

@@ -8,10 +8,8 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-/* Which frames there are to draw, and what they hold. */
-
-enum { LEAST_SAMPLES = 8 };         /* of a period, or it is not seen */
-static const double BURST = 10.0;   /* a diverging structure so many times its size is none */
+enum { LEAST_SAMPLES = 8 };         /* per period, for its shape to be visible */
+static const double BURST = 10.0;   /* a diverged shape larger than this, in sizes, is not drawn */
 static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
 static const struct {
@@ -41,18 +39,18 @@ strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_
     if (!(figure->times[i] >= from && figure->times[i] <= to))
       return strut_fail(error, STRUT_USAGE,
                         "nothing is recorded at %s: the record goes from %s to %s ('output: {last: "
-                        "...}' says what is recorded)",
+                        "...}' sets the range)",
                         strut_quantity_of(figure->times[i], 6, "s").text,
                         strut_quantity_of(span.record_start, 6, "s").text,
                         strut_quantity_of(span.duration, 6, "s").text);
   if (figure->view == STRUT_RUN_PERIOD && span.period > 0 &&
       span.period < LEAST_SAMPLES * every * (1 - 1e-9))
-    return strut_fail(error, STRUT_USAGE,
-                      "a period of %s cannot be drawn from a sample each %s: add 'output: {every: "
-                      "%s, last: 10}' to the model",
-                      strut_quantity_of(span.period, 4, "s").text,
-                      strut_quantity_of(every, 4, "s").text,
-                      strut_quantity_of(span.period / 100, 4, "s").text);
+    return strut_fail(
+        error, STRUT_USAGE,
+        "a period of %s cannot be drawn from one sample every %s: add 'output: {every: "
+        "%s, last: 10}' to the model",
+        strut_quantity_of(span.period, 4, "s").text, strut_quantity_of(every, 4, "s").text,
+        strut_quantity_of(span.period / 100, 4, "s").text);
   return STRUT_OK;
 }
 
@@ -158,7 +156,8 @@ strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
   strut_bounds b = strut_bounds_none();
   strut_bounds_add(&b, run->model, strut_run_positions(run, frame));
   double missing = SMALLEST * run->model->size - strut_run_extent(&b);
-  const double share[2] = {0.5, 0.15}; /* wide rather than high */
+  const double share[2] = {0.5,
+                           0.15}; /* the missing extent goes to the width rather than the height */
   for (int d = 0; d < 2 && missing > 0; d++) {
     b.low[d] -= share[d] * missing;
     b.high[d] += share[d] * missing;
@@ -179,12 +178,12 @@ double strut_run_drawing_height(const strut_bounds *b, double width, double marg
   return fmax(fmax(least * width, 2 * margin + 8), fmin(wanted, most * width));
 }
 
-/* What several views of a run draw: titles, shapes, reactions, ways, names. */
+/* Parts of several views: titles, shapes, contact forces, paths, names. */
 
-enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, WAY_PIECES = 40, LINE = 600 };
+enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, PATH_PIECES = 40, LINE = 600 };
 
 static const double DOT = 0.3;       /* [pt] */
-static const double STANDING = 1e-6; /* of the model's size over the whole run: it does not move */
+static const double STANDING = 1e-6; /* of the model's size over the whole run: it stands still */
 
 void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
   const strut_trajectory *m = run->motion;
@@ -210,8 +209,8 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
   return true;
 }
 
-/* Keeps names off a line; without memory, or with very many, they are not kept off. */
-static void avoid(strut_run_scene *run, const double from[2], const double to[2]) {
+/* Adds a segment that names avoid; ignored without memory or beyond MOST_AVOIDED. */
+static void add_obstacle(strut_run_scene *run, const double from[2], const double to[2]) {
   if (!run->avoid)
     run->avoid = strut_arena_allocate(&run->arena, 2 * MOST_AVOIDED, sizeof *run->avoid);
   if (!run->avoid || run->avoid_count == MOST_AVOIDED) return;
@@ -234,34 +233,34 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
     strut_window_point(window, q + contacts->at[i], at);
     const double foot[2] = {at[0] - length * contacts->normal[0],
                             at[1] + length * contacts->normal[1]};
-    if (length > 1) avoid(run, foot, at);
+    if (length > 1) add_obstacle(run, foot, at);
     length = force[2 * i + 1] / run->contact_limit * run->arrow;
     const double tip[2] = {at[0] + length * contacts->tangent[0],
                            at[1] - length * contacts->tangent[1]};
-    if (fabs(length) > 1) avoid(run, at, tip);
+    if (fabs(length) > 1) add_obstacle(run, at, tip);
   }
 }
 
-/* Whether a way is longer than a dot on the page. */
-static bool is_seen(const strut_window *window, const double (*way)[2], size_t count) {
+/* Whether a path is longer than a dot on the page. */
+static bool is_visible(const strut_window *window, const double (*path)[2], size_t count) {
   double first[2], at[2];
   for (size_t i = 0; i < count; i++) {
-    strut_window_point(window, way[i], i ? at : first);
+    strut_window_point(window, path[i], i ? at : first);
     if (i && hypot(at[0] - first[0], at[1] - first[1]) > DOT) return true;
   }
   return false;
 }
 
 void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                         const double (*way)[2], size_t count, double width) {
+                         const double (*path)[2], size_t count, double width) {
   double before[2], at[2];
-  if (!is_seen(window, way, count)) return;
+  if (!is_visible(window, path, count)) return;
   strut_canvas_clip(canvas, window->box);
-  strut_draw_trail(canvas, window, way, count, width);
+  strut_draw_trail(canvas, window, path, count, width);
   strut_canvas_unclip(canvas);
-  for (size_t i = 0; i <= WAY_PIECES && count > 1; i++) {
-    strut_window_point(window, way[i * (count - 1) / WAY_PIECES], at);
-    if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) > 0.5) avoid(run, before, at);
+  for (size_t i = 0; i <= PATH_PIECES && count > 1; i++) {
+    strut_window_point(window, path[i * (count - 1) / PATH_PIECES], at);
+    if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) > 0.5) add_obstacle(run, before, at);
     if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) <= 0.5) continue;
     memcpy(before, at, sizeof before);
   }
@@ -286,7 +285,7 @@ void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, stru
 
 bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_item *item) {
   if (!(run->contact_limit > 0)) return false;
-  snprintf(text, 120, "force of the ground, %s at most",
+  snprintf(text, 120, "contact force, up to %s",
            strut_drawn_quantity(run->contact_limit, 3, "N").text);
   *item = (strut_key_item){.sign = STRUT_KEY_ARROW,
                            .pen = {.colour = strut_palette_thing(1), .width = 1.1},
@@ -294,16 +293,16 @@ bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_
   return true;
 }
 
-/* The velocity, 0 where nothing moved to speak of. */
-static double velocity_of(const strut_run_scene *run) {
+/* The measured velocity; 0 for a structure that stands still. */
+static double shown_velocity(const strut_run_scene *run) {
   const strut_summary *s = run->summary;
-  double way = fabs(s->velocity) * fmax(s->duration, STRUT_RUN_MOMENT);
-  return way > STANDING * run->model->size ? s->velocity : 0;
+  double path = fabs(s->velocity) * fmax(s->duration, STRUT_RUN_MOMENT);
+  return path > STANDING * run->model->size ? s->velocity : 0;
 }
 
-/* Adds the velocity to the line, with the point's name where that leaves it short enough. */
-static void say_velocity(const strut_run_scene *run, strut_canvas *canvas, double velocity,
-                         double room, strut_font font, char line[LINE]) {
+/* Appends the velocity to the line, with the measured point's name if it fits. */
+static void append_velocity(const strut_run_scene *run, strut_canvas *canvas, double velocity,
+                            double room, strut_font font, char line[LINE]) {
   size_t used = strlen(line);
   double width, height;
   strut_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
@@ -324,14 +323,14 @@ void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, cons
   bool failed = s && s->status != STRUT_OK;
   if (failed) below.colour = strut_palette_thing(1);
   velocity = velocity && !failed && s && isfinite(s->velocity);
-  double v = velocity ? velocity_of(run) : 0;
+  double v = velocity ? shown_velocity(run) : 0;
   if (failed)
     snprintf(line, sizeof line, "%s at %s; %s",
              s->status == STRUT_DIVERGED ? "diverged" : "stopped",
              strut_drawn_quantity(s->duration, 4, "s").text, what);
   else
     snprintf(line, sizeof line, "%s", what);
-  if (velocity) say_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);
+  if (velocity) append_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);
   strut_draw_text(canvas, x, STRUT_RUN_EDGE,
                   strut_text_fit(canvas, run->model->scene->name, title, room, 0, fitted), title);
   strut_text_fit(canvas, line, below, v != 0 ? room - arrow - 6 : room, 0, fitted);
@@ -343,7 +342,7 @@ void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, cons
                    (strut_pen){.colour = strut_grey(0.3), .width = 1.1});
 }
 
-/* Another motion of the same structure over the one that is drawn. See run_parts.h. */
+/* A second motion of the same structure, dashed over the first. */
 
 static const strut_pen PEN = {.colour = {0.05, 0.05, 0.05, 1}, .width = 0.7, .dash = {2.4, 1.6}};
 
@@ -370,9 +369,9 @@ void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
 }
 
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
-                               const strut_window *window, const double (*way)[2], size_t count) {
+                               const strut_window *window, const double (*path)[2], size_t count) {
   double(*points)[2] = strut_arena_allocate(&other->arena, count, sizeof *points);
-  for (size_t i = 0; points && i < count; i++) strut_window_point(window, way[i], points[i]);
+  for (size_t i = 0; points && i < count; i++) strut_window_point(window, path[i], points[i]);
   if (points) strut_draw_line(canvas, (const double(*)[2])points, count, PEN);
   return points != NULL;
 }

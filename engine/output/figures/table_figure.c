@@ -122,7 +122,7 @@ static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) 
   return count;
 }
 
-/* Stretches of the rows that carry the band's text, reaching half way to their neighbours. */
+/* Finds the runs of rows with the band's text; bands end midway to the neighbouring rows. */
 static size_t find_bands(const maker *m, const size_t *rows, size_t count, strut_band *bands) {
   const strut_table_column *band = &m->table->columns[m->figure->band];
   const double *x = m->table->columns[m->figure->x].value;
@@ -189,7 +189,7 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
   return strut_draw_curves(canvas, box, &curves);
 }
 
-/* The label of a y axis: the names of its columns, or nothing where the legend has to name them. */
+/* The label of a y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *m, bool right) {
   const strut_table_figure *f = m->figure;
   char *name = m->y_name[right];
@@ -204,8 +204,8 @@ static const char *name_y_axis(maker *m, bool right) {
   return name;
 }
 
-/* All panels share their axes. */
-static void settle_axes(maker *m) {
+/* Finds the axes, which all panels share. */
+static void find_axes(maker *m) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *columns = m->table->columns, *x = &columns[f->x];
   const strut_table_axis own = {0};
@@ -231,7 +231,7 @@ static void settle_axes(maker *m) {
   strut_axis_settle(&m->right, 0.06);
 }
 
-/* An axis on either side is for columns of one unit. */
+/* Two axes suffice for two units. */
 static strut_status check_units(const strut_table *table, const strut_table_figure *f,
                                 strut_error *error) {
   const strut_table_column *first = &table->columns[f->y[0]], *second = NULL;
@@ -289,7 +289,7 @@ static void draw_legend(void *context, strut_canvas *canvas, strut_box box) {
                     false);
 }
 
-static strut_status draw(maker *m, const char *path, strut_error *error) {
+static strut_status draw_page(maker *m, const char *path, strut_error *error) {
   strut_canvas *ruler = NULL;
   double size[2] = {0, 0};
   m->entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *m->entries);
@@ -325,8 +325,8 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
     status =
         strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "curves", &m.curves, error);
   if (status == STRUT_OK) {
-    settle_axes(&m);
-    status = draw(&m, path, error);
+    find_axes(&m);
+    status = draw_page(&m, path, error);
   }
   strut_arena_free(&m.arena);
   return status;

@@ -7,10 +7,10 @@
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/palette.h"
 
-/* It follows what moves farther than so many sizes of the structure, in x and in y. */
+/* The camera follows motion beyond this many sizes of the structure, in x and in y. */
 static const double RANGE[2] = {2.05, 1.6};
 
-/* Means over the neighbours, as many on both sides, from one column of rows of two to another;
+/* Symmetric moving averages of one column of (count, 2) rows;
  * `sum` has room for (count + 1). */
 static void smooth(double (*to)[2], const double (*from)[2], int axis, size_t count, size_t reach,
                    double *sum) {
@@ -63,10 +63,10 @@ bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t 
   return true;
 }
 
-static const double FAR = 20; /* sizes from where it began: farther it is no motion to look at */
+static const double FAR = 20; /* a diverged shape larger than this, in sizes, is not drawn */
 
-/* Whether a shape is all there, and in one piece if the run diverged. */
-static bool shows(const strut_model *model, const strut_trajectory *motion, const double *q) {
+/* Whether a shape is finite, and of drawable size if the run diverged. */
+static bool is_drawable(const strut_model *model, const strut_trajectory *motion, const double *q) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < 2 * motion->node_count; i++) {
     if (!isfinite(q[i])) return false;
@@ -80,7 +80,7 @@ static bool shows(const strut_model *model, const strut_trajectory *motion, cons
 size_t strut_frames_to_show(const strut_model *model, const strut_trajectory *motion) {
   size_t frames = 0;
   while (frames < motion->frames &&
-         shows(model, motion, motion->position + 2 * motion->node_count * frames))
+         is_drawable(model, motion, motion->position + 2 * motion->node_count * frames))
     frames++;
   return frames;
 }
@@ -101,7 +101,8 @@ bool strut_moment_create(strut_moment *moment, const strut_model *model,
 }
 
 /* to = (1 - part) row i + part row j of (rows, count). */
-static void mix(double *to, const double *rows, size_t count, size_t i, size_t j, double part) {
+static void interpolate_rows(double *to, const double *rows, size_t count, size_t i, size_t j,
+                             double part) {
   const double *from = rows + i * count, *next = rows + j * count;
   for (size_t k = 0; k < count; k++)
     to[k] = part > 0 ? from[k] + part * (next[k] - from[k]) : from[k];
@@ -116,9 +117,11 @@ void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_
   double part = t[j] > t[i] && time > t[i] ? fmin(1, (time - t[i]) / (t[j] - t[i])) : 0;
   moment->frame = i;
   moment->time = time;
-  mix(moment->q, motion->position, 2 * motion->node_count, i, j, part);
-  if (moment->force) mix(moment->force, motion->force, motion->member_count, i, j, part);
-  if (moment->contact) mix(moment->contact, motion->contact, 2 * motion->contact_count, i, j, part);
+  interpolate_rows(moment->q, motion->position, 2 * motion->node_count, i, j, part);
+  if (moment->force)
+    interpolate_rows(moment->force, motion->force, motion->member_count, i, j, part);
+  if (moment->contact)
+    interpolate_rows(moment->contact, motion->contact, 2 * motion->contact_count, i, j, part);
 }
 
 double strut_moment_travel(const strut_moment *moment, const strut_model *model) {
@@ -136,17 +139,18 @@ enum { DIGITS = 3, TEXT = 64, MOST_MARKS = 200, TITLE = 84 };
 
 static const double EDGE = 14, ABOVE = 34, BELOW = 46; /* of the page [pt] */
 static const double AROUND = 34, CLOSE = 18;           /* the structure, with arrows and without */
-static const double ARROW = 26;                        /* of the largest force of the ground */
-static const double BETWEEN = 70;                      /* marks of the ground, about [pt] */
-static const double LEAST = 0.02; /* of the structure's size, or of 1 m: seen around a point */
-static const double NEAR = 0.5;   /* a ground nearer than so many sizes is shown from the start */
+static const double ARROW = 26;                        /* of the largest contact force */
+static const double BETWEEN = 70; /* approximate spacing of ground marks [pt] */
+static const double LEAST =
+    0.02;                       /* of the structure's size, or of 1 m: least range around a point */
+static const double NEAR = 0.5; /* a ground nearer than this, in sizes, is always in view */
 
 static double round_step(double length) {
   double power = pow(10.0, floor(log10(length)));
   return length >= 5 * power ? 5 * power : length >= 2 * power ? 2 * power : power;
 }
 
-/* What must be seen around the camera's middle, as bounds; a ground nearby is in it. */
+/* Bounds to show around the camera's middle, with a nearby ground. */
 static strut_bounds around(const strut_view_frame *s) {
   const strut_camera *camera = s->camera;
   const strut_ground *ground = &s->model->scene->ground;
@@ -185,7 +189,7 @@ void strut_view_frame_speed(strut_view_frame *s, double speed) {
 }
 
 /* The window of picture i. */
-static strut_window look(const strut_view_frame *s, size_t i) {
+static strut_window window_at(const strut_view_frame *s, size_t i) {
   strut_window window = s->window;
   window.left += s->camera->middle[i][0];
   window.top += s->camera->middle[i][1];
@@ -225,7 +229,7 @@ static void draw_marks(const strut_view_frame *s, strut_canvas *canvas, const st
   }
 }
 
-/* Where there is no ground to pass by, faint lines do. */
+/* Without a ground, faint vertical lines show the motion of the camera. */
 static void draw_lattice(const strut_view_frame *s, strut_canvas *canvas,
                          const strut_window *window) {
   const strut_pen pen = {.colour = strut_grey(0.9), .width = 0.6, .butt = true};
@@ -247,7 +251,7 @@ static void draw_lattice(const strut_view_frame *s, strut_canvas *canvas,
   }
 }
 
-/* The time, always with as many digits and in the same unit. */
+/* The time with fixed digits and unit. */
 static void time_text(const strut_view_frame *s, double time, char text[TEXT]) {
   double factor;
   const char *prefix = strut_prefix(fmax(fabs(s->end_time), fabs(s->start_time)), "s", &factor);
@@ -256,7 +260,7 @@ static void time_text(const strut_view_frame *s, double time, char text[TEXT]) {
   snprintf(text, TEXT, "%.*f %ss", decimals, time / factor, prefix);
 }
 
-/* As much of a name as two lines hold, in whole letters. */
+/* A name cut to two lines. */
 static void title_text(const char *name, char text[2 * TEXT]) {
   size_t length = 0;
   while (name[length] && length < TITLE) length++;
@@ -300,7 +304,7 @@ static void draw_scale(const strut_view_frame *s, strut_canvas *canvas) {
   strut_draw_colour_scale(canvas, (strut_box){page.width - 190, page.height - 39, 180, 30}, &scale);
 }
 
-/* How far the film is, along the lower edge. */
+/* Progress bar along the lower edge. */
 static void draw_progress(const strut_view_frame *s, strut_canvas *canvas, size_t i) {
   strut_box page = strut_canvas_box(canvas);
   double part = s->camera->count > 1 ? (double)i / (double)(s->camera->count - 1) : 1;
@@ -310,7 +314,7 @@ static void draw_progress(const strut_view_frame *s, strut_canvas *canvas, size_
 
 void strut_view_frame_draw(const strut_view_frame *s, strut_canvas *canvas, size_t i,
                            const strut_moment *moment) {
-  strut_window window = look(s, i);
+  strut_window window = window_at(s, i);
   strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
   if (s->most_force > 0) {
     style.colouring = STRUT_COLOUR_FORCE;

@@ -13,17 +13,17 @@
 #include "engine/output/report/equilibria_report.h"
 #include "engine/output/summary_rows.h"
 
-/* The cards of the page: which equilibria are worth one, and what stands on it. */
+/* The cards of the page: the choice of equilibria and their data. */
 
 struct cJSON;
 
-/* So many cards, saddles among them, and numbers on all of them together. */
+/* Most cards, saddles among them, and numbers in all cards. */
 enum { MOST_CARDS = 40, MOST_SADDLES = 12, MOST_NUMBERS = 60000 };
 
-/* Digits of places and forces: more than a screen and its figures show. */
+/* Digits of positions and forces: more than a screen shows. */
 static const int DIGITS = 9;
 
-/* What people want to see first. */
+/* Ranks of equilibria; lower ones are shown first. */
 enum { NAMED, ENDS, ELSEWHERE, BELOW_GROUND, SADDLES };
 
 typedef struct choice {
@@ -43,7 +43,7 @@ static bool is_saddle(const strut_equilibrium *e) {
   return e->point.label == STRUT_SADDLE || e->point.label == STRUT_MAXIMUM;
 }
 
-/* ENDS: it stands, or another comes to rest there. */
+/* ENDS: stable on the ground, or another equilibrium comes to rest there. */
 static int rank_of(const strut_equilibrium *e) {
   if (is_saddle(e)) return SADDLES;
   if (e->fate == STRUT_OUTCOME_BELOW_GROUND) return BELOW_GROUND;
@@ -65,10 +65,10 @@ static void rank_all(const strut_equilibria *all, choice *choices) {
   qsort(choices, all->count, sizeof *choices, by_rank);
 }
 
-/* Puts those that get a card in front and says how many there are; place[i] is the card of the i-th
-   equilibrium, or -1. */
-static size_t choose(const strut_equilibria *all, const strut_model *model, choice *choices,
-                     int32_t *place) {
+/* Moves the equilibria with cards to the front and returns their number; place[i] is the card of
+   the i-th equilibrium, or -1. */
+static size_t choose_cards(const strut_equilibria *all, const strut_model *model, choice *choices,
+                           int32_t *place) {
   size_t each = 2 * (size_t)model->node_count + (size_t)model->members.count, saddles = 0;
   size_t most = each * MOST_CARDS > MOST_NUMBERS ? MOST_NUMBERS / each : MOST_CARDS, count = 0;
   if (most < 2) most = 2;
@@ -94,7 +94,7 @@ static void add_numbers(strut_json *json, struct cJSON *to, const char *key, con
   for (size_t i = 0; i < count; i++) strut_json_number(json, array, NULL, rounded(values[i]));
 }
 
-/* What presses on the ground in the shape that is shown: on held contacts their reactions. */
+/* Contact forces in the shape that is shown; of held contacts their reactions. */
 static void add_contacts(strut_json *json, struct cJSON *to, const strut_model *model,
                          const strut_equilibrium *e) {
   const double *up = model->contacts.normal;
@@ -140,7 +140,7 @@ static void add_barriers(strut_json *json, const strut_equilibria *all, const in
   }
 }
 
-static void add_none(strut_json *json, const strut_page *page) {
+static void add_no_equilibria(strut_json *json, const strut_page *page) {
   const strut_equilibria *all = page->equilibria;
   const char *remark = all && all->remark[0] ? all->remark : page->remark;
   strut_json_text(json, json->root, "equilibria", NULL);
@@ -152,14 +152,14 @@ static void add_none(strut_json *json, const strut_page *page) {
 static bool add_equilibria(strut_json *json, const strut_page *page) {
   const strut_equilibria *all = page->equilibria;
   if (!all || all->count == 0) {
-    add_none(json, page);
+    add_no_equilibria(json, page);
     return true;
   }
   choice *choices = strut_allocate(all->count, sizeof *choices);
   int32_t *place = strut_allocate(all->count, sizeof *place);
   bool good = choices && place;
   if (good) {
-    size_t count = choose(all, page->model, choices, place);
+    size_t count = choose_cards(all, page->model, choices, place);
     struct cJSON *cards = strut_json_array(json, json->root, "equilibria");
     for (size_t i = 0; i < count; i++)
       add_card(json, strut_json_object(json, cards, NULL), page->model,
@@ -280,7 +280,7 @@ static char *still_data(const strut_page *page) {
   return strut_json_end(&json);
 }
 
-/* Bytes that JSON needs nowhere but in its texts, where an escape says the same; or NULL. */
+/* The escape for a character that must not occur in <script>, or NULL. */
 static const char *escape(const unsigned char *at, size_t *taken) {
   *taken = 1;
   switch (*at) {
@@ -331,7 +331,7 @@ static char *write_data(const strut_page *page, strut_page_frames *frames) {
 
 /* The page put together: the template with the data and everything it needs inside. */
 
-/* A text as it may stand between tags. */
+/* Appends a text, escaped for HTML. */
 static void add_text(strut_buffer *to, const char *text) {
   for (; *text; text++) {
     switch (*text) {
@@ -348,7 +348,7 @@ static void add_elements(strut_buffer *to, const strut_embedded *files, const ch
     strut_buffer_add(to, "<%s>\n%s</%s>\n", element, files->text, element);
 }
 
-/* What takes the place of <!--strut:NAME-->, of which name begins with NAME. */
+/* Appends the replacement of <!--strut:NAME-->; `name` begins with NAME. */
 static void add_part(strut_buffer *to, const strut_page *page, const char *name, const char *data) {
   const char *title = page->model->scene->name;
   if (strncmp(name, "title", 5) == 0) {

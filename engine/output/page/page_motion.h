@@ -11,13 +11,13 @@
 #include "engine/output/buffer.h"
 #include "engine/output/page/page.h"
 
-/** An array (frames, columns) of which every so many-th frame is taken, and the last. */
+/** An array (frames, columns) of which every `every`-th frame is used, and the last. */
 typedef struct strut_rows {
   const double *values; /* finite */
   size_t frames, columns, every;
 } strut_rows;
 
-/** How many frames are taken. */
+/** The number of frames used. */
 STRUT_API size_t strut_rows_taken(const strut_rows *rows);
 /** Where the i-th of them begins. */
 STRUT_API const double *strut_rows_at(const strut_rows *rows, size_t i);
@@ -29,7 +29,7 @@ STRUT_API double strut_rows_largest(const strut_rows *rows);
 
 /**
  * The largest number of the form 1, 2 or 5 times a power of ten that is not above `wanted`; but
- * never so small that a value of magnitude `largest` has more than STRUT_MOST_QUANTA of it.
+ * large enough that `largest` has at most STRUT_MOST_QUANTA of it.
  */
 STRUT_API double strut_round_quantum(double wanted, double largest);
 /** Whether every value of rows is a whole multiple of `quantum`, to the last bits of a double. */
@@ -48,8 +48,8 @@ STRUT_API bool strut_block_encode(const strut_rows *rows, double quantum, strut_
 STRUT_API void strut_block_free(strut_block *block);
 
 /**
- * Appends the value of the key motion, about `room` bytes of it, or null. Frames from the first that
- * is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
+ * Appends the value of the key motion, about `room` bytes of it, or null. Frames from the first
+ * that is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
  */
 void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
                            strut_page_frames *frames);

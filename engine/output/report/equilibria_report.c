@@ -122,13 +122,13 @@ static void add_equilibrium(strut_json *json, struct cJSON *to, const strut_equi
   strut_json_number(json, to, "energy", e->energy);
   strut_json_number(json, to, "potential", p->potential);
   add_supports(json, to, scene, e);
-  strut_json_text(json, to, "fate", strut_outcome_name(e->fate));
+  strut_json_text(json, to, "outcome", strut_outcome_name(e->fate));
   strut_json_text(json, to, "verdict", e->verdict);
   strut_json_text(json, to, "tips_over",
                   e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL);
   strut_json_text(json, to, "ends_as", e->ends_as >= 0 ? all->list[e->ends_as].name : NULL);
   strut_json_integer(json, to, "shape", p->shape);
-  strut_json_integer(json, to, "placements", p->placements);
+  strut_json_integer(json, to, "congruent_copies", p->placements);
   strut_json_integer(json, to, "found", p->found);
   strut_shape_flaws flaws = strut_find_shape_flaws(model, p->q);
   strut_json_bool(json, to, "collapsed", flaws.collapsed);
@@ -169,10 +169,10 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_integer(&json, json.root, "seed", (int64_t)all->seed);
   strut_json_integer(&json, json.root, "starts", all->starts);
   struct cJSON *missed = strut_json_object(&json, json.root, "missed");
-  strut_json_number(&json, missed, "chance", all->missed);
-  strut_json_number(&json, missed, "chance_below", all->missed_below);
-  strut_json_integer(&json, missed, "unmet", all->unmet);
-  strut_json_number(&json, missed, "bound", all->missed_one);
+  strut_json_number(&json, missed, "probability", all->missed);
+  strut_json_number(&json, missed, "probability_bound", all->missed_below);
+  strut_json_integer(&json, missed, "unreached", all->unmet);
+  strut_json_number(&json, missed, "smallest_basin", all->missed_one);
   strut_json_bool(&json, missed, "cut_short", all->cut_short);
   strut_json_settle(&json, json.root, &all->settle);
   if (all->settle.evaluations > 0)
