@@ -73,9 +73,9 @@ double strut_energy_load_potential(const strut_model *model, const strut_state *
 }
 
 double strut_energy_load_work(const strut_model *model, const strut_state *state) {
-  return strut_energy_load_potential(model, state) - state->load_mark;
+  return strut_energy_load_potential(model, state) - state->load_work_origin;
 }
 
 void strut_energy_reset_load_work(const strut_model *model, strut_state *state) {
-  state->load_mark = strut_energy_load_potential(model, state);
+  state->load_work_origin = strut_energy_load_potential(model, state);
 }

@@ -161,8 +161,9 @@ static int32_t find_stuck(const strut_model *model, strut_rigid *g, const double
   const strut_contact_table *c = &model->contacts;
   int32_t count = 0;
   for (int32_t i = 0; i < c->count; i++) {
-    if (strut_contact_gap(c, i, q) < 0.0 && c->entry[i].law == STRUT_FRICTION_KARNOPP &&
-        fabs(strut_contact_slip(c, i, v)) < c->entry[i].stick_velocity)
+    if (strut_contact_gap(c, i, q) < 0.0 &&
+        strut_friction_states(c->entry[i].friction.law) == STRUT_FRICTION_STICK_BAND &&
+        fabs(strut_contact_slip(c, i, v)) < c->entry[i].friction.stick_velocity)
       g->stuck[count++] = i;
   }
   return count;
@@ -194,12 +195,13 @@ static bool release(const strut_model *model, strut_state *state, strut_rigid *g
   double most = 0.0;
   for (int32_t k = 0; k < *stuck; k++) {
     int32_t i = g->stuck[k];
-    double excess = fabs(g->right[g->bars + k]) - c->entry[i].mu_static * state->normal[i];
+    double excess = fabs(g->right[g->bars + k]) - c->entry[i].friction.mu_static * state->normal[i];
     if (excess >= 0.0 && (worst < 0 || excess > most)) worst = k, most = excess;
   }
   if (worst < 0) return false;
   int32_t i = g->stuck[worst];
-  double hold = g->right[g->bars + worst], slide = c->entry[i].mu_kinetic * state->normal[i];
+  double hold = g->right[g->bars + worst],
+         slide = c->entry[i].friction.mu_kinetic * state->normal[i];
   double friction = hold > 0.0 ? slide : hold < 0.0 ? -slide : 0.0;
   state->friction[i] = friction;
   for (int k = 0; k < 2; k++) state->force[c->at[i] + (uint32_t)k] += friction * c->tangent[k];

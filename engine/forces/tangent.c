@@ -3,7 +3,8 @@
 
 #include <assert.h>
 
-void strut_block_add(const strut_block *b, int count, const int32_t *row, strut_triplets *sum) {
+void strut_block_add(const strut_stiffness_block *b, int count, const int32_t *row,
+                     strut_triplets *sum) {
   for (int k = 0; k < count; k++) {
     const strut_block_entry *e = &strut_block_entries[k];
     if (row[e->row] < 0 || row[e->column] < 0) continue;
@@ -25,7 +26,7 @@ int32_t strut_number_free(const strut_model *model, const uint8_t *held, int32_t
 
 void strut_tangent_add_pattern(const strut_model *model, const int32_t *row_of, bool contacts,
                                strut_triplets *sum) {
-  const strut_block zero = {{0}};
+  const strut_stiffness_block zero = {{0}};
   for (int32_t j = 0; j < model->members.count; j++) {
     int32_t row[4];
     strut_member_rows(model, row_of, j, row);
@@ -89,8 +90,8 @@ typedef struct assembly {
 static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
   assembly *a = context;
   double k = a->model->members.damping[j];
-  strut_block stiffness = strut_block_of(m->along, m->across, m->pose.unit);
-  strut_block damper = strut_block_of(k, 0.0, m->pose.unit);
+  strut_stiffness_block stiffness = strut_block_of(m->along, m->across, m->pose.unit);
+  strut_stiffness_block damper = strut_block_of(k, 0.0, m->pose.unit);
   int32_t row[4];
   strut_member_rows(a->model, a->row_of, j, row);
   strut_block_add(&stiffness, STRUT_MEMBER_ENTRIES, row, &a->stiffness);
@@ -103,9 +104,9 @@ static void add_contact(void *context, int32_t i, const strut_closed_contact *co
   const strut_contact_entry *e = &c->entry[i];
   const int32_t *row = a->row_of + c->at[i];
   double damper = a->undamped ? 0.0 : e->damping + a->weight * e->dissipation;
-  double slide = e->law == STRUT_FRICTION_SMOOTH ? a->weight * e->mu_kinetic / e->width : 0.0;
+  double slide = strut_friction_slope(&e->friction, a->weight);
   const double *n = c->normal, *t = c->tangent;
-  strut_block stiffness = strut_block_of_contact(contact->stiffness, n), damping;
+  strut_stiffness_block stiffness = strut_block_of_contact(contact->stiffness, n), damping;
   for (int k = 0; k < STRUT_CONTACT_ENTRIES; k++) {
     const strut_block_entry *at = &strut_block_entries[k];
     damping.part[k] = damper * (n[at->row] * n[at->column]) + slide * t[at->row] * t[at->column];

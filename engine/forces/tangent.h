@@ -27,24 +27,26 @@ static const strut_block_entry strut_block_entries[STRUT_MEMBER_ENTRIES] = {
     {2, 2, 0, false}, {3, 0, 1, true},  {3, 1, 2, true},  {3, 2, 1, false}, {3, 3, 2, false}};
 
 /** A symmetric 2 x 2 block: xx, xy, yy. */
-typedef struct strut_block {
+typedef struct strut_stiffness_block {
   double part[3];
-} strut_block;
+} strut_stiffness_block;
 
 /** across + (along - across) u u'. */
-STRUT_INLINE strut_block strut_block_of(double along, double across, strut_vec2 u) {
+STRUT_INLINE strut_stiffness_block strut_block_of(double along, double across, strut_vec2 u) {
   double more = along - across;
-  return (strut_block){{across + more * u.x * u.x, more * u.x * u.y, across + more * u.y * u.y}};
+  return (strut_stiffness_block){
+      {across + more * u.x * u.x, more * u.x * u.y, across + more * u.y * u.y}};
 }
 
 /** stiffness * n n' of the contacts' normal or tangent. */
-STRUT_INLINE strut_block strut_block_of_contact(double stiffness, const double n[2]) {
-  return (strut_block){{stiffness * n[0] * n[0], stiffness * n[0] * n[1], stiffness * n[1] * n[1]}};
+STRUT_INLINE strut_stiffness_block strut_block_of_contact(double stiffness, const double n[2]) {
+  return (strut_stiffness_block){
+      {stiffness * n[0] * n[0], stiffness * n[0] * n[1], stiffness * n[1] * n[1]}};
 }
 
 /** Adds B, -B, B to values at a member's `place` (STRUT_MEMBER_ENTRIES); -1: supported. */
-STRUT_INLINE void strut_block_scatter(const strut_block *b, int count, const int32_t *place,
-                                      double *value) {
+STRUT_INLINE void strut_block_scatter(const strut_stiffness_block *b, int count,
+                                      const int32_t *place, double *value) {
   for (int k = 0; k < count; k++) {
     const strut_block_entry *e = &strut_block_entries[k];
     if (place[k] >= 0) value[place[k]] += e->opposite ? -b->part[e->part] : b->part[e->part];
@@ -52,7 +54,8 @@ STRUT_INLINE void strut_block_scatter(const strut_block *b, int count, const int
 }
 
 /** The same to the triplets at rows `row`: 4 of a member, 2 of a contact; -1: supported. */
-void strut_block_add(const strut_block *b, int count, const int32_t *row, strut_triplets *sum);
+void strut_block_add(const strut_stiffness_block *b, int count, const int32_t *row,
+                     strut_triplets *sum);
 
 /** Rows of the four coordinates of member j. */
 STRUT_INLINE void strut_member_rows(const strut_model *model, const int32_t *row_of, int32_t j,

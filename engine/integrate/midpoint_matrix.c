@@ -84,7 +84,7 @@ static void add_member(const strut_discrete_gradient *step, int32_t j, double te
   strut_vec2 u = m->direction[j] = force_direction(step, j);
   bool shapeless = u.x == 0.0 && u.y == 0.0; /* as an isotropic spring */
   m->slope[j] = step->slope[j];
-  strut_block block =
+  strut_stiffness_block block =
       strut_block_of(step->slope[j], shapeless ? step->slope[j] : tension / lengths, u);
   for (int k = 0; k < 3; k++) block.part[k] *= half;
   strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, m->place + STRUT_MEMBER_ENTRIES * j,

@@ -138,14 +138,6 @@ strut_status strut_relaxation_run(strut_relaxation *r, strut_error *error) {
   return relax(r, error);
 }
 
-/* Runge-Kutta, or with exact Coulomb friction, which that cannot take, the same from event to event. */
-static const strut_integrator *method_of(const strut_model *model) {
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    if (model->contacts.entry[i].law == STRUT_FRICTION_COULOMB)
-      return strut_integrator_find("rk4-events");
-  return strut_integrator_find("rk4");
-}
-
 strut_status strut_relaxation_create(const strut_model *model, strut_relaxation *r,
                                      strut_error *error) {
   *r = (strut_relaxation){.model = NULL};
@@ -158,7 +150,7 @@ strut_status strut_relaxation_create(const strut_model *model, strut_relaxation 
   status = strut_model_compile(&r->scene, &r->model, error);
   if (!status) status = strut_state_create(r->model, &r->state, error);
   if (status) return status;
-  r->method = method_of(r->model);
+  r->method = strut_integrator_for_settling(r->model);
   r->workspace = r->method->create(r->model, r->state);
   return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }

@@ -85,7 +85,8 @@ static void hold_sticking(const strut_model *model, const double *q, strut_tange
     const strut_contact_entry *e = &c->entry[i];
     const double *t = c->tangent;
     bool touches = strut_contact_gap(c, i, q) < 0.0;
-    if (!touches || e->law == STRUT_FRICTION_NONE || !(e->mu_static > 0.0)) continue;
+    if (!touches || e->friction.law == STRUT_FRICTION_NONE || !(e->friction.mu_static > 0.0))
+      continue;
     strut_sparse *k = tangent->stiffness;
     const int32_t row[2] = {find_row(tangent, (int32_t)c->at[i]),
                             find_row(tangent, (int32_t)c->at[i] + 1)};

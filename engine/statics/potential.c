@@ -179,7 +179,7 @@ typedef struct hessian_sum {
 
 static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
   const hessian_sum *sum = context;
-  const strut_block block = strut_block_of(m->along, m->across, m->pose.unit);
+  const strut_stiffness_block block = strut_block_of(m->along, m->across, m->pose.unit);
   const int32_t *place = sum->potential->place + STRUT_MEMBER_ENTRIES * j;
   strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, place, sum->value);
 }
@@ -187,7 +187,8 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
   const hessian_sum *sum = context;
   const strut_model *model = sum->potential->model;
-  const strut_block block = strut_block_of_contact(contact->stiffness, model->contacts.normal);
+  const strut_stiffness_block block =
+      strut_block_of_contact(contact->stiffness, model->contacts.normal);
   const int32_t *place = sum->potential->place + STRUT_MEMBER_ENTRIES * model->members.count;
   strut_block_scatter(&block, STRUT_CONTACT_ENTRIES, place + STRUT_CONTACT_ENTRIES * i, sum->value);
 }

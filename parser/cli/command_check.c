@@ -97,7 +97,7 @@ static void print_bands(const strut_model *model) {
   int32_t first = -1, more = -1;
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
     double here = strut_stick_band_needed(model, method, i, scene->experiment.step);
-    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].stick_velocity)) continue;
+    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].friction.stick_velocity)) continue;
     if (first < 0) first = i;
     if (here > needed) needed = here;
     more++;
@@ -110,7 +110,7 @@ static void print_bands(const strut_model *model) {
           "strut: warning: stick_velocity %s of node '%s'%s is narrower than the change of slip in "
           "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
           "smaller step, or a method with events\n",
-          in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
+          in(e->friction.stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
           in(scene->experiment.step, "s").text, in(needed, "m/s").text);
 }
 

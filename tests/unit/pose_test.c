@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/forces/forces.h"
-#include "engine/forces/friction.h"
 #include "engine/model/pose.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
@@ -52,9 +51,8 @@ static void add_forces(const strut_model *model, const double *q, const double *
     double gap = strut_contact_gap(c, i, q), into = strut_contact_along_normal(c, i, v);
     if (!(gap < 0.0)) continue;
     double normal = -e->stiffness * gap - (into < 0.0 ? e->damping * into : 0.0);
-    double friction = strut_friction_force(normal, strut_contact_slip(c, i, v),
-                                           strut_contact_along_ground(c, i, force), e->mu_static,
-                                           e->mu_kinetic, e->stick_velocity);
+    double friction = strut_friction_force(&e->friction, normal, strut_contact_slip(c, i, v),
+                                           strut_contact_along_ground(c, i, force));
     for (int k = 0; k < 2; k++)
       force[c->at[i] + (uint32_t)k] += friction * c->tangent[k] + normal * c->normal[k];
   }

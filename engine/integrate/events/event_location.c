@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finding what ends a mode within a step. See located.h. */
+/* Finding what ends a mode within a step. See event_stepping.h. */
 #include <math.h>
 
 #include "engine/integrate/events/event_kernel.h"
@@ -32,16 +32,16 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
   switch (kind) {
     case STRUT_EVENT_TOUCH: return strut_contact_gap(&model->contacts, i, end->q);
     case STRUT_EVENT_OPEN: return -strut_contact_gap(&model->contacts, i, end->q);
-    case STRUT_EVENT_SLIP_ENDS: return s * o->slip - located_edge(e);
-    case STRUT_EVENT_LEAVES_STICK_BAND: return located_edge(e) - way_out(l, o, i) * o->slip;
-    case STRUT_EVENT_STICK_BREAKS: return e->mu_static * o->normal - fabs(o->friction);
-    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->mu_kinetic * o->normal;
-    case STRUT_EVENT_CREEP_IN: return s * (located_band_force(e, o) - o->friction);
+    case STRUT_EVENT_SLIP_ENDS: return s * o->slip - stick_band_edge(e);
+    case STRUT_EVENT_LEAVES_STICK_BAND: return stick_band_edge(e) - way_out(l, o, i) * o->slip;
+    case STRUT_EVENT_STICK_BREAKS: return e->friction.mu_static * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->friction.mu_kinetic * o->normal;
+    case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
     case STRUT_EVENT_PUSH: {
-      double room = e->mu_static * o->normal - fabs(o->applied);
+      double room = e->friction.mu_static * o->normal - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
     }
-    case STRUT_EVENT_YIELDED: return located_yield_room(e, o);
+    case STRUT_EVENT_YIELDED: return yield_margin(e, o);
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
     default: return 1.0;
   }
@@ -85,8 +85,8 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
 static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
                             double room) {
   const strut_contact_entry *e = &model->contacts.entry[i];
-  if (!l->stepper->exact && e->mu_static == e->mu_kinetic) return room;
-  double faint = 1e-9 * located_edge(e), rate = 0.0;
+  if (!l->stepper->exact && e->friction.mu_static == e->friction.mu_kinetic) return room;
+  double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
   double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
   strut_event_rate(l, l->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
   return room < faint && rate > -balanced ? faint : room;
@@ -102,8 +102,8 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
     strut_touch a, b;
-    located_place(c, i, l->now->q, l->now->v, &a);
-    located_place(c, i, l->next->q, l->next->v, &b);
+    measure_contact(c, i, l->now->q, l->now->v, &a);
+    measure_contact(c, i, l->next->q, l->next->v, &b);
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
   if (kind != STRUT_EVENT_CABLE && strut_event_rate(l, l->now, kind, i, &d0) &&
@@ -142,7 +142,7 @@ void strut_event_measure(const strut_model *model, const strut_state *state,
 static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
   strut_touch to;
   if (strut_contact_gap(c, i, l->now->q) > 0.0) return true;
-  located_place(c, i, l->next->q, l->next->v, &to);
+  measure_contact(c, i, l->next->q, l->next->v, &to);
   return to.into < 0.0;
 }
 
@@ -154,7 +154,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
   for (int32_t i = 0; i < c->count; i++) {
     if (k < l->closed_count && l->closed[k] == i) {
       const strut_touch *o = &l->next->touch[i];
-      strut_event_kind kind = located_contradiction(&c->entry[i], o, l->mode[i], l->side[i]);
+      strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
       if (!l->stepper->exact) continue;

@@ -89,7 +89,7 @@ static strut_experiment experiment_of(const ladder *l, int k) {
   e.step = divide(l->moment, e.step);
   if (a->halving) e.step = ldexp(e.step, -k);
   if (!a->halving && k > 0) {
-    e.integrator = "adaptive";
+    e.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
     e.step = l->moment / STEPS_OF_MOMENT * pow(FINER_STEP, k - 1);
     e.tolerance = fmin(1e-4, 1e-2 * a->wanted) * pow(FINER_TOLERANCE, k - 1);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance);
@@ -276,7 +276,7 @@ static void explain(const ladder *l, char *why, size_t size) {
   const strut_experiment *e = &l->now->e;
   char how[80], apart[120];
   name_difference(l, apart, sizeof apart);
-  if (strcmp(e->integrator, "adaptive") == 0)
+  if (strut_integrator_find(e->integrator)->role == STRUT_ROLE_REFERENCE)
     snprintf(how, sizeof how, "adaptive with a tolerance of %.1g and steps up to %.2g s",
              e->tolerance, e->step);
   else
@@ -291,7 +291,9 @@ static void explain(const ladder *l, char *why, size_t size) {
              apart, l->means);
   else if (l->kept)
     snprintf(why, size, "%s: %s gives the same motion, and %s", how,
-             l->runs == 2 && !a->halving ? "verlet-events" : "a coarser run", apart);
+             l->runs == 2 && !a->halving ? strut_integrator_for(STRUT_ROLE_COARSE)->name
+                                         : "a coarser run",
+             apart);
   else if (l->same_motion)
     snprintf(why, size, "%s; a coarser run gives the same motion, but %s%s", how, apart,
              l->spent ? ", and the work allowed is used up; give a larger budget" : "");

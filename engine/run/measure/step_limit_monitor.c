@@ -8,9 +8,8 @@
 
 /* Force evaluations between two looks, iterations for one. */
 enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
-/* A motion at a ratio 1 + e of the limit grows by at least e times this per step, in logarithms: the
-   least of all regions; and what it has grown by when nothing is left of the true motion. */
-static const double GROWTH = 1.0, GROWTH_RK4 = 4.0, HOPELESS = 16.0;
+/* By how much, in logarithms, an unstable motion has grown when nothing is left of the true one. */
+static const double HOPELESS = 16.0;
 
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
 typedef struct product {
@@ -111,7 +110,7 @@ static void compute(const strut_model *model, const strut_state *state,
 /* The step is too large now, and has been for so many steps. */
 static void note_below(strut_step_limit_monitor *g, double time, int64_t steps) {
   double limit = g->known_limit;
-  double growth = g->method->region == STRUT_REGION_RK4 ? GROWTH_RK4 : GROWTH;
+  double growth = strut_region_at(g->method->region)->growth;
   if (!(g->lowest > 0.0)) g->first_time = time;
   if (!(g->lowest > 0.0) || limit < g->lowest) g->lowest = limit, g->lowest_time = time;
   g->grown = g->below ? g->grown + growth * fmin(g->step / limit - 1.0, 1.0) * (double)steps : 0.0;
@@ -159,16 +158,14 @@ void strut_step_limit_monitor_check(const strut_model *model, const strut_state 
 bool strut_step_limit_monitor_create(const strut_model *model, strut_state *state,
                                      const strut_integrator *method, double step,
                                      strut_step_limit_monitor *guard) {
-  bool rk4 = method->region == STRUT_REGION_RK4, euler = method->region == STRUT_REGION_EULER;
+  const strut_region_data *region = strut_region_at(method->region);
   *guard =
       (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
-  if (method->region == STRUT_REGION_ALL || (model->plan & STRUT_TERM_RIGID)) return true;
+  if (region->sets == 0 || (model->plan & STRUT_TERM_RIGID)) return true;
   guard->known_limit = HUGE_VAL;
-  guard->count = rk4 ? 2 : 1;
-  /* RK4 bears every complex eigenvalue below 2.6 / h, and every real one below 2.785 / h */
-  guard->watch[0].stiff = rk4 ? 1.0 / (2.6 * 2.6) : 0.25;
-  guard->watch[0].damp = rk4 ? 0.0 : euler ? 0.5 : 1.0;
-  guard->watch[1].damp = 1.0 / 2.7852935634;
+  guard->count = region->sets;
+  for (int i = 0; i < region->sets; i++)
+    guard->watch[i].stiff = region->set[i].stiff, guard->watch[i].damp = region->set[i].damp;
   double **const all[] = {&guard->watch[0].motion, &guard->watch[1].motion, &guard->image,
                           &guard->divided, &guard->scratch};
   guard->shape = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));

@@ -55,7 +55,7 @@ static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
   if (status) return status;
   if (!isfinite(limit.limit)) return STRUT_OK;
   r->step = CAREFUL * limit.limit;
-  r->method = &strut_integrator_rk4;
+  r->method = strut_integrator_for(STRUT_ROLE_PLAIN);
   if ((status = strut_state_create(r->model, &r->state, error))) return status;
   r->workspace = r->method->create(r->model, r->state);
   return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");

@@ -31,7 +31,7 @@ static void add_member(strut_vibration *v, int32_t j) {
   strut_dd block[3] = {dd_add(m->across, dd_mul(along, dd_mul(m->ux, m->ux))),
                        dd_mul(along, dd_mul(m->ux, m->uy)),
                        dd_add(m->across, dd_mul(along, dd_mul(m->uy, m->uy)))};
-  const strut_block damper =
+  const strut_stiffness_block damper =
       strut_block_of(v->model->members.damping[j], 0.0, (strut_vec2){m->ux.hi, m->uy.hi});
   const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * j;
   for (int i = 0; i < STRUT_MEMBER_ENTRIES; i++, place++) {

@@ -19,12 +19,12 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
   int32_t row[4];
   strut_member_rows(s->model, s->row_of, j, row);
   if (!(m->pose.length > 0.0)) { /* an isotropic spring, or no direction */
-    const strut_block all = strut_block_of(m->across, m->across, u);
+    const strut_stiffness_block all = strut_block_of(m->across, m->across, u);
     if (m->across > 0.0) strut_block_add(&all, STRUT_MEMBER_ENTRIES, row, &s->elastic);
     return;
   }
-  const strut_block along = strut_block_of(m->along, 0.0, u);
-  const strut_block across = strut_block_of(m->across, 0.0, turned);
+  const strut_stiffness_block along = strut_block_of(m->along, 0.0, u);
+  const strut_stiffness_block across = strut_block_of(m->across, 0.0, turned);
   strut_block_add(&along, STRUT_MEMBER_ENTRIES, row, &s->elastic);
   strut_block_add(&across, STRUT_MEMBER_ENTRIES, row, &s->geometric);
 }
@@ -32,7 +32,7 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
   sums *s = context;
   const strut_contact_table *c = &s->model->contacts;
-  const strut_block block = strut_block_of_contact(contact->stiffness, c->normal);
+  const strut_stiffness_block block = strut_block_of_contact(contact->stiffness, c->normal);
   strut_block_add(&block, STRUT_CONTACT_ENTRIES, s->row_of + c->at[i], &s->contact);
   s->touching++;
 }
