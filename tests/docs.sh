@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md
 # runs in a scratch folder (one per document, holding models/) with the strut just built first on the
-# PATH, and none fails; and every link leads to a file and, after #, to a heading of it. Two blocks of
-# README.md install and build, which is not done here: the one for the tests must be what .ci/run runs,
-# the one for users the same with another preset, and its last command runs here.
+# PATH, and none fails; every link leads to a file and, after #, to a heading of it; and every source
+# file that is named exists. Two blocks of README.md install and build, which is not done here: the one
+# for the tests must be what .ci/run runs, the one for users the same with another preset, and its last
+# command runs here.
 #
 #   sh tests/docs.sh ROOT STRUT
 # shellcheck disable=SC2016  # backticks that mark a fence, not a command
@@ -79,6 +80,15 @@ dead_links() {
     done
 }
 
+# lost_files FILE: source files that FILE names, with or without ending, and that do not exist.
+lost_files() {
+  grep -oE '`(engine|parser|tests|models)/[A-Za-z0-9_/.-]+`' "$1" | tr -d '`' | grep -v NAME | sort -u |
+    while read -r path; do
+      [ -e "$root/$path" ] || [ -e "$root/$path.c" ] || [ -e "$root/$path.h" ] ||
+        echo "$1: there is no $path"
+    done
+}
+
 # headings FILE: the anchors of its headings, as GitHub and GitLab name them.
 headings() {
   awk '/^ *```/ { inside = !inside } !inside && /^#+ / { sub(/^#+ /, ""); print tolower($0) }' "$1" |
@@ -104,14 +114,18 @@ for bad in '# A\n[b](#two)\n' '# A\n[b](nowhere.md)\n'; do
   document "$bad"
   [ -n "$(dead_links "$scratch/made-up.md")" ] || fail "self-test: passes: $bad"
 done
+document 'See `engine/base` and `engine/base/memory`, `engine/output/NAME.c`.\n'
+[ -z "$(lost_files "$scratch/made-up.md")" ] || fail "self-test: a file that exists is lost"
+document 'See `engine/base/nowhere.c`.\n'
+[ -n "$(lost_files "$scratch/made-up.md")" ] || fail "self-test: a lost file passes"
 
 ran=0
 for document in "$root"/README.md "$root"/docs/*.md "$root"/docs/*/*.md; do
   [ -e "$document" ] || continue
   commands_work "$document" "$scratch/$(basename "$document" .md)" ||
     fail "${document#"$root"/}: a command fails"
-  dead=$(dead_links "$document")
-  [ -z "$dead" ] || fail "$dead"
+  lost=$(dead_links "$document"; lost_files "$document")
+  [ -z "$lost" ] || fail "$lost"
 done
 echo "$ran blocks of commands ran"
 [ "$ran" -gt 0 ] || fail "there were no commands"
