@@ -23,4 +23,7 @@ STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
 /** Hands the text over (release it) and zeroes the buffer; NULL when memory was out. */
 STRUT_API char *strut_buffer_take(strut_buffer *buffer);
 
+/** Appends (count) bytes in base64, without line breaks. */
+STRUT_API void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count);
+
 #endif

@@ -77,13 +77,13 @@ static strut_status read_list(int folder, list *l, strut_error *error) {
   struct stat found;
   *l = (list){.text = NULL};
   int file = openat(folder, STRUT_OWNERSHIP_LIST, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  size_t room = 0;
+  size_t capacity = 0;
   if (file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_size < LIST_MOST)
-    room = (size_t)found.st_size;
-  l->text = strut_allocate(room + 1, 1);
+    capacity = (size_t)found.st_size;
+  l->text = strut_allocate(capacity + 1, 1);
   ssize_t got = 1;
-  while (l->text && l->length < room && got > 0) {
-    got = read(file, l->text + l->length, room - l->length);
+  while (l->text && l->length < capacity && got > 0) {
+    got = read(file, l->text + l->length, capacity - l->length);
     if (got > 0) l->length += (size_t)got;
   }
   if (file >= 0) close(file);
@@ -167,10 +167,10 @@ static int open_list(int folder) {
 
 /* Appends an entry in one piece, since other processes may append as well. 0 or an errno. */
 static int append(int folder, const char *name, uint64_t size, uint64_t sum) {
-  size_t room = strlen(name) + ENTRY_NUMBERS;
-  char *line = strut_allocate(room, 1);
+  size_t capacity = strlen(name) + ENTRY_NUMBERS;
+  char *line = strut_allocate(capacity, 1);
   if (!line) return ENOMEM;
-  int length = snprintf(line, room, "%" PRIu64 " %016" PRIx64 " %s\n", size, sum, name);
+  int length = snprintf(line, capacity, "%" PRIu64 " %016" PRIx64 " %s\n", size, sum, name);
   int file = open_list(folder), code = 0;
   errno = 0;
   if (file >= 0 && write(file, line, (size_t)length) != length) code = errno ? errno : ENOSPC;

@@ -116,7 +116,7 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
   return status;
 }
 
-static strut_status run(const strut_arguments *given) {
+static strut_status run_view(const strut_arguments *given) {
   strut_opened opened = {0};
   strut_arguments with_output = *given, *arguments = &with_output;
   char page[PATH_MAX];
@@ -148,5 +148,5 @@ const strut_command strut_command_view = {
         "4 MB it keeps an even selection of the frames, and says so. Without -o it is RUN.html or\n"
         "MODEL.html beside the input; a file that strut did not write is never overwritten.\n",
     .options = options,
-    .run = run,
+    .run = run_view,
 };

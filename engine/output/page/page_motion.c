@@ -4,7 +4,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/base64.h"
+#include "engine/output/buffer.h"
 #include "engine/output/page/page_blocks.h"
 #include "engine/output/page/page_parts.h"
 

@@ -54,4 +54,17 @@ typedef struct strut_shards_found {
 STRUT_API strut_status strut_shards_find(const char *directory, strut_shards_found *found,
                                          strut_arena *arena, strut_error *error);
 
+/** What was merged. */
+typedef struct strut_merged {
+  int64_t shards; /* 0: the study was in one piece */
+  int64_t points, failed;
+} strut_merged;
+
+/**
+ * Writes directory/table.csv from all shards in directory/shards, or from directory/points.slots.
+ * STRUT_FILE_TROUBLE, saying which, where shards or points of them are missing; STRUT_USAGE where the
+ * files are not of one study, or cover points twice. Nothing is written then.
+ */
+STRUT_API strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error);
+
 #endif

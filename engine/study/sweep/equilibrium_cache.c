@@ -8,7 +8,7 @@
 #include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/search/critical.h"
 
-/* Structures kept at once; beyond that each point looks for itself. */
+/* Maximum number of cached structures; beyond that each point searches for itself. */
 enum { MOST_KEPT = 256 };
 static const double NEAR = 0.1; /* of the structure's size */
 
@@ -23,7 +23,7 @@ typedef struct found {
 /* One structure, by all numbers that decide where it stands. */
 typedef struct structure {
   double *key; /* of strut_allocate */
-  size_t length, room;
+  size_t length, capacity;
   bool failed; /* memory was out */
   size_t count;
   found *configurations; /* (count) */
@@ -37,12 +37,12 @@ struct strut_equilibrium_cache {
 };
 
 static void add(structure *s, double value) {
-  if (s->length == s->room && !s->failed) {
-    size_t room = s->room ? 2 * s->room : 256;
-    double *key = strut_reallocate(s->key, room, sizeof *key);
+  if (s->length == s->capacity && !s->failed) {
+    size_t capacity = s->capacity ? 2 * s->capacity : 256;
+    double *key = strut_reallocate(s->key, capacity, sizeof *key);
     if (key) {
       s->key = key;
-      s->room = room;
+      s->capacity = capacity;
     }
     s->failed = !key;
   }
@@ -170,7 +170,7 @@ static structure *structure_of(strut_equilibrium_cache *standing, const strut_sc
   return same ? same : s;
 }
 
-static void look(const strut_scene *scene, size_t configuration, found *f) {
+static void find_equilibrium(const strut_scene *scene, size_t configuration, found *f) {
   strut_model *model = NULL;
   strut_arena arena = {0};
   strut_rest_state stand;
@@ -188,11 +188,11 @@ static void look(const strut_scene *scene, size_t configuration, found *f) {
   strut_model_free(model);
 }
 
-/* The equilibrium of a configuration; what it says is good as long as the structure. */
+/* The equilibrium of a configuration, valid as long as the structure. */
 static const found *find(structure *s, const strut_scene *scene, size_t configuration) {
   found *f = &s->configurations[configuration];
   pthread_mutex_lock(&s->lock);
-  if (!f->known) look(scene, configuration, f);
+  if (!f->known) find_equilibrium(scene, configuration, f);
   pthread_mutex_unlock(&s->lock);
   return f;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/grid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +25,7 @@ size_t strut_grid_columns(const strut_study *study) {
 const strut_study_column *strut_grid_column(const strut_study *study, size_t k, size_t *axis) {
   size_t i = 0;
   while (k >= study->axes[i].column_count) k -= study->axes[i++].column_count;
+  assert(i < study->axis_count);
   if (axis) *axis = i;
   return &study->axes[i].columns[k];
 }
@@ -67,6 +69,7 @@ double strut_grid_value(const strut_study_column *column, int64_t i, int64_t cou
 
 void strut_grid_values(const strut_study *study, int64_t point, strut_study_value *values) {
   size_t k = strut_grid_columns(study);
+  assert(point >= 0);
   for (size_t a = study->axis_count; a-- > 0;) {
     const strut_study_axis *axis = &study->axes[a];
     int64_t i = point % axis->count;
@@ -81,4 +84,5 @@ void strut_grid_values(const strut_study *study, int64_t point, strut_study_valu
         value->number = strut_grid_value(column, i, axis->count);
     }
   }
+  assert(k == 0 && point == 0);
 }
