@@ -50,7 +50,7 @@ strut_status strut_directory_create(const char *directory, strut_error *error) {
   return status;
 }
 
-/* Creates `path`.PID-N, the first N that nobody has; its name goes into `part`. */
+/* Creates `path`.PID-N with the first free N; writes that name into `part`. */
 static int create_beside(const char *path, char *part, size_t capacity) {
   int descriptor = -1;
   for (int i = 0; i < MOST_NAMES; i++) {
@@ -67,7 +67,7 @@ static void forget(strut_file *file) {
   *file = (strut_file){0};
 }
 
-/* Opens for writing what file->path names, an owned text or NULL where memory was out. */
+/* Opens file->path for writing; it is an owned text, or NULL if memory was out. */
 static strut_status open_beside(strut_file *file, strut_error *error) {
   size_t capacity = file->path ? strlen(file->path) + NUMBER_ROOM : 1;
   file->part = strut_allocate(capacity, 1);
@@ -116,7 +116,7 @@ strut_status strut_file_open_path(strut_file *file, const char *path, strut_erro
   return open_beside(file, error);
 }
 
-/* Makes a rename durable. Some file systems cannot synchronise a directory: no trouble. */
+/* Makes a rename durable. Some file systems cannot synchronise a directory, which is not an error. */
 static int synchronise_parent(const char *path) {
   const char *slash = strrchr(path, '/');
   size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading back what a run wrote into trajectory.h5. */
+/* A motion in memory: recorded by a sink, or read back from trajectory.h5. */
 #include "engine/output/trajectory.h"
 
 #include <errno.h>
@@ -27,12 +27,12 @@ typedef struct keeper {
   strut_sink sink;
   strut_trajectory *t;
   const strut_scene *scene;
-  size_t room, frame_size, width; /* doubles at most, of a frame, of a row */
-  size_t capacity, most;          /* frames there is memory for, and may be */
+  size_t room, frame_size, width; /* doubles: limit, per frame, per row */
+  size_t capacity, most;          /* frames: allocated, and the limit */
   size_t array_count;
   trajectory_array arrays[STRUT_TRAJECTORY_ARRAYS];
   double *last; /* (width) the latest row, */
-  bool waiting; /* which is not among the frames */
+  bool waiting; /* the latest row is not yet a frame */
 } keeper;
 
 static double **trajectory_array_of(strut_trajectory *t, strut_channel id) {
@@ -59,7 +59,7 @@ static bool grow(keeper *k, size_t capacity) {
   return true;
 }
 
-/* Leaves out every second frame; those that stay are still evenly spaced. */
+/* Drops every second frame; the others remain evenly spaced. */
 static void thin(keeper *k) {
   strut_trajectory *t = k->t;
   size_t kept = (t->frames + 1) / 2;
@@ -143,7 +143,7 @@ static strut_status take_rows(void *context, const double *rows, size_t count, s
   return STRUT_OK;
 }
 
-/* The end of the motion is always there. */
+/* The last frame is always kept. */
 static strut_status end(void *context, strut_status run_status, strut_error *error) {
   keeper *k = context;
   k->t->status = run_status;
@@ -230,7 +230,7 @@ static bool shape_of(hid_t dataset, int rank, hsize_t shape[STRUT_HDF5_RANK]) {
   return good;
 }
 
-/* Reads `frames` rows of `size` doubles, every so many-th from the first, and the last of all. */
+/* Reads `frames` rows of `size` doubles with a stride of `every`, and the last row. */
 static bool read_rows(hid_t dataset, int rank, const hsize_t *shape, size_t frames, size_t every,
                       size_t size, double *values) {
   size_t even = (shape[0] + every - 1) / every; /* those evenly spaced */
@@ -254,7 +254,7 @@ static bool read_rows(hid_t dataset, int rank, const hsize_t *shape, size_t fram
   return good;
 }
 
-/* Whether the file's list of that name is `expected`; a file without the list has nothing of it. */
+/* Does the list of that name in the file equal `expected`? A missing list counts as empty. */
 static bool same_names(const reader *r, const char *list, size_t count,
                        const char *(*expected)(const strut_scene *, size_t)) {
   if (H5Lexists(r->file, list, H5P_DEFAULT) <= 0) return true;
@@ -299,7 +299,7 @@ static strut_status read_channel(reader *r, int i) {
   return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
 }
 
-/* How many frames there will be, and their times. */
+/* Chooses the number of frames and reads their times. */
 static strut_status read_time(reader *r, size_t room) {
   hsize_t shape[STRUT_HDF5_RANK] = {0};
   hid_t dataset =
@@ -330,7 +330,7 @@ static strut_status run_status(const reader *r) {
   char *text = NULL;
   strut_status found = STRUT_OK;
   hid_t attribute = H5Aexists(r->file, "status") > 0 ? H5Aopen(r->file, "status", H5P_DEFAULT) : -1;
-  if (attribute < 0) return STRUT_INTERRUPTED; /* nobody came to write it */
+  if (attribute < 0) return STRUT_INTERRUPTED; /* it was never written */
   hid_t type = H5Aget_type(attribute);
   if (H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &text) >= 0 && text) {
     for (int s = 0; s < STRUT_STATUS_COUNT; s++)

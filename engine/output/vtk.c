@@ -15,7 +15,7 @@
 #include "engine/output/results.h"
 #include "engine/output/trajectory.h"
 
-/* What all frames of a motion share, and room that is taken once. */
+/* Data shared by all frames of a motion, and their buffers. */
 typedef struct vtk_frame {
   const strut_model *model;
   const strut_trajectory *motion;
@@ -112,7 +112,7 @@ static void add_fields(const vtk_frame *frame, size_t i, strut_buffer *buffer) {
   strut_buffer_add(buffer, "</DataArray>\n</FieldData>\n");
 }
 
-/* Vectors of the plane, with an origin to take off or NULL, into points. */
+/* Writes plane vectors, relative to an origin or NULL, into points. */
 static void spread(vtk_frame *frame, const double *plane, const double *origin) {
   size_t nodes = frame->model->scene->node_count;
   for (size_t k = 0; k < nodes; k++) {
@@ -188,7 +188,7 @@ static void add_cell_data(vtk_frame *frame, size_t i, strut_buffer *buffer) {
   strut_buffer_add(buffer, "</CellData>\n");
 }
 
-/* Cells of so many points each, in whole numbers from `points` on. */
+/* Cells of `points` points each. */
 static void add_cells(vtk_frame *frame, const char *name, size_t cells, int each,
                       strut_buffer *buffer) {
   const strut_member *members = frame->model->scene->members;
@@ -263,7 +263,7 @@ static int frame_number(const char *name) {
   return strcmp(name, frame_name(number, again)) == 0 ? (int)number : -1;
 }
 
-/* How many frames an earlier export has left in the directory, counted up to the last one. */
+/* Number of frames that an earlier export left in the directory. */
 static size_t frames_there(const char *path) {
   size_t count = 0;
   DIR *directory = opendir(path);
@@ -276,7 +276,7 @@ static size_t frames_there(const char *path) {
   return count;
 }
 
-/* Names of all files that there will be or were, in the arena, ending with NULL; or NULL. */
+/* Names of all files of this and an earlier export, in the arena, ending with NULL; or NULL. */
 static const char **file_names(const char *directory, size_t frames, strut_arena *arena) {
   size_t there = frames_there(directory), count = frames > there ? frames : there;
   const char **names = strut_arena_allocate(arena, count + OTHERS + 1, sizeof *names);
@@ -288,7 +288,7 @@ static const char **file_names(const char *directory, size_t frames, strut_arena
   return names;
 }
 
-/* Writes a text and empties the buffer. Frames are many: none is synchronised on its own. */
+/* Writes a text and empties the buffer. Frames are not synchronised individually, as there are many. */
 static strut_status write_text(const char *directory, const char *name, strut_buffer *buffer,
                                strut_error *error) {
   strut_arena arena = {0};
@@ -347,7 +347,7 @@ static strut_status write_list(const char *stage, const strut_model *model,
   return write_text(stage, list_name, buffer, error);
 }
 
-/* As far as the structure comes, and its size beyond on either side. */
+/* The extent of the motion, extended by its size on either side. */
 static strut_status write_ground(const char *stage, const strut_model *model,
                                  const strut_trajectory *motion, strut_buffer *buffer,
                                  strut_error *error) {

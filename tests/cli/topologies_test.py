@@ -53,8 +53,8 @@ if gull["values"]["cost_of_transport"] is not None:
 # are states, which take long; what is measured or depends on how an accuracy is reached; and the last
 # column, the velocity of which is nothing but its error.
 LAST = 12
-ROWS = ("states", "  stable", "  lowest energy", "  up to", "  lowest way", "  its relative",
-        "  contact duty", "  evaluations", "  CPU")
+ROWS = ("states", "  stable", "  lowest energy", "  energy range", "  escape", "  relative error",
+        "  duty factor", "  evaluations", "  CPU")
 
 
 def alike(a, b):

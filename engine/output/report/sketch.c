@@ -14,7 +14,7 @@
 #include "engine/output/buffer.h"
 #include "engine/output/quantity_text.h"
 
-/* Letters that are marks; in ASCII others stand for them. In the order of their codes. */
+/* Code points of marks, in ascending order; ASCII output substitutes others. */
 enum {
   STRUT_SKETCH_GROUND = 0x2594, /* a line at the upper edge of its cell */
   STRUT_SKETCH_HELD = 0x25b2,
@@ -233,7 +233,7 @@ static bool append(sketch_name *name, uint32_t code, int width) {
   return true;
 }
 
-/* Makes room for so many columns at the end, with a sign that something is missing. */
+/* Shortens the name by some columns, with a mark for the omission. */
 static void cut(sketch_name *name, int columns, bool unicode) {
   int sign = unicode ? 1 : 2;
   while (name->count > 0 && name->columns + sign + columns > STRUT_SKETCH_NAME)
@@ -400,7 +400,7 @@ static void cell_of(const view *v, int32_t node, int *column, int *row) {
   *row = (int)lround(dot[1]) / 4;
 }
 
-/* Whether there was a ground to be seen. */
+/* Is the ground visible? */
 static bool draw_ground(const view *v, sketch_grid *grid) {
   const strut_ground *ground = &v->model->scene->ground;
   if (!ground->present) return false;
@@ -481,7 +481,7 @@ static void draw_nodes(const view *v, sketch_grid *grid, const int32_t *there) {
   }
 }
 
-/* Nodes alone in their cell first: those are what one looks for. */
+/* Names nodes that are alone in their cell first. */
 static void draw_names(const view *v, sketch_grid *grid, int32_t *there, bool unicode) {
   for (int pass = 0; pass < 2; pass++) {
     for (int32_t i = 0; i < v->model->node_count; i++) {
@@ -493,7 +493,7 @@ static void draw_names(const view *v, sketch_grid *grid, int32_t *there, bool un
       if (!stands_out(v, grid, there, column, row)) continue;
       sketch_name name = sketch_name_of(v->model->scene->nodes[i].name, (size_t)i, unicode);
       if (*count > 1) sketch_name_more(&name, (size_t)*count - 1);
-      if (!crowded(v)) *count = 0; /* said */
+      if (!crowded(v)) *count = 0; /* mentioned already */
       sketch_name_place(grid, column, row, &name);
     }
   }

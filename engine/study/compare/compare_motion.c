@@ -11,7 +11,7 @@
 #include "engine/study/compare/compare_parts.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
-enum { LONG_WINDOW = 20 }; /* periods of a motion that does not repeat itself */
+enum { LONG_WINDOW = 20 }; /* periods of a motion that is not periodic */
 static const double WINDOW_TOLERANCE = 1e-6, STEPS = 50.0;
 
 static const char *word_of(strut_motion kind) {
@@ -28,7 +28,7 @@ static strut_status run_window(const strut_compare_work *work, const strut_summa
   strut_model *model = NULL;
   double period = strut_scene_span(&scene).period;
   bool periodic = run->steady.kind == STRUT_MOTION_PERIODIC;
-  if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not keep */
+  if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not support */
     e->step = run->step;
   } else {
     e->integrator = "adaptive";
@@ -66,7 +66,7 @@ static strut_status put_contacts(strut_compare_work *work, const strut_summary *
   return STRUT_OK;
 }
 
-/* What the drives do, and what that is for the way. */
+/* Drive energy and cost of transport. */
 static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period) {
   const strut_compare_cell *cell = work->column->cell;
   const strut_scene *scene = work->column->input->scene;

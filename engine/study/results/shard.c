@@ -15,7 +15,7 @@
 static const char WHOLE[] = "points.slots", FOLDER[] = "shards";
 enum { NAME_ROOM = 64 };
 
-/* A whole number of digits only at *at, which moves behind it; -1 where there is none. */
+/* Parses a whole number at *at and moves *at past it; -1 if there is none. */
 static int64_t take_integer(const char **at) {
   int64_t value = 0;
   const char *from = *at;
@@ -39,7 +39,7 @@ static strut_status check(const char *text, strut_shard shard, strut_error *erro
   return STRUT_OK;
 }
 
-/* All tasks of an array that has one for each shard. */
+/* Checks that the Slurm array has one task per shard. */
 static strut_status read_array(const char *text, const strut_array_task *task, strut_shard *shard,
                                strut_error *error) {
   int64_t id = integer_of(task->id), low = integer_of(task->min), high = integer_of(task->max);
@@ -93,7 +93,7 @@ char *strut_shard_path(const char *directory, strut_shard shard, strut_arena *ar
                             (long long)shard.index, (long long)shard.count);
 }
 
-/* Whether a file's name is that of a shard. */
+/* Is it the file name of a shard? */
 static bool is_shard(const char *name, strut_shard *shard) {
   char expected[NAME_ROOM];
   const char *at = name;
@@ -142,7 +142,7 @@ strut_status strut_shards_find(const char *directory, strut_shards_found *found,
   return status;
 }
 
-/* Whether what is there and a new shard could be merged. */
+/* Could the new shard be merged with the existing files? */
 static strut_status agree(const char *directory, strut_shard shard, const strut_shards_found *found,
                           strut_error *error) {
   if (shard.count && found->whole)
@@ -182,7 +182,7 @@ strut_status strut_shard_begin(const char *directory, strut_shard shard, strut_e
 
 enum { MOST_NAMED = 12 };
 
-/* A merge being made. */
+/* State of a merge. */
 typedef struct merge {
   const char *directory;
   strut_shards_found found;
@@ -195,7 +195,7 @@ static strut_status no_memory(strut_error *error) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
 }
 
-/* A sentence that grows; what does not fit is left out. */
+/* A sentence being built, truncated at its capacity. */
 typedef struct sentence {
   char text[400];
   size_t used;
@@ -210,7 +210,7 @@ __attribute__((format(printf, 2, 3))) static void add(sentence *s, const char *f
   if (s->used > sizeof s->text - 1) s->used = sizeof s->text - 1;
 }
 
-/* "2, 5 to 7": the shards that are not there. How many. */
+/* Appends the missing shards as "2, 5 to 7"; returns their number. */
 static int64_t name_absent(const strut_shards_found *found, sentence *s) {
   int64_t absent = 0;
   int named = 0;
@@ -227,7 +227,7 @@ static int64_t name_absent(const strut_shards_found *found, sentence *s) {
   return absent;
 }
 
-/* Missing shards, and shards that miss points, all in one sentence. */
+/* Reports missing shards and incomplete shards in one sentence. */
 static strut_status check_gaps(const merge *m, strut_error *error) {
   sentence names = {.used = 0}, lacks = {.used = 0};
   int64_t absent = name_absent(&m->found, &names);
@@ -254,7 +254,7 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
                     m->directory, gone.text, lacks.text);
 }
 
-/* Opens what is there; of a shard that is not, the place stays NULL. */
+/* Opens the existing shards; the others stay NULL. */
 static strut_status open_sources(merge *m, strut_error *error) {
   strut_status status = STRUT_OK;
   m->sources = strut_arena_allocate(&m->arena, m->count, sizeof *m->sources);
@@ -276,7 +276,7 @@ static strut_status open_sources(merge *m, strut_error *error) {
   return status;
 }
 
-/* All of one study? */
+/* Checks that all files belong to one study. */
 static strut_status check_study(const merge *m, strut_error *error) {
   size_t first = 0;
   while (first < m->count && !m->sources[first]) first++;

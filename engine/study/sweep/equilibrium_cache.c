@@ -20,7 +20,7 @@ typedef struct found {
   double *q; /* (2 node_count) of strut_allocate */
 } found;
 
-/* One structure, by all numbers that decide where it stands. */
+/* One structure, identified by all numbers that determine its equilibria. */
 typedef struct structure {
   double *key; /* of strut_allocate */
   size_t length, capacity;
@@ -183,7 +183,7 @@ static void find_equilibrium(const strut_scene *scene, size_t configuration, fou
   if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
     f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
   if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
-  if (f->status == STRUT_NO_MEMORY) f->known = false; /* not for ever */
+  if (f->status == STRUT_NO_MEMORY) f->known = false; /* retry later */
   strut_arena_free(&arena);
   strut_model_free(model);
 }
@@ -239,7 +239,7 @@ static double extent(const double *q, size_t nodes) {
 
 static int32_t nearest(structure *s, const strut_scene *scene, const double *positions) {
   const strut_model shape = {.node_count =
-                                 (int32_t)scene->node_count}; /* all that is asked of it */
+                                 (int32_t)scene->node_count}; /* all fields that are read */
   double least = HUGE_VAL;
   int32_t index = -1;
   for (size_t i = 0; i < scene->configuration_count; i++) {
@@ -254,7 +254,7 @@ static int32_t nearest(structure *s, const strut_scene *scene, const double *pos
   return index;
 }
 
-/* What the nearest configuration is must not depend on where the run began. */
+/* The nearest configuration must not depend on the start of the run. */
 strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
                                              const strut_scene *scene, const double *positions,
                                              int32_t *index, strut_error *error) {

@@ -30,8 +30,8 @@ const strut_study_column *strut_grid_column(const strut_study *study, size_t k, 
   return &study->axes[i].columns[k];
 }
 
-/* The 15 digits that a double holds of any number, counted from the first one of `scale`: what lies
- * behind them is rounding, so that 0.1 + 0.2 is 0.3. */
+/* Rounds to the 15 digits that a double can represent, counted from the first digit of `scale`, so that
+ * 0.1 + 0.2 is 0.3. */
 static double rounded(double value, double scale) {
   static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -42,9 +42,9 @@ static double rounded(double value, double scale) {
   int k = 14 - (int)floor(log10(scale));
   double power = abs(k) < EXACT ? tens[abs(k)] : pow(10.0, abs(k));
   double digits = rint(k > 0 ? value * power : value / power);
-  if (digits == 0.0) return 0.0;                                      /* and not -0 */
+  if (digits == 0.0) return 0.0;                                      /* not -0 */
   if (abs(k) < EXACT) return k > 0 ? digits / power : digits * power; /* rounded once */
-  snprintf(text, sizeof text, "%.0fe%d", digits, -k); /* without a mark: the same in every locale */
+  snprintf(text, sizeof text, "%.0fe%d", digits, -k); /* no decimal point: locale-independent */
   return strtod(text, NULL);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs of a study opened again, and their motion as one table. See study_runs.h. */
+/* The recorded runs of a study: their motion as one table, and figures of single runs. */
 #include "engine/study/sweep/study_runs.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ bool strut_study_shows(const strut_study_figure *figure, const char *column, con
   return strcmp(figure->only + length + 1, text) == 0;
 }
 
-/* What the axes say at a point. */
+/* Values of the axes at a point. */
 static strut_status read_values(const strut_sweep_plan *plan, const strut_study_figure *figure,
                                 int64_t point, strut_study_opened *o, bool *shown,
                                 strut_error *error) {
@@ -66,7 +66,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   const char *folder = strut_arena_format(&o->arena, "%s/runs/%09lld", directory, (long long)point);
   const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
   if (!file) return no_memory(error);
-  if (stat(file, &found) != 0) return STRUT_OK; /* it failed before it moved */
+  if (stat(file, &found) != 0) return STRUT_OK; /* it failed before recording anything */
   status = plan->scenes.scene(plan->scenes.context, o->values, &o->scene, error);
   if (!status)
     status = strut_trajectory_read(folder, &o->scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
@@ -91,7 +91,7 @@ void strut_study_run_close(strut_study_opened *o) {
   *o = (strut_study_opened){.motion = {0}};
 }
 
-/* The table while it grows. */
+/* The table being built. */
 typedef struct builder {
   const strut_sweep_plan *plan;
   const strut_study_figure *figure;
@@ -221,7 +221,7 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
 
 /* ---- figures of single runs ---- */
 
-/* The axis that `difference` names; axis_count: none. */
+/* The axis that `difference` names, or axis_count. */
 static strut_status find_axis(const strut_sweep_plan *plan, const strut_study_figure *figure,
                               size_t *axis, strut_error *error) {
   const strut_study *study = plan->study;
@@ -236,14 +236,14 @@ static strut_status find_axis(const strut_sweep_plan *plan, const strut_study_fi
       figure->name, figure->difference, (long long)study->axes[*axis].count);
 }
 
-/* The point with the first value along that axis; itself where it is one. */
+/* The point with the first value along that axis. */
 static int64_t partner(const strut_study *study, size_t axis, int64_t point) {
   int64_t stride = 1;
   for (size_t i = study->axis_count; --i > axis;) stride *= study->axes[i].count;
   return point / stride % 2 ? point - stride : point;
 }
 
-/* NAME-TEXT-TEXT.svg; a text that is no name of a file becomes one. */
+/* NAME-TEXT-TEXT.svg, with texts made valid as file names. */
 static const char *file_of(const strut_sweep_plan *plan, const char *directory,
                            const strut_study_figure *figure, strut_study_opened *o) {
   char *name = strut_arena_format(&o->arena, "%s", figure->name);
@@ -253,7 +253,7 @@ static const char *file_of(const strut_sweep_plan *plan, const char *directory,
     strut_grid_column(plan->study, i, &axis);
     if (i > 0) strut_grid_column(plan->study, i - 1, &before);
     bool told =
-        plan->study->axes[axis].count > 1 && axis != before; /* what is zipped by its first */
+        plan->study->axes[axis].count > 1 && axis != before; /* zipped axes by their first column */
     if (figure->difference && strcmp(column, figure->difference) == 0) told = false;
     if (figure->only && strlen(column) == length && memcmp(column, figure->only, length) == 0)
       told = false;
@@ -285,7 +285,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
   return status;
 }
 
-/* The picture of one point, if it has one. */
+/* Draws the figure of one point, if it has one. */
 static strut_status draw_point(const strut_sweep_plan *plan, const char *directory,
                                const strut_study_figure *figure, double width, size_t axis,
                                int64_t point, bool *drawn, strut_error *error) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The columns of a study's table, and a run's summary as their cells, in one order. */
+/* The columns of a study's table, and their cells from the summary of a run. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 static const unsigned USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
                               BIT(EVALUATIONS) | BIT(OUTCOME) | BIT(QUANTITIES);
 
-/* What one word of `keep` stands for: columns, in order. The last has no name. */
+/* The columns of each word of `keep`, in order. */
 typedef struct entry {
   strut_keep keep;
   const char *name, *unit;
@@ -54,14 +54,14 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
 
-/* Is one of the first `count` columns called so? An axis may bear the name of a column. */
+/* Does one of the first `count` columns have this name? An axis may share the name of a column. */
 static bool is_taken(const strut_sweep_plan *plan, size_t count, const char *name) {
   bool found = false;
   for (size_t i = 0; i < count && !found; i++) found = strcmp(plan->columns[i].name, name) == 0;
   return found;
 }
 
-/* Then the column, which is behind the axes, is that of the run. */
+/* Adds a column; one with the name of an axis gets the prefix "run_". */
 static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
                        const char *unit, bool word) {
   const char *text = strut_arena_format(&plan->arena, "%s%s", prefix, name);
@@ -92,7 +92,7 @@ static bool is_kept(const strut_study *study, const char *quantity) {
   return false;
 }
 
-/* The scene's quantities that are kept; where a column has the name of one, it gets another. */
+/* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
 static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
   const strut_experiment *e = &scene->experiment;
   for (size_t i = 0; i < e->quantity_count; i++) {
@@ -184,7 +184,7 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
   for (size_t i = 0; i + 1 < STRUT_SLOT_WORD && word[i]; i++) to[i] = word[i];
 }
 
-/* The number of an entry; NAN where the summary has none. */
+/* The value of an entry; NAN if the summary has none. */
 static double number_of(const strut_summary *s, const strut_scene *scene, size_t index) {
   double period = strut_scene_span(scene).period;
   bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
@@ -238,7 +238,7 @@ static void fill_things(const strut_sweep_plan *plan, const strut_scene *scene,
     strut_sweep_number(cells, s && i < 2 * s->node_count ? s->positions[i] : (double)NAN);
 }
 
-/* A variant may measure other quantities than the first point, whose names the table has. */
+/* A variant may lack a quantity of the first point, which names the columns. */
 static double measured_value(const strut_summary *s, const char *name) {
   for (size_t i = 0; i < s->measured_count; i++)
     if (strcmp(s->measured[i].name, name) == 0) return s->measured[i].value;
