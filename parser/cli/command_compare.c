@@ -262,7 +262,7 @@ static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE",
-     "change a parameter: of every model that has it, or behind a MODEL of that one only"},
+     "change a parameter of all models that have it; after a MODEL, of that one"},
     {STRUT_OPTION_ACCURACY, "accuracy", "X",
      "relative accuracy of velocities, such as 1% (default 0.5%)"},
     {STRUT_OPTION_NO_MOTION, "no-motion", NULL, "skip the simulated motion"},
