@@ -57,7 +57,6 @@ extern "C" {
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/cluster/cluster_script.h"
 #include "engine/study/compare/compare.h"
-#include "engine/study/results/merge.h"
 #include "engine/study/results/shard.h"
 #include "engine/study/results/slots.h"
 #include "engine/study/results/study_table.h"

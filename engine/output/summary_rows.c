@@ -23,7 +23,7 @@ static void add_row(rows *r, const char *label, const char *value) {
   strut_json_text(r->json, row, "value", value);
 }
 
-/* NAN where there is no such number. */
+/* NAN if there is no such number. */
 static double number(const cJSON *from, const char *key) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(from, key);
   return cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;

@@ -257,7 +257,7 @@ static bool has_fixed_method(const strut_scene *scene) {
   return by_hand && (e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0);
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_check(const strut_arguments *arguments) {
   strut_scene scene;
   strut_plan plan;
   strut_model *model = NULL;
@@ -301,5 +301,5 @@ const strut_command strut_command_check = {
         "each\n"
         "member its rest length in each of the four forms that the language accepts.\n",
     .options = options,
-    .run = run,
+    .run = run_check,
 };

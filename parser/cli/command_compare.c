@@ -262,7 +262,7 @@ static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE",
-     "change a parameter: of every model that has it, or behind a MODEL of that one only"},
+     "change a parameter of all models that have it; after a MODEL, of that one"},
     {STRUT_OPTION_ACCURACY, "accuracy", "X",
      "relative accuracy of velocities, such as 1% (default 0.5%)"},
     {STRUT_OPTION_NO_MOTION, "no-motion", NULL, "skip the simulated motion"},
@@ -292,9 +292,9 @@ static void fill_names(file_names *names) {
   names->list[STRUT_COMPARE_MOST + FIXED_FILES] = NULL;
 }
 
-static strut_status draw(const char *stage, const char *name, double width,
-                         const strut_compare *result, size_t first, size_t count,
-                         strut_error *error) {
+static strut_status draw_comparison(const char *stage, const char *name, double width,
+                                    const strut_compare *result, size_t first, size_t count,
+                                    strut_error *error) {
   char path[PATH];
   if (snprintf(path, sizeof path, "%s/%s", stage, name) >= (int)sizeof path)
     return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", name);
@@ -312,15 +312,16 @@ static strut_status write_files(strut_results *files, const file_names *names,
     status =
         strut_file_write_block(files->stage, "compare.json", strut_compare_json(result), &error);
   if (status == STRUT_OK)
-    status = draw(files->stage, "compare.svg", PAGE, result, 0, result->count, &error);
+    status = draw_comparison(files->stage, "compare.svg", PAGE, result, 0, result->count, &error);
   for (size_t i = 0; i < result->count && status == STRUT_OK; i++)
-    status = draw(files->stage, names->pictures[i], ONE, result, i, 1, &error);
+    status = draw_comparison(files->stage, names->pictures[i], ONE, result, i, 1, &error);
   if (status == STRUT_OK) status = strut_results_commit(files, &error);
   if (status != STRUT_OK) strut_print_error(&error);
   return status;
 }
 
-static strut_status show(const strut_arguments *arguments, const strut_compare *result) {
+static strut_status print_comparison(const strut_arguments *arguments,
+                                     const strut_compare *result) {
   if (arguments->quiet && !arguments->json && !arguments->csv) return STRUT_OK;
   char *text = arguments->json  ? strut_compare_json(result)
                : arguments->csv ? strut_compare_csv(result)
@@ -343,8 +344,8 @@ static strut_status report_failures(const strut_compare *result) {
   return status;
 }
 
-static strut_status compare(const strut_arguments *arguments, const strut_plot *plot,
-                            strut_compare_options *wanted, const compared_models *models) {
+static strut_status compare_models(const strut_arguments *arguments, const strut_plot *plot,
+                                   strut_compare_options *wanted, const compared_models *models) {
   strut_results files = {0};
   strut_compare result = {0};
   strut_error error = {0};
@@ -365,7 +366,7 @@ static strut_status compare(const strut_arguments *arguments, const strut_plot *
     strut_print_error(&error);
   } else {
     status = write_files(&files, &names, &result);
-    if (status == STRUT_OK) status = show(arguments, &result);
+    if (status == STRUT_OK) status = print_comparison(arguments, &result);
     if (status == STRUT_OK && plot->path) {
       status = strut_compare_figure(plot->path, plot->width, &result, 0, result.count, &error);
       if (status != STRUT_OK) strut_print_error(&error);
@@ -398,14 +399,14 @@ static strut_status read_options(const strut_arguments *arguments, strut_plot *p
   return STRUT_OK;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_compare(const strut_arguments *arguments) {
   strut_compare_options wanted = {.accuracy = 0.0};
   compared_models models;
   strut_plot plot;
   strut_status status = read_options(arguments, &plot, &wanted);
   if (status == STRUT_OK) status = open_compared(&strut_command_compare, arguments, &models);
   if (status != STRUT_OK) return status;
-  status = compare(arguments, &plot, &wanted, &models);
+  status = compare_models(arguments, &plot, &wanted, &models);
   free_compared(&models);
   return status;
 }
@@ -429,6 +430,6 @@ const strut_command strut_command_compare = {
         "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"
         "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n",
     .options = options,
-    .run = run,
+    .run = run_compare,
     .timed = true,
 };

@@ -85,8 +85,8 @@ static strut_status read_options(const strut_arguments *arguments, strut_scene *
   return status;
 }
 
-static strut_status report(const strut_arguments *arguments, const strut_equilibria *all,
-                           const strut_model *model) {
+static strut_status report_equilibria(const strut_arguments *arguments, const strut_equilibria *all,
+                                      const strut_model *model) {
   strut_error error = {0};
   if (arguments->output) {
     strut_status status = strut_directory_create(arguments->output, &error);
@@ -100,8 +100,8 @@ static strut_status report(const strut_arguments *arguments, const strut_equilib
                                            : strut_equilibria_table(all, model, arguments->all));
 }
 
-static strut_status search(const strut_arguments *arguments, const strut_plot *plot,
-                           strut_scene *scene) {
+static strut_status find_and_report(const strut_arguments *arguments, const strut_plot *plot,
+                                    strut_scene *scene) {
   strut_equilibria_options options_read;
   strut_model *model = NULL;
   strut_equilibria all = {0};
@@ -114,7 +114,7 @@ static strut_status search(const strut_arguments *arguments, const strut_plot *p
   if (status) {
     strut_print_error(&error);
   } else {
-    status = report(arguments, &all, model);
+    status = report_equilibria(arguments, &all, model);
     if (!status && plot->path && all.count > 0) {
       status = strut_equilibria_figure(plot->path, plot->width, model, &all, &error);
       if (status) strut_print_error(&error);
@@ -129,7 +129,7 @@ static strut_status search(const strut_arguments *arguments, const strut_plot *p
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_equilibria(const strut_arguments *arguments) {
   strut_scene scene;
   strut_plot plot;
   strut_status status = strut_check_output_writable(arguments, file_names);
@@ -137,7 +137,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
-  status = search(arguments, &plot, &scene);
+  status = find_and_report(arguments, &plot, &scene);
   strut_scene_free(&scene);
   return status;
 }
@@ -155,6 +155,6 @@ const strut_command strut_command_equilibria = {
         "Names such as n1-n4-2 give the touching nodes and the rank by energy.\n"
         "Exit code 3 if nothing ever comes to rest.\n",
     .options = options,
-    .run = run,
+    .run = run_equilibria,
     .timed = true,
 };

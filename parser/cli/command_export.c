@@ -110,7 +110,7 @@ static strut_status export_format(const strut_arguments *arguments, const char *
   return STRUT_USAGE;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_export(const strut_arguments *arguments) {
   const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
   strut_scene scene;
   strut_model *model = NULL;
@@ -146,5 +146,5 @@ const strut_command strut_command_export = {
         "directory that 'strut run -o' made) or one for the shape of MODEL, and ground.vtp.\n"
         "Either all files are written or none.\n",
     .options = options,
-    .run = run,
+    .run = run_export,
 };

@@ -61,8 +61,8 @@ static char *text_for(const strut_arguments *arguments, const strut_scene *scene
   return arguments->output ? strut_form_table(form, scene) : strut_scene_write(scene);
 }
 
-static strut_status show(const strut_arguments *arguments, const strut_scene *scene,
-                         const strut_form *form) {
+static strut_status report_form(const strut_arguments *arguments, const strut_scene *scene,
+                                const strut_form *form) {
   strut_error error = {0};
   bool silent = arguments->quiet && arguments->output && !arguments->json;
   char *model = arguments->output ? strut_scene_write(scene) : NULL;
@@ -79,8 +79,8 @@ static strut_status show(const strut_arguments *arguments, const strut_scene *sc
   return status;
 }
 
-static strut_status draw(const strut_plot *plot, const strut_scene *scene, const double (*drawn)[2],
-                         strut_error *error) {
+static strut_status draw_form(const strut_plot *plot, const strut_scene *scene,
+                              const double (*drawn)[2], strut_error *error) {
   strut_model *model = NULL;
   if (!plot->path) return STRUT_OK;
   strut_status status = strut_model_compile(scene, &model, error);
@@ -90,20 +90,20 @@ static strut_status draw(const strut_plot *plot, const strut_scene *scene, const
 }
 
 /* Finds the form, prints and draws it; `drawn` (node_count) receives the former positions. */
-static strut_status find(const strut_arguments *arguments, const strut_form_options *wanted,
-                         const strut_plot *plot, strut_scene *scene, double (*drawn)[2]) {
+static strut_status find_form(const strut_arguments *arguments, const strut_form_options *wanted,
+                              const strut_plot *plot, strut_scene *scene, double (*drawn)[2]) {
   strut_form form;
   strut_error error = {0};
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
   strut_status status = strut_form_find(scene, wanted, &form, &error);
-  if (status == STRUT_OK) status = show(arguments, scene, &form);
-  if (status == STRUT_OK) status = draw(plot, scene, (const double(*)[2])drawn, &error);
+  if (status == STRUT_OK) status = report_form(arguments, scene, &form);
+  if (status == STRUT_OK) status = draw_form(plot, scene, (const double(*)[2])drawn, &error);
   if (error.message[0]) strut_print_error(&error);
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_form(const strut_arguments *arguments) {
   strut_scene scene;
   strut_form_options wanted = {0};
   strut_plot plot;
@@ -115,7 +115,8 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   double(*drawn)[2] = strut_arena_allocate(&arena, scene.node_count, sizeof *drawn);
-  status = drawn ? find(arguments, &wanted, &plot, &scene, drawn) : strut_print_out_of_memory();
+  status =
+      drawn ? find_form(arguments, &wanted, &plot, &scene, drawn) : strut_print_out_of_memory();
   strut_arena_free(&arena);
   strut_scene_free(&scene);
   return status;
@@ -135,5 +136,5 @@ const strut_command strut_command_form = {
         "densities, lengths if it gives rest lengths, otherwise prestress.\n"
         "The new model is printed or written to FILE; it stays at rest when run without drives.\n",
     .options = options,
-    .run = run,
+    .run = run_form,
 };

@@ -4,7 +4,7 @@
 #include "parser/cli/streams.h"
 #include "parser/write/keys_page.h"
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_keys(const strut_arguments *arguments) {
   (void)arguments;
   return strut_print_block(strut_keys_page());
 }
@@ -12,5 +12,5 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_keys = {
     .name = "keys",
     .summary = "prints all keys of the modelling language, as Markdown",
-    .run = run,
+    .run = run_keys,
 };

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <sys/resource.h>
 
-#include "engine/study/results/merge.h"
+#include "engine/study/results/shard.h"
 #include "parser/cli/streams.h"
 
 /* All shards are open at once, which may exceed the usual limit of open files. */
@@ -15,7 +15,7 @@ static void allow_many_files(void) {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_merge(const strut_arguments *arguments) {
   strut_merged merged;
   strut_error error = {0};
   allow_many_files();
@@ -45,5 +45,5 @@ const strut_command strut_command_merge = {
         "study, model and version of strut. DIR/table.csv is then byte for byte the table of an\n"
         "undivided sweep; otherwise the command reports what is missing.\n"
         "\nExit code: 3 if points of the study failed, 4 if shards or points are missing.\n",
-    .run = run,
+    .run = run_merge,
 };

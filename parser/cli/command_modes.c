@@ -35,8 +35,9 @@ static strut_status write_files(const char *directory, const strut_model *model,
 }
 
 /* `panels`: the value of --count, or 0 without it. */
-static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
-                           const strut_model *model, const strut_modes *modes, size_t panels) {
+static strut_status report_modes(const strut_arguments *arguments, const strut_plot *plot,
+                                 const strut_model *model, const strut_modes *modes,
+                                 size_t panels) {
   strut_error error = {0};
   if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK)
     return strut_print_failure(error.status, &error);
@@ -48,7 +49,7 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
   return strut_print_failure(status, &error);
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_modes(const strut_arguments *arguments) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_modes modes = {0};
@@ -71,7 +72,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK)
     strut_print_error(&error);
   else
-    status = report(arguments, &plot, model, &modes, (size_t)count);
+    status = report_modes(arguments, &plot, model, &modes, (size_t)count);
   strut_modes_free(&modes);
   strut_model_free(model);
   strut_scene_free(&scene);
@@ -87,6 +88,6 @@ const strut_command strut_command_modes = {
         "Without --at, the equilibrium is the one in which the start comes to rest. All modes are\n"
         "computed up to 400 coordinates, beyond that the ten lowest.\n",
     .options = options,
-    .run = run,
+    .run = run_modes,
     .timed = true,
 };

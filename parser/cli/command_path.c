@@ -254,8 +254,8 @@ static strut_status write_files(const char *directory, const strut_path *path,
 }
 
 /* Writes, prints and draws the path; reports what fails on stderr. */
-static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
-                           const strut_model *model, const strut_path *path) {
+static strut_status report_path(const strut_arguments *arguments, const strut_plot *plot,
+                                const strut_model *model, const strut_path *path) {
   strut_error error = {0};
   strut_status status = STRUT_OK;
   if (arguments->output) status = write_files(arguments->output, path, model->scene, &error);
@@ -269,15 +269,15 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
   return strut_print_failure(status, &error);
 }
 
-static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
-                           const strut_path_options *wanted, const strut_scene *scene) {
+static strut_status follow_path(const strut_arguments *arguments, const strut_plot *plot,
+                                const strut_path_options *wanted, const strut_scene *scene) {
   strut_path path = {0};
   strut_model *model = NULL;
   strut_error error = {0};
   strut_status status = strut_model_compile(scene, &model, &error);
   if (status == STRUT_OK) status = strut_path_follow(model, wanted, &path, &error);
   if (status == STRUT_OK)
-    status = report(arguments, plot, model, &path);
+    status = report_path(arguments, plot, model, &path);
   else
     strut_print_error(&error);
   strut_path_free(&path);
@@ -285,7 +285,7 @@ static strut_status follow(const strut_arguments *arguments, const strut_plot *p
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_path(const strut_arguments *arguments) {
   strut_scene scene;
   strut_path_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT)};
   over_source source = {0};
@@ -301,7 +301,7 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_open_model_text(arguments, &source.text, &source.length, &scene);
   if (status != STRUT_OK) return status;
   status = read_over(&strut_command_path, arguments, &scene, &source, &wanted);
-  if (status == STRUT_OK) status = follow(arguments, &plot, &wanted, &scene);
+  if (status == STRUT_OK) status = follow_path(arguments, &plot, &wanted, &scene);
   free_over(&source);
   strut_scene_free(&scene);
   return status;
@@ -321,6 +321,6 @@ const strut_command strut_command_path = {
         "value in the file), an actuator (the change of its member's rest length), or the\n"
         "prescribed displacement of a node along x or y.\n",
     .options = options,
-    .run = run,
+    .run = run_path,
     .timed = true,
 };

@@ -240,7 +240,7 @@ static strut_status read_kind(const strut_arguments *arguments, int *kind) {
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_plot(const strut_arguments *arguments) {
   strut_plot plot;
   strut_table table;
   strut_error error = {0};
@@ -269,5 +269,5 @@ const strut_command strut_command_plot = {
         "strut writes it, or - for the standard input. Units get prefixes, curves are told\n"
         "apart by colour, dashes and markers, and cells without a number break a curve.\n",
     .options = options,
-    .run = run,
+    .run = run_plot,
 };

@@ -19,9 +19,9 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status report(const strut_arguments *arguments, const strut_model *model,
-                           const strut_named_shape *shape, const strut_rigidity *rigidity,
-                           strut_error *error) {
+static strut_status report_rigidity(const strut_arguments *arguments, const strut_model *model,
+                                    const strut_named_shape *shape, const strut_rigidity *rigidity,
+                                    strut_error *error) {
   strut_status status = STRUT_OK;
   if (arguments->output) status = strut_directory_create(arguments->output, error);
   if (arguments->output && status == STRUT_OK)
@@ -33,14 +33,14 @@ static strut_status report(const strut_arguments *arguments, const strut_model *
                                            : strut_rigidity_table(rigidity, model, shape->name));
 }
 
-static strut_status analyse(const strut_arguments *arguments, const strut_plot *plot,
-                            const strut_model *model, strut_error *error) {
+static strut_status analyse_rigidity(const strut_arguments *arguments, const strut_plot *plot,
+                                     const strut_model *model, strut_error *error) {
   strut_arena arena = {0};
   strut_named_shape shape;
   strut_rigidity rigidity = {0};
   strut_status status = strut_named_shape_find(arguments, model, &arena, &shape, error);
   if (status == STRUT_OK) status = strut_rigidity_find(model, shape.q, &rigidity, error);
-  if (status == STRUT_OK) status = report(arguments, model, &shape, &rigidity, error);
+  if (status == STRUT_OK) status = report_rigidity(arguments, model, &shape, &rigidity, error);
   if (status == STRUT_OK && plot->path)
     status = strut_rigidity_figure(plot->path, plot->width, model, shape.q, shape.name, &rigidity,
                                    error);
@@ -49,7 +49,7 @@ static strut_status analyse(const strut_arguments *arguments, const strut_plot *
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_rigidity(const strut_arguments *arguments) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
@@ -60,7 +60,7 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = analyse(arguments, &plot, model, &error);
+  if (status == STRUT_OK) status = analyse_rigidity(arguments, &plot, model, &error);
   if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   strut_model_free(model);
   strut_scene_free(&scene);
@@ -77,6 +77,6 @@ const strut_command strut_command_rigidity = {
         "member forces in the shape. Supports are those of the scene; the ground does not\n"
         "count as one.\n",
     .options = options,
-    .run = run,
+    .run = run_rigidity,
     .timed = true,
 };

@@ -152,7 +152,7 @@ static strut_status run_model(const strut_arguments *arguments, const strut_mode
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_run(const strut_arguments *arguments) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
@@ -199,5 +199,5 @@ const strut_command strut_command_run = {
         "--animate makes a film of the recorded motion with the program ffmpeg.\n"
         "Ctrl-C stops the run and keeps the results so far; a second Ctrl-C kills it.\n",
     .options = options,
-    .run = run,
+    .run = run_run,
 };

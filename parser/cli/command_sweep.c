@@ -110,9 +110,9 @@ static strut_status run_points(const strut_arguments *arguments, strut_sweep_stu
 }
 
 /* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
-static strut_status complete(const strut_arguments *arguments, strut_sweep_study *study,
-                             strut_shard shard, strut_slots *slots,
-                             const strut_sweep_state *state) {
+static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep_study *study,
+                                   strut_shard shard, strut_slots *slots,
+                                   const strut_sweep_state *state) {
   strut_error error = {0};
   strut_slots *const sources[] = {slots};
   const char *table = shard.count ? "one shard: 'strut merge' writes the table of all"
@@ -134,8 +134,8 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   return STRUT_DIVERGED;
 }
 
-static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study,
-                          concurrency at_a_time) {
+static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study,
+                                   concurrency at_a_time) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};
@@ -154,12 +154,12 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
     strut_file_remove(arguments->output, table_name); /* outdated */
   if (!status) status = run_points(arguments, study, at_a_time, slots, &state, &error);
   strut_print_failure(status, &error);
-  if (!status) status = complete(arguments, study, shard, slots, &state);
+  if (!status) status = complete_sweep(arguments, study, shard, slots, &state);
   strut_slots_close(slots);
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_sweep(const strut_arguments *arguments) {
   strut_sweep_study study = {0};
   concurrency at_a_time = {0};
   strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
@@ -185,7 +185,7 @@ static strut_status run(const strut_arguments *arguments) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status)
-    status = sweep(arguments, &study, at_a_time);
+    status = compute_points(arguments, &study, at_a_time);
   strut_sweep_study_close(&study);
   return status;
 }
@@ -204,5 +204,5 @@ const strut_command strut_command_sweep = {
         "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
         "recomputes it. Ctrl-C stops after a moment.\n",
     .options = options,
-    .run = run,
+    .run = run_sweep,
 };

@@ -252,15 +252,15 @@ static strut_status write_files(const char *stage, const strut_tradeoff *result,
   return status == STRUT_OK ? strut_tradeoff_figure(path, PAGE, result, error) : status;
 }
 
-static strut_status show(const strut_arguments *arguments, const strut_tradeoff *result,
-                         const char *json) {
+static strut_status print_study(const strut_arguments *arguments, const strut_tradeoff *result,
+                                const char *json) {
   if (arguments->json) return strut_print(json);
   if (arguments->quiet) return STRUT_OK;
   return strut_print_block(strut_tradeoff_table(result));
 }
 
-static strut_status report(const strut_arguments *arguments, strut_results *files,
-                           const strut_tradeoff *result, const operating_points *points) {
+static strut_status report_study(const strut_arguments *arguments, strut_results *files,
+                                 const strut_tradeoff *result, const operating_points *points) {
   strut_error error = {0};
   char *json = strut_tradeoff_json(result, points->list);
   if (!json) return strut_print_out_of_memory();
@@ -270,13 +270,13 @@ static strut_status report(const strut_arguments *arguments, strut_results *file
     if (status == STRUT_OK) status = strut_results_commit(files, &error);
     if (status != STRUT_OK) strut_print_error(&error);
   }
-  if (status == STRUT_OK) status = show(arguments, result, json);
+  if (status == STRUT_OK) status = print_study(arguments, result, json);
   strut_release(json);
   return status;
 }
 
-static strut_status study(const strut_arguments *arguments, tradeoff_request *w,
-                          const operating_points *points) {
+static strut_status run_study(const strut_arguments *arguments, tradeoff_request *w,
+                              const operating_points *points) {
   strut_results files = {0};
   strut_tradeoff result = {.name = ""};
   strut_error error = {0};
@@ -292,7 +292,7 @@ static strut_status study(const strut_arguments *arguments, tradeoff_request *w,
     strut_progress_end(&progress);
   }
   if (status == STRUT_OK)
-    status = report(arguments, &files, &result, points);
+    status = report_study(arguments, &files, &result, points);
   else
     strut_print_error(&error);
   strut_tradeoff_free(&result);
@@ -300,14 +300,14 @@ static strut_status study(const strut_arguments *arguments, tradeoff_request *w,
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_tradeoff(const strut_arguments *arguments) {
   tradeoff_request w = {.points = 1};
   operating_points points = {0};
   strut_status status = read_options(arguments, &w);
   if (status == STRUT_OK)
     status = open_points(&strut_command_tradeoff, arguments, w.points, w.seed, &points);
   if (status != STRUT_OK) return status;
-  status = study(arguments, &w, &points);
+  status = run_study(arguments, &w, &points);
   free_points(&points);
   return status;
 }
@@ -328,6 +328,6 @@ const strut_command strut_command_tradeoff = {
         "With --vary, errors are median, 90th percentile and worst over random points, since a\n"
         "single small error at a large step may be luck.\n",
     .options = options,
-    .run = run,
+    .run = run_tradeoff,
     .timed = true,
 };

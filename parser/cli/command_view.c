@@ -118,7 +118,7 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
   return status;
 }
 
-static strut_status run(const strut_arguments *given) {
+static strut_status run_view(const strut_arguments *given) {
   strut_opened opened = {0};
   strut_arguments with_output = *given, *arguments = &with_output;
   char page[PATH_MAX];
@@ -153,5 +153,5 @@ const strut_command strut_command_view = {
         "so. Without -o it is RUN.html or MODEL.html beside the input; a file that strut did not\n"
         "write is never overwritten.\n",
     .options = options,
-    .run = run,
+    .run = run_view,
 };

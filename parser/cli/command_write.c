@@ -10,7 +10,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_write(const strut_arguments *arguments) {
   strut_scene scene;
   strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
   if (status != STRUT_OK) return status;
@@ -27,5 +27,5 @@ const strut_command strut_command_write = {
         "\nParameters, groups and units are resolved: every value appears where it is used, in SI\n"
         "units. A run of the printed scene gives bit-identical results.\n",
     .options = options,
-    .run = run,
+    .run = run_write,
 };

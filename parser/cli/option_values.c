@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/option_values.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,6 +15,7 @@
 static const char *name_of(const strut_command *command, strut_option_id id) {
   const strut_option *option = command->options;
   while (option->id != STRUT_OPTION_END && option->id != id) option++;
+  assert(option->id == id);
   return option->name;
 }
 

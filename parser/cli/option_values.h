@@ -39,8 +39,8 @@ typedef struct strut_plot {
 #define STRUT_PLOT_OPTIONS                                                                         \
   {STRUT_OPTION_PLOT, "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"}, {           \
     STRUT_OPTION_WIDTH, "width", "WIDTH",                                                          \
-        "width of the figure: page (180 mm, default), column (88 mm) or a "                        \
-        "length such as 120 mm"                                                                    \
+        "width of the figure: page (180 mm, default), column (88 mm) or "                          \
+        "a length"                                                                                 \
   }
 
 /**

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/options.h"
 
+#include <assert.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -130,6 +131,7 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
 static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTIONS + 3],
                         struct option rows[MOST_OPTIONS + 1]) {
   char *at = letters;
+  assert(!option_at(command, MOST_OPTIONS));
   *at++ = '-';
   *at++ = ':';
   for (size_t i = 0; i < MOST_OPTIONS && option_at(command, i); i++) {
@@ -192,6 +194,7 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
 }
 
 const char *strut_option_text(const strut_arguments *arguments, strut_option_id id) {
+  assert(id >= STRUT_OPTION_TEXTS && id < STRUT_OPTION_TEXTS_END);
   return arguments->texts[(int)id - (int)STRUT_OPTION_TEXTS];
 }
 

@@ -56,7 +56,7 @@ typedef struct strut_sweep_progress {
   strut_progress bar;
   const strut_sweep_plan *plan;
   bool quiet;
-  double told; /* time of the latest line [s] */
+  double reported; /* time of the latest line [s] */
 } strut_sweep_progress;
 
 strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet);

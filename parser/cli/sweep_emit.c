@@ -64,7 +64,7 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
 }
 
 /* Checks what does not depend on numbers. */
-static strut_status check(const strut_arguments *arguments, bool slurm) {
+static strut_status check_emit_options(const strut_arguments *arguments, bool slurm) {
   const char *wrong = NULL;
   if (strcmp(arguments->model, "-") == 0)
     wrong = "--emit needs a file that the tasks can read, not standard input";
@@ -89,7 +89,7 @@ strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name
                                  .cpus = 1};
   int kind = 0;
   strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
-  if (status == STRUT_OK) status = check(arguments, kind == 0);
+  if (status == STRUT_OK) status = check_emit_options(arguments, kind == 0);
   if (status == STRUT_OK)
     status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1, STRUT_MOST_SHARDS,
                                   &script.shards);

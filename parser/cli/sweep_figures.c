@@ -169,8 +169,8 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   return status;
 }
 
-static strut_status draw(const strut_sweep_plan *plan, const char *directory,
-                         const strut_study_figure *f, strut_table *table) {
+static strut_status draw_figure(const strut_sweep_plan *plan, const char *directory,
+                                const strut_study_figure *f, strut_table *table) {
   strut_error error = {0};
   const char *file = strut_arena_format(&table->arena, "%s/%s.svg", directory, f->name);
   if (!file) return strut_print_out_of_memory();
@@ -192,7 +192,7 @@ strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *
   if (study->figure_count == 0) return STRUT_OK;
   strut_status status = strut_table_read(path, &table);
   for (size_t i = 0; i < study->figure_count && !status; i++)
-    status = draw(plan, directory, &study->figures[i], &table);
+    status = draw_figure(plan, directory, &study->figures[i], &table);
   strut_arena_free(&table.arena);
   return status;
 }

@@ -20,30 +20,30 @@ strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bo
 
 /* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
 static void format_row(const strut_sweep_plan *plan, const strut_slot *row, char *text,
-                       size_t room) {
+                       size_t size) {
   size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
   *text = '\0';
-  for (size_t i = 0; i < plan->column_count && i < most && used < room; i++) {
+  for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
     const strut_slot_column *c = &plan->columns[i];
     const char *unit = strcmp(c->unit, "1") == 0 ? "" : c->unit;
-    int n = c->word ? snprintf(text + used, room - used, "%s%s %s", i ? ", " : "", c->name,
+    int n = c->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "", c->name,
                                row->words[word++])
-                    : snprintf(text + used, room - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
+                    : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
                                row->numbers[number++], *unit ? " " : "", unit);
     used += n > 0 ? (size_t)n : 0;
   }
-  if (row->status != STRUT_OK && used < room)
-    snprintf(text + used, room - used, ": %s", strut_status_text(row->status));
+  if (row->status != STRUT_OK && used < size)
+    snprintf(text + used, size - used, ": %s", strut_status_text(row->status));
 }
 
 /* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
-static void format_state(const strut_sweep_state *state, char *text, size_t room) {
+static void format_state(const strut_sweep_state *state, char *text, size_t size) {
   char left[32], failed[40] = "";
   double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
   strut_progress_time(left, sizeof left,
                       rate > 0.0 ? (double)(state->points - state->done) / rate : HUGE_VAL);
   if (state->failed) snprintf(failed, sizeof failed, " (%lld failed)", (long long)state->failed);
-  snprintf(text, room, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
+  snprintf(text, size, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
            (long long)state->points, failed, rate, left);
 }
 
@@ -52,8 +52,8 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
   strut_progress *bar = &progress->bar;
   char text[TEXT], row[TEXT], all[2 * TEXT + 8], blocks[BAR_ROOM];
   if (progress->quiet || state->seconds < PATIENCE) return;
-  if (!bar->wanted && state->seconds - progress->told < REPORT_INTERVAL) return;
-  progress->told = state->seconds;
+  if (!bar->wanted && state->seconds - progress->reported < REPORT_INTERVAL) return;
+  progress->reported = state->seconds;
   format_state(state, text, sizeof text);
   format_row(progress->plan, state->row, row, sizeof row);
   snprintf(all, sizeof all, "%s; %s", text, row);
@@ -61,10 +61,10 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
     fprintf(stderr, "strut: %s\n", all);
     return;
   }
-  int room = bar->columns - 1, width = room > 3 * WIDTH ? WIDTH : 0;
+  int size = bar->columns - 1, width = size > 3 * WIDTH ? WIDTH : 0;
   strut_progress_bar(blocks, width, (double)state->done / (double)state->points, bar->unicode);
   const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
-  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, room - width - 1, room - width - 1, all);
+  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, size - width - 1, size - width - 1, all);
   fflush(stderr);
   bar->shown = true;
 }
@@ -137,13 +137,13 @@ static void add_gaps(strut_buffer *b, strut_slots *slots, bool json) {
 
 static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
   int64_t count = strut_slots_plan_of(slots)->count;
-  int told = 0;
-  for (int64_t i = 0; i < count && told < MOST_FAILURES && strut_slots_failed(slots); i++) {
+  int reported = 0;
+  for (int64_t i = 0; i < count && reported < MOST_FAILURES && strut_slots_failed(slots); i++) {
     strut_slot row;
     long long point = strut_slots_point(slots, i);
     if (!strut_slots_get(slots, point, &row) || row.status == STRUT_OK) continue;
     if (json) {
-      strut_buffer_add(b, "%s{\"point\": %lld, \"status\": ", told ? ", " : "", point);
+      strut_buffer_add(b, "%s{\"point\": %lld, \"status\": ", reported ? ", " : "", point);
       add_string(b, strut_status_text(row.status));
       strut_buffer_add(b, ", \"message\": ");
       add_string(b, row.message ? row.message : "");
@@ -152,11 +152,11 @@ static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
       strut_buffer_add(b, "failed: point %lld: %s: %s\n", point, strut_status_text(row.status),
                        row.message ? row.message : "");
     }
-    told++;
+    reported++;
   }
-  if (!json && told == MOST_FAILURES && strut_slots_failed(slots) > told)
+  if (!json && reported == MOST_FAILURES && strut_slots_failed(slots) > reported)
     strut_buffer_add(b, "... and %lld more; the table has all\n",
-                     (long long)strut_slots_failed(slots) - told);
+                     (long long)strut_slots_failed(slots) - reported);
 }
 
 strut_status strut_sweep_print_status(strut_slots *slots, bool json) {

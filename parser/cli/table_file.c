@@ -20,7 +20,7 @@ typedef struct reader {
   strut_diagnostics diagnostics;
   strut_table *table;
   const char **cell; /* all cells, row by row, the header first */
-  size_t cell_count, cell_room;
+  size_t cell_count, cell_capacity;
   bool failed; /* memory was out */
 } reader;
 
@@ -35,13 +35,13 @@ static void step(reader *r) {
 }
 
 static void keep(reader *r, const char *cell) {
-  if (r->cell_count == r->cell_room) {
-    size_t room = 2 * r->cell_room + 1024;
-    const char **more = strut_reallocate(r->cell, room, sizeof *more);
+  if (r->cell_count == r->cell_capacity) {
+    size_t capacity = 2 * r->cell_capacity + 1024;
+    const char **more = strut_reallocate(r->cell, capacity, sizeof *more);
     r->failed = r->failed || !more;
     if (!more) return;
     r->cell = more;
-    r->cell_room = room;
+    r->cell_capacity = capacity;
   }
   r->failed = r->failed || !cell;
   r->cell[r->cell_count++] = cell;

@@ -25,7 +25,7 @@ for count in 1 2 5 20; do
     shard=$((shard - 1))
   done
   expect 0 sweep study.yaml -o "in-$count" --shard "0/$count"
-  out_has "0 computed now"
+  out_has "0 computed in"
   absent "in-$count/table.csv"
   expect 0 merge "in-$count"
   out_has "in-$count/table.csv: 18 points of $count shards"

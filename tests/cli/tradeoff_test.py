@@ -232,7 +232,7 @@ with tempfile.TemporaryDirectory() as here:
     done = run(BALL, "--steps", "4", "-o", out, "--own-model")
     if sorted(files_in(out)) != ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"]:
         fail(f"files: {files_in(out)}")
-    if "Advice" not in done.stdout or "0.5 %:" not in done.stdout:
+    if "Recommendations" not in done.stdout or "0.5 %:" not in done.stdout:
         fail(f"the table lacks something: {done.stdout}")
     written = json.load(open(os.path.join(out, "tradeoff.json")))
     rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
@@ -315,9 +315,9 @@ for words, text in (
         (("--methods", "rk4,rk5"), "unknown method 'rk5'"),
         (("--methods", ""), "unknown method ''"),
         (("--steps", "0"), "a whole number from 1 to 40"),
-        (("--periods", "-1"), "--periods is from"),
+        (("--periods", "-1"), "--periods expects"),
         (("--budget", "3 m"), "--budget expects"),
-        (("--budget", "-3 s"), "--budget is from"),
+        (("--budget", "-3 s"), "--budget expects"),
         (("--points", "3"), "need --vary"),
         (("--seed", "3"), "need --vary"),
         (("--vary", "height"), "--vary expects NAME=RANGE"),

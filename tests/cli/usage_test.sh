@@ -160,7 +160,7 @@ same first second
 expect 0 check "$hopper"
 err_empty
 for text in "Hopper: valid" "nodes              3, with 6 degrees of freedom" \
-  "bars 1, springs 1, cables 1" "slack test" "left out" "inclined ground" "largest step" \
+  "bars 1, springs 1, cables 1" "slack test" "omitted" "inclined ground" "largest step" \
   "rest length" "force density"; do out_has "$text"; done
 expect 0 check "$hopper" --json
 out_has '"degrees_of_freedom":	6,'

@@ -215,7 +215,7 @@ static void test_the_table(void **unused) {
       "  n1                       300 mm",
       "  n1                       33.3 %         1.1 mm\n",
       "  kinetic                142.9 mJ\n",
-      "  dissipated by friction     10 J\n",
+      "  lost to friction           10 J\n",
   };
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
     if (!strstr(text, expected[i])) fail_msg("'%s' is not in:\n%s", expected[i], text);

@@ -12,7 +12,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/base64.h"
+#include "engine/output/buffer.h"
 
 enum { PIECE = 1 << 16, LONGEST_NUMBER = 10, LEVEL = 9, RAW = -15, MEMORY = 9 };
 

@@ -80,8 +80,8 @@ static int column_width(const strut_compare_column *c) {
   return width < NARROWEST ? NARROWEST : width > WIDEST ? WIDEST : width;
 }
 
-/* A row is told where some structure has it. */
-static bool is_told(const strut_compare *r, int row) {
+/* A row is row_info where some structure has it. */
+static bool has_values(const strut_compare *r, int row) {
   for (size_t i = 0; i < r->count; i++)
     if (isfinite(r->columns[i].cell[row].value)) return true;
   return false;
@@ -110,11 +110,11 @@ static void add_block(strut_buffer *to, const strut_compare *r, size_t first, si
     add_right(to, r->columns[i].input->label, column_width(&r->columns[i]));
   strut_buffer_add(to, "\n");
   for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
-    strut_compare_row told = strut_compare_row_of((strut_compare_quantity)row);
-    if (!is_told(r, row)) continue;
-    if (strcmp(group, told.group) != 0) strut_buffer_add(to, "%s\n", told.group);
-    group = told.group;
-    strut_buffer_add(to, "  %-*s", LABELS - 2, told.label);
+    strut_compare_row row_info = strut_compare_row_of((strut_compare_quantity)row);
+    if (!has_values(r, row)) continue;
+    if (strcmp(group, row_info.group) != 0) strut_buffer_add(to, "%s\n", row_info.group);
+    group = row_info.group;
+    strut_buffer_add(to, "  %-*s", LABELS - 2, row_info.label);
     for (size_t i = first; i < end; i++) {
       char text[CELL];
       cell_text((strut_compare_quantity)row, &r->columns[i].cell[row], text);
@@ -128,7 +128,7 @@ static void add_block(strut_buffer *to, const strut_compare *r, size_t first, si
 
 static void add_states(strut_buffer *to, const strut_compare_column *c) {
   if (c->state_count == 0) return;
-  strut_buffer_add(to, "  %s stands as", c->input->label);
+  strut_buffer_add(to, "  %s: equilibria", c->input->label);
   for (size_t i = 0; i < c->state_count && i < MOST_STATES; i++)
     strut_buffer_add(to, "%s %s (%s)", i ? "," : "", c->states[i].name,
                      strut_quantity_of(c->states[i].energy, 6, "J").text);
@@ -142,10 +142,10 @@ static void add_motion(strut_buffer *to, const strut_compare_column *c) {
   strut_buffer_add(to, "  %s moves %s", c->input->label,
                    c->motion[0] == 'p'   ? "periodically"
                    : c->motion[0] == 'i' ? "irregularly"
-                                         : "and is not steady yet");
-  if (c->repeats > 1) strut_buffer_add(to, ", every %d periods alike", (int)c->repeats);
-  if (c->still) strut_buffer_add(to, ", on the spot");
-  const char *between = "; touches the ground with";
+                                         : "without becoming steady");
+  if (c->repeats > 1) strut_buffer_add(to, ", with a period of %d drive periods", (int)c->repeats);
+  if (c->still) strut_buffer_add(to, ", without travel");
+  const char *between = "; contact duty of";
   for (size_t i = 0; i < c->contact_count; i++) {
     if (!(c->contacts[i].duty > 0.0)) continue;
     strut_buffer_add(to, "%s %s %.3g %%", between, c->contacts[i].node,
@@ -228,9 +228,10 @@ char *strut_compare_csv(const strut_compare *r) {
   strut_buffer csv = {0};
   strut_buffer_add(&csv, "model,name");
   for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
-    strut_compare_row told = strut_compare_row_of((strut_compare_quantity)row);
-    strut_buffer_add(&csv, ",%s", told.key);
-    if (*told.unit && strcmp(told.unit, "1") != 0) strut_buffer_add(&csv, " [%s]", told.unit);
+    strut_compare_row row_info = strut_compare_row_of((strut_compare_quantity)row);
+    strut_buffer_add(&csv, ",%s", row_info.key);
+    if (*row_info.unit && strcmp(row_info.unit, "1") != 0)
+      strut_buffer_add(&csv, " [%s]", row_info.unit);
   }
   strut_buffer_add(&csv, "\n");
   for (size_t i = 0; i < r->count; i++) {
@@ -253,20 +254,20 @@ char *strut_compare_csv(const strut_compare *r) {
 static void put_units(strut_json *json) {
   struct cJSON *units = strut_json_object(json, json->root, "units");
   for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
-    strut_compare_row told = strut_compare_row_of((strut_compare_quantity)row);
-    if (*told.unit) strut_json_text(json, units, told.key, told.unit);
+    strut_compare_row row_info = strut_compare_row_of((strut_compare_quantity)row);
+    if (*row_info.unit) strut_json_text(json, units, row_info.key, row_info.unit);
   }
 }
 
 static void put_cells(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
   struct cJSON *values = strut_json_object(json, to, "values");
   for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
-    strut_compare_row told = strut_compare_row_of((strut_compare_quantity)row);
+    strut_compare_row row_info = strut_compare_row_of((strut_compare_quantity)row);
     double v = c->cell[row].value;
-    if (isfinite(v) && !*told.unit)
-      strut_json_integer(json, values, told.key, (int64_t)v);
+    if (isfinite(v) && !*row_info.unit)
+      strut_json_integer(json, values, row_info.key, (int64_t)v);
     else
-      strut_json_number(json, values, told.key, v);
+      strut_json_number(json, values, row_info.key, v);
   }
   struct cJSON *reasons = strut_json_object(json, to, "reasons");
   for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++)

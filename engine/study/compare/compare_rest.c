@@ -37,8 +37,8 @@ static void put_forces(strut_compare_work *work, const strut_rigidity *r, size_t
   strut_compare_put(work, STRUT_COMPARE_COMPRESSION, compression);
 }
 
-/* As drawn, whatever it stands in: the shape that `strut rigidity` looks at. */
-static strut_status look_as_drawn(strut_compare_work *work, const strut_model *model) {
+/* Evaluates the drawn shape, as `strut rigidity` does. */
+static strut_status evaluate_drawn(strut_compare_work *work, const strut_model *model) {
   strut_error error = {0};
   strut_arena scratch = {0};
   strut_rest_state drawn;
@@ -58,9 +58,9 @@ static strut_status look_as_drawn(strut_compare_work *work, const strut_model *m
 strut_status strut_compare_rigidity(strut_compare_work *work, const strut_model *model) {
   strut_error error = {0};
   strut_rigidity r = {0};
-  strut_status status = look_as_drawn(work, model);
-  if (status != STRUT_OK || !work->stand.q) return status;
-  status = strut_rigidity_find(model, work->stand.q, &r, &error);
+  strut_status status = evaluate_drawn(work, model);
+  if (status != STRUT_OK || !work->rest.q) return status;
+  status = strut_rigidity_find(model, work->rest.q, &r, &error);
   if (status == STRUT_OK)
     put_forces(work, &r, model->scene->member_count);
   else
@@ -103,7 +103,7 @@ static strut_status keep_states(strut_compare_work *work, const strut_equilibria
 /* The name under which the list has the equilibrium that a run starts in, or NULL. */
 static const char *start_name(const strut_compare_work *work, const strut_model *model,
                               const strut_equilibria *all) {
-  const double *q = work->stand.q;
+  const double *q = work->rest.q;
   if (!q) return NULL;
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
@@ -325,7 +325,7 @@ static strut_status measure(strut_compare_work *work, const strut_model *model,
   size_t nodes = (size_t)model->node_count;
   c->stiffness = strut_arena_allocate(work->arena, nodes, sizeof *c->stiffness);
   if (!c->stiffness) return STRUT_NO_MEMORY;
-  s->rigid_count = strut_rigid_motions(potential, work->stand.q, s->rigid);
+  s->rigid_count = strut_rigid_motions(potential, work->rest.q, s->rigid);
   lift_rigid(s);
   if (!factorise(s)) {
     c->stiffness = NULL;
@@ -357,13 +357,13 @@ strut_status strut_compare_stiffness(strut_compare_work *work, const strut_model
     s.rigid = strut_arena_allocate(&scratch, 3 * s.n, sizeof *s.rigid);
     s.load = strut_arena_allocate(&scratch, s.n, sizeof *s.load);
     status = s.k && s.rigid && s.load
-                 ? strut_linear_matrices_build(model, work->stand.q, &scratch, &matrices)
+                 ? strut_linear_matrices_build(model, work->rest.q, &scratch, &matrices)
                  : STRUT_NO_MEMORY;
     if (status == STRUT_OK) {
       add_sparse(&s, matrices.elastic);
       add_sparse(&s, matrices.geometric);
       add_sparse(&s, matrices.contact);
-      hold_contacts(&s, model, work->stand.q, potential->row_of);
+      hold_contacts(&s, model, work->rest.q, potential->row_of);
       status = measure(work, model, potential, &s);
     }
   }

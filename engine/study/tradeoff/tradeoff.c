@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors from values and references; spreads over the operating points; fronts; best savings. */
+/* The whole study, from the variants of the model to the Pareto front. */
 #include "engine/study/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -85,7 +85,7 @@ double strut_tradeoff_smallest_error(const tradeoff_study *s, int variant) {
   return smallest;
 }
 
-/* Whether b is a is_finer setting of the same group, or a itself. */
+/* Is b a finer setting of the same group, or a itself? */
 static bool is_finer(const strut_tradeoff_row *a, const strut_tradeoff_row *b) {
   if (a->group != b->group) return false;
   return isfinite(a->tolerance) ? b->tolerance <= a->tolerance : b->step <= a->step;
@@ -110,7 +110,7 @@ int strut_tradeoff_best(const strut_tradeoff *r, int variant, double level) {
 
 /* ---- models of the scene besides its own ---- */
 
-/* All there can be, in the order in which they are run: the dearest last. */
+/* All variants in the order in which they run: the most expensive last. */
 typedef enum kind { OWN, MASS, RIGID, GROUND, KARNOPP, COULOMB, SMOOTH, KINDS } kind;
 
 static bool has_member_mass(const strut_scene *scene) {
@@ -119,7 +119,7 @@ static bool has_member_mass(const strut_scene *scene) {
   return false;
 }
 
-/* Whether there are bars that could be rigid: none of them is driven. */
+/* Are there bars, none of them driven, that could be rigid? */
 static bool has_still_bars(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
@@ -171,7 +171,7 @@ static bool makes_sense(const strut_scene *scene, kind what) {
   }
 }
 
-/* The speed over which a law of friction that needs one goes through zero [m/s]. */
+/* The regularisation speed for friction laws that need one [m/s]. */
 static double regularisation_speed(const tradeoff_study *s, const strut_friction *friction) {
   if (friction->stick_velocity > 0) return friction->stick_velocity;
   return friction->width > 0 ? friction->width : s->scale[0];
@@ -293,7 +293,7 @@ bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *m
 
 enum { BEST_METHODS = 2 };
 static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3; /* [s], [1], [1] */
-/* Of the budget: the own references, the own rows, their refinement; other models have the rest. */
+/* Cumulative shares of the budget for the unchanged model: references, rows, refined references. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
 static strut_status out_of_memory(tradeoff_study *s) {
@@ -338,14 +338,14 @@ static strut_status prepare(tradeoff_study *s, size_t count) {
     return out_of_memory(s);
   if (!(strut_scene_span(scene).duration > 0))
     return strut_fail(s->error, STRUT_USAGE,
-                      "the scene has no run to compare: it needs 'run' with a duration or periods");
+                      "the scene has no run: add 'run' with a duration or periods");
   strut_status status = measure_points(s);
   if (status != STRUT_OK) return status;
   r->scale = s->scale[0];
   return STRUT_OK;
 }
 
-/* What stays where it is, or only goes up and down, has no velocity to be measured by. */
+/* Measures positions instead if the structure does not travel. */
 static void fall_back_to_position(tradeoff_study *s) {
   strut_tradeoff *r = s->result;
   bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(s->scratch[0]) < 1e-9 * s->scale[0];
@@ -420,7 +420,7 @@ static strut_status study_own_model(tradeoff_study *s, step_series_list *own) {
     status = strut_tradeoff_reference_refine(s, &reference, FIRST_TARGET, OWN_REFERENCE);
   if (status != STRUT_OK) return status;
   if (!s->result->variants[0].run)
-    return strut_fail(s->error, STRUT_DIVERGED, "there is no reference: %s",
+    return strut_fail(s->error, STRUT_DIVERGED, "no reference solution: %s",
                       s->result->variants[0].remark);
   status = strut_tradeoff_run_series(s, own, OWN_ROWS, 0.2, 0.6);
   strut_tradeoff_judge(s);
@@ -432,7 +432,7 @@ static strut_status study_own_model(tradeoff_study *s, step_series_list *own) {
   return status;
 }
 
-/* The methods of the own model's best savings, the cheapest for each level first. */
+/* Methods of the unchanged model that are cheapest at some error level. */
 static size_t best_methods(const strut_tradeoff *r, const strut_integrator *best[BEST_METHODS]) {
   size_t count = 0;
   for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) {
@@ -444,7 +444,7 @@ static size_t best_methods(const strut_tradeoff *r, const strut_integrator *best
   return count;
 }
 
-/* Whether the base's run at the first point is another one in another model. */
+/* Does the variant change the base's run at the first point? */
 static strut_status differs(tradeoff_study *s, int variant, bool *different) {
   const strut_tradeoff *r = s->result;
   tradeoff_outcome outcome;
@@ -465,8 +465,7 @@ static strut_status study_variant(tradeoff_study *s, int variant, double share, 
   size_t count = best_methods(r, best);
   double before = strut_tradeoff_time_left(s, share);
   if (before <= 0) {
-    snprintf(r->variants[variant].remark, sizeof r->variants[variant].remark,
-             "the budget did not suffice");
+    snprintf(r->variants[variant].remark, sizeof r->variants[variant].remark, "budget exhausted");
     return STRUT_OK;
   }
   tradeoff_reference reference;
@@ -490,7 +489,7 @@ static strut_status study_variant(tradeoff_study *s, int variant, double share, 
   return status;
 }
 
-/* By group, coarse before fine. */
+/* Order of rows: by group, coarse before fine. */
 static bool before(const strut_tradeoff_row *a, const strut_tradeoff_row *b) {
   if (a->group != b->group) return a->group < b->group;
   if (isfinite(a->tolerance) && a->tolerance != b->tolerance) return a->tolerance > b->tolerance;
@@ -519,8 +518,7 @@ static strut_status make(tradeoff_study *s, size_t count) {
   double others = (double)(r->variant_count - 1);
   for (size_t i = 1; i < r->variant_count && status == STRUT_OK; i++) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
-    double spent =
-        1 - strut_tradeoff_time_left(s, 1) / s->budget; /* what is left goes to all alike */
+    double spent = 1 - strut_tradeoff_time_left(s, 1) / s->budget; /* the rest is shared evenly */
     double share = spent + fmax(0, 1 - spent) / (double)(r->variant_count - i);
     status = study_variant(s, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }

@@ -13,9 +13,9 @@ typedef struct tradeoff_setting {
   double step, tolerance, refine; /* tolerance, refine: NAN where they say nothing */
 } tradeoff_setting;
 
-/** What one run gave. */
+/** Result of one run. */
 typedef struct tradeoff_outcome {
-  strut_status status; /* STRUT_OK, or STRUT_DIVERGED for all that goes wrong on the way */
+  strut_status status; /* STRUT_OK, or STRUT_DIVERGED for any failure during the run */
   bool cannot;         /* the method cannot run this model at all; error holds the reason */
   int64_t evaluations;
   double seconds;    /* CPU time of the stepping alone */
@@ -34,7 +34,7 @@ typedef struct tradeoff_study {
   tradeoff_setting base;
   double limit; /* of the base's method [s]; 0 where there is none */
   double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
-  size_t row_room;
+  size_t row_capacity;
 } tradeoff_study;
 
 /** This thread's CPU time [s]. */
@@ -56,15 +56,15 @@ strut_status strut_tradeoff_run(const tradeoff_study *s, size_t point, int varia
 /** Distance of two answers at a point: that of errors. INFINITY where one is not a number. */
 double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
                                const double *reference);
-/** Whether forces of the scene can jump or have kinks. */
+/** Can forces of the scene jump or have kinks? */
 bool strut_tradeoff_has_switches(const strut_scene *scene);
 bool strut_tradeoff_is_adaptive(const strut_integrator *method);
 /**
- * Whether a method can run a variant's law of friction, and differs in this scene from all others:
- * where nothing touches or goes slack there are no events to locate.
+ * Can the method run the variant's friction law, and does it differ from all other methods in this
+ * scene? Without contacts and slack members there are no events to locate.
  */
 bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant);
-/** Whether it is wanted, too. */
+/** As strut_tradeoff_can_run, and the options do not exclude the method. */
 bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method, int variant);
 
 /** Lists the scene's own model and those that make sense beside it. STRUT_OK or STRUT_NO_MEMORY. */
@@ -83,7 +83,7 @@ typedef struct tradeoff_reference {
   double *latest, *before; /* (2, values), (points, 2, values) */
 } tradeoff_reference;
 
-/** Chooses the methods. Where there are none, the variant is not run and says why. */
+/** Chooses the methods. Without any, the variant is marked as not run, with a remark. */
 strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, tradeoff_reference *r);
 /** Refines until every floor is at most `target` or the share of the budget is spent. */
 strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
@@ -110,7 +110,7 @@ typedef struct step_series_list {
   size_t count;
 } step_series_list;
 
-/** One run at the first point, its values thrown into s->scratch. */
+/** Runs a setting at the first point, with its values in s->scratch. */
 strut_status strut_tradeoff_probe(const tradeoff_study *s, int variant, tradeoff_setting setting,
                                   tradeoff_outcome *outcome);
 /**
@@ -119,12 +119,12 @@ strut_status strut_tradeoff_probe(const tradeoff_study *s, int variant, tradeoff
  */
 strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
                                     bool base, bool *cannot);
-/** Adds one ladder for each way in which a method can refine that makes a difference here. */
+/** Adds a series for each refinement of a method that makes a difference in this scene. */
 strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
                                        const strut_integrator *method);
 /**
- * Runs all ladders side by side from coarse to fine, as far as the share of the budget goes; the
- * progress goes between two fractions.
+ * Runs all series in parallel from coarse to fine, within a share of the budget; reports progress
+ * between two fractions.
  */
 strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
                                        double from, double to);
@@ -140,7 +140,7 @@ const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
 const char *strut_tradeoff_step_text(const strut_tradeoff_row *row, char text[STRUT_TRADEOFF_TEXT]);
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
-/** One sentence for each level of error, and one for each other model. Call in the C locale. */
+/** Adds a sentence per error level and per variant. Call in the C locale. */
 void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *result);
 
 #endif

@@ -57,7 +57,7 @@ static const char *refined(const strut_tradeoff_row *row, char text[STRUT_TRADEO
   if (isfinite(row->refine) && row->refine > 0)
     snprintf(text, STRUT_TRADEOFF_TEXT, ", steps divided by %.3g after touchdowns", row->refine);
   else if (isfinite(row->refine))
-    snprintf(text, STRUT_TRADEOFF_TEXT, ", steps refined after touchdowns as the scene suggests");
+    snprintf(text, STRUT_TRADEOFF_TEXT, ", steps refined after touchdowns as the scene requests");
   return text;
 }
 
@@ -67,20 +67,20 @@ static void advise_level(strut_buffer *text, const strut_tradeoff *r, double lev
   int best = strut_tradeoff_best(r, 0, level);
   strut_buffer_add(text, "  %5s: ", strut_tradeoff_percent_text(level, a));
   if (best < 0) {
-    strut_buffer_add(text, "none of these keeps it\n");
+    strut_buffer_add(text, "no setting achieves it\n");
     return;
   }
   const strut_tradeoff_row *row = &r->rows[best], *base = &r->rows[r->base];
-  strut_buffer_add(text, "%s, %s%s%s: %.2g of the cost of %s, %s", row->method->name,
+  strut_buffer_add(text, "%s, %s%s%s: %.2g times the cost of %s, %s", row->method->name,
                    isfinite(row->tolerance) ? "tolerance " : "", strut_tradeoff_step_text(row, a),
                    refined(row, b), row->evaluations, base->method->name,
                    strut_tradeoff_step_text(base, c));
-  if (isfinite(row->cpu)) strut_buffer_add(text, " (%.2g of its CPU time)", row->cpu);
+  if (isfinite(row->cpu)) strut_buffer_add(text, " (CPU time %.2g times)", row->cpu);
   strut_buffer_add(text, "; error at most %s\n",
                    strut_tradeoff_percent_text(strut_tradeoff_promise(r, best), d));
 }
 
-/* Whether a variant reaches some level cheaper than the scene's own model does, and which. */
+/* The row of a variant that reaches some error level cheaper than the unchanged model, or -1. */
 static int find_saving(const strut_tradeoff *r, int variant, double *level) {
   for (int i = STRUT_TRADEOFF_LEVELS; i-- > 0;) {
     int own = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
@@ -106,28 +106,29 @@ static void advise_model(strut_buffer *text, const strut_tradeoff *r, int varian
                    strut_tradeoff_percent_text(change, a));
   if (row >= 0) {
     int own = strut_tradeoff_best(r, 0, level);
-    strut_buffer_add(text, "; a bargain for %s: %s, %s costs %.2g, ",
+    strut_buffer_add(text, "; pays off at %s: %s, %s costs %.2g, ",
                      strut_tradeoff_percent_text(level, a), r->rows[row].method->name,
                      strut_tradeoff_step_text(&r->rows[row], b), r->rows[row].evaluations);
     if (own >= 0)
-      strut_buffer_add(text, "the scene's own model %.2g\n", r->rows[own].evaluations);
+      strut_buffer_add(text, "the unchanged model %.2g\n", r->rows[own].evaluations);
     else
-      strut_buffer_add(text, "the scene's own model does not keep it here\n");
+      strut_buffer_add(text, "the unchanged model does not achieve it\n");
   } else if (change > strut_tradeoff_level(0)) {
-    strut_buffer_add(text, ": not a bargain in this scene\n");
+    strut_buffer_add(text, "; does not pay off in this scene\n");
   } else {
-    strut_buffer_add(text, " (floor %s), and is no cheaper: not a bargain in this scene\n",
+    strut_buffer_add(text, " (floor %s), and is no cheaper; does not pay off in this scene\n",
                      strut_tradeoff_percent_text(f->floor_spread.worst, c));
   }
 }
 
 void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *r) {
-  strut_buffer_add(text,
-                   "Advice: the cheapest that keep an error, there and at all finer "
-                   "settings that were run\n");
+  strut_buffer_add(
+      text,
+      "Recommendations: the cheapest setting for an error that it and all finer settings "
+      "keep\n");
   for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) advise_level(text, r, strut_tradeoff_level(i));
   if (r->variant_count > 1)
-    strut_buffer_add(text, "\nOther models, converged, against the scene's own\n");
+    strut_buffer_add(text, "\nConverged variants of the model, relative to the unchanged one\n");
   for (size_t i = 1; i < r->variant_count; i++) advise_model(text, r, (int)i);
 }
 
@@ -136,20 +137,20 @@ void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *r) {
 static void add_head(strut_buffer *table, const strut_tradeoff *r) {
   const strut_tradeoff_row *base = &r->rows[r->base];
   char a[STRUT_TRADEOFF_TEXT];
-  strut_buffer_add(table, "%s%swhat the %s costs", r->name, *r->name ? ": " : "",
+  strut_buffer_add(table, "%s%serror against cost of the %s", r->name, *r->name ? ": " : "",
                    strut_tradeoff_measure_text(r->measure));
   if (r->periods > 0)
     strut_buffer_add(table, " in %.6g periods", r->periods);
   else
     strut_buffer_add(table, " in %s", strut_quantity_of(r->duration, 4, "s").text);
   if (r->point_count > 1) strut_buffer_add(table, ", %zu operating points", r->point_count);
-  strut_buffer_add(table, "\ncost 1: %s, %s: %.0f evaluations of the forces", base->method->name,
+  strut_buffer_add(table, "\ncost 1: %s, %s: %.0f force evaluations", base->method->name,
                    strut_tradeoff_step_text(base, a), (double)r->base_evaluations);
   if (isfinite(r->base_seconds))
     strut_buffer_add(table, ", %s of CPU time", strut_quantity_of(r->base_seconds, 3, "s").text);
   strut_buffer_add(table, "%s\n", r->point_count > 1 ? " at the first point" : "");
   if (r->measure == STRUT_TRADEOFF_VELOCITY)
-    strut_buffer_add(table, "errors relative to the velocity, or to %s where it is smaller\n",
+    strut_buffer_add(table, "errors relative to the velocity, or to %s if larger\n",
                      strut_quantity_of(r->scale, 3, "m/s").text);
   if (r->measure == STRUT_TRADEOFF_POSITION)
     strut_buffer_add(table, "errors relative to the size of the structure\n");
@@ -159,13 +160,13 @@ static void add_variant(strut_buffer *table, const strut_tradeoff *r, int varian
   const strut_model_variant *f = &r->variants[variant];
   char a[STRUT_TRADEOFF_TEXT];
   if (!f->run) return;
-  strut_buffer_add(table, "\n%s%s\n", f->name, variant ? ", the best of its settings" : "");
+  strut_buffer_add(table, "\n%s%s\n", f->name, variant ? ", Pareto-optimal settings only" : "");
   if (f->remark[0]) strut_buffer_add(table, "  %s\n", f->remark);
   strut_buffer_add(table, "  reference: %s", f->reference[0]);
   if (f->reference[1][0])
-    strut_buffer_add(table, " and %s; apart by %s", f->reference[1],
+    strut_buffer_add(table, " and %s, which differ by %s", f->reference[1],
                      strut_tradeoff_percent_text(f->floor_spread.worst, a));
-  if (r->point_count > 1) strut_buffer_add(table, " at worst, settings of the first point");
+  if (r->point_count > 1) strut_buffer_add(table, " at worst; settings of the first point");
   strut_buffer_add(table, "\n  %-26s %9s %9s %8s %9s", "method", "step", "cost", "CPU",
                    r->point_count > 1 ? "median" : "error");
   if (r->point_count > 1) strut_buffer_add(table, " %9s %9s", "90 %", "worst");
@@ -200,10 +201,9 @@ char *strut_tradeoff_table(const strut_tradeoff *r) {
       if (shown) add_row(&table, r, row);
     }
   }
-  strut_buffer_add(&table, "  (* on the front of the best, = what costs are relative to)\n");
+  strut_buffer_add(&table, "  (* Pareto-optimal, = the reference of costs)\n");
   if (r->left_out)
-    strut_buffer_add(&table, "  %zu finer settings left out: the budget did not suffice\n",
-                     r->left_out);
+    strut_buffer_add(&table, "  %zu finer settings skipped: budget exhausted\n", r->left_out);
   strut_buffer_add(&table, "\n");
   strut_tradeoff_add_advice(&table, r);
   strut_c_locale_leave(locale);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One run: the scene changed to a setting, what it gave, and the CPU time of its steps. */
+/* Runs of a setting, their costs, and the reference solutions. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +27,7 @@ bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
 
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
   strut_experiment e = s->scenes[point]->experiment;
-  e.quantity_count = 0; /* velocity and positions are compared, and what they cost */
+  e.quantity_count = 0; /* only velocity and positions are compared */
   double most = s->options->periods > 0 ? s->options->periods : USUAL_PERIODS;
   e.accuracy = 0;
   e.steady = (strut_steady){.wanted = false};
@@ -55,7 +55,7 @@ double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double ste
   return unit / ceil(unit / step * (1 - 1e-9));
 }
 
-/* A sink that only looks at the clock, between preparing a run and its end. */
+/* A sink that measures the CPU time of the stepping alone. */
 static strut_status begin_clock(void *context, const strut_record_layout *layout,
                                 strut_error *error) {
   (void)layout, (void)error;
@@ -93,14 +93,14 @@ double strut_tradeoff_longest_step(const strut_scene *scene) {
 }
 
 /*
- * The largest step worth trying. Where nothing vibrates, as where rigid bars swing under gravity, the
- * limit of stability may be far longer than the motion lasts: then a part of that counts.
+ * The largest step worth trying. Where nothing vibrates, as for rigid bars swinging under gravity, the
+ * stability limit may exceed the duration: then a part of the duration counts.
  */
 static double useful_limit(const strut_scene *scene, double limit) {
   return isfinite(limit) ? fmin(limit, strut_tradeoff_longest_step(scene)) : limit;
 }
 
-static bool hopeless(strut_status status) {
+static bool is_permanent_failure(strut_status status) {
   return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
 }
 
@@ -117,7 +117,7 @@ static strut_status simulate(const tradeoff_study *s, const strut_scene *scene, 
   if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, s->error);
   outcome->evaluations = summary.force_evaluations;
   outcome->step_limit = useful_limit(scene, summary.step_limit);
-  outcome->cannot = hopeless(status);
+  outcome->cannot = is_permanent_failure(status);
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
   outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;
   if (status == STRUT_OK) take_values(s, &summary, value);
@@ -169,7 +169,7 @@ double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const doub
 enum { MOST_LEVELS = 14, MOST_IDLE = 3 };
 static const double FIRST_TOLERANCE = 1e-5;
 
-/* How promising a method is. */
+/* Rank of a method as a reference. */
 static int merit(const tradeoff_study *s, const strut_integrator *method) {
   int merit = method->order;
   if (method->events && strut_tradeoff_has_switches(s->scenes[0])) merit += 10;
@@ -178,7 +178,8 @@ static int merit(const tradeoff_study *s, const strut_integrator *method) {
 
 static tradeoff_setting setting_of(const tradeoff_study *s, const tradeoff_reference *r, int which,
                                    int level) {
-  if (which == 1 && r->method[0] == r->method[1]) level++; /* alone, it confirms itself */
+  if (which == 1 && r->method[0] == r->method[1])
+    level++; /* a single method is confirmed by its own next level */
   tradeoff_setting setting = {r->method[which], r->limit * pow(0.5, level + 1), (double)NAN, 1};
   if (strut_tradeoff_is_adaptive(r->method[which])) {
     setting.step = fmax(10 * r->limit, s->limit);
@@ -247,7 +248,8 @@ strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, trad
     r->method[1] = r->method[0];
     size_t used = strlen(f->remark);
     snprintf(f->remark + used, sizeof f->remark - used,
-             "%sonly one method can run it: no other confirms its answer", used ? "; " : "");
+             "%sonly one method can run it: no second method confirms the answer",
+             used ? "; " : "");
   }
   return status;
 }
@@ -274,7 +276,7 @@ static double estimate_error(const tradeoff_study *s, const tradeoff_reference *
   return apart;
 }
 
-/* One level more at one point. */
+/* Refines the reference of one point by one level. */
 static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_t p) {
   strut_tradeoff *result = s->result;
   strut_model_variant *f = &result->variants[r->variant];
@@ -319,7 +321,7 @@ strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_referen
     }
   }
   for (size_t p = 0; p < result->point_count; p++)
-    if (!isfinite(f->floor[p])) mark_not_run(f, "no two methods give an answer");
+    if (!isfinite(f->floor[p])) mark_not_run(f, "no two methods complete the run");
   return STRUT_OK;
 }
 
@@ -328,7 +330,7 @@ strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_referen
 enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64, LOOKED_AT = 5 };
 static const double SHORT = 0.05; /* a run that is repeated for its CPU time [s] */
 static const double BELOW = 0.95, IN_DECADE = 5;
-/* Steps that nothing limits begin at so many times the explicit limit, or the base's step. */
+/* Series without a stability limit start at this multiple of the explicit limit, or of the base's step. */
 static const double FREE = 100, FREE_OF_BASE = 10;
 static const double above[ABOVE] = {2.5, 1.5, 1.1};
 
@@ -349,13 +351,13 @@ static strut_status out_of_memory(tradeoff_study *s) {
 static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
                                    tradeoff_setting setting) {
   strut_tradeoff *r = s->result;
-  if (r->row_count == s->row_room) {
-    size_t room = s->row_room ? 2 * s->row_room : 64;
-    strut_tradeoff_row *rows = strut_arena_allocate(&r->arena, room, sizeof *rows);
+  if (r->row_count == s->row_capacity) {
+    size_t capacity = s->row_capacity ? 2 * s->row_capacity : 64;
+    strut_tradeoff_row *rows = strut_arena_allocate(&r->arena, capacity, sizeof *rows);
     if (!rows) return NULL;
     for (size_t i = 0; i < r->row_count; i++) rows[i] = r->rows[i];
     r->rows = rows;
-    s->row_room = room;
+    s->row_capacity = capacity;
   }
   strut_tradeoff_row *row = &r->rows[r->row_count];
   *row = (strut_tradeoff_row){.variant = from->variant,
@@ -380,7 +382,7 @@ typedef struct timing {
   size_t count;
 } timing;
 
-/* The base's own time again, unless it is a long run that was timed a moment ago. */
+/* Times the base again, unless it is a long run that was timed a moment ago. */
 static strut_status time_base(tradeoff_study *s, size_t p) {
   tradeoff_outcome base;
   double now = strut_tradeoff_cpu_clock(), is_known = s->base_seconds[p];
@@ -459,9 +461,9 @@ strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeo
   return STRUT_OK;
 }
 
-/* ---- step_series_list ---- */
+/* ---- series of steps ---- */
 
-/* The k-th setting of a ladder, the coarsest first. False after the last. */
+/* The k-th setting of a series, the coarsest first. False after the last. */
 static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
                        tradeoff_setting *setting) {
   bool adaptive = strut_tradeoff_is_adaptive(l->first.method);
@@ -493,7 +495,7 @@ static step_series *add_series(tradeoff_study *s, step_series_list *all, int var
   return l;
 }
 
-/* Whether two ways to refine differ at one of the first points: not everywhere is there a touchdown. */
+/* Do two refinements differ at one of the first points? They do not without touchdowns. */
 static strut_status differ(const tradeoff_study *s, int variant, tradeoff_setting a,
                            tradeoff_setting b, bool *different) {
   tradeoff_outcome one = {0}, other = {0};
@@ -509,7 +511,7 @@ static strut_status differ(const tradeoff_study *s, int variant, tradeoff_settin
   return status;
 }
 
-/* Further ladders of a method with events, `first` being that without refinement. */
+/* Adds series with refined steps of an event method; `first` is the one without refinement. */
 static strut_status add_refined(tradeoff_study *s, step_series_list *all, int variant,
                                 tradeoff_setting first, bool limited) {
   static const double ways[] = {(double)NAN, 0, 8};
@@ -530,7 +532,6 @@ static strut_status add_refined(tradeoff_study *s, step_series_list *all, int va
   return status;
 }
 
-/* Ladders of one method: one for each way to refine that makes a difference in this scene. */
 strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
                                        const strut_integrator *method) {
   tradeoff_outcome outcome;
@@ -550,7 +551,7 @@ strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all,
   return method->events && !adaptive ? add_refined(s, all, variant, first, limited) : status;
 }
 
-/* Whether a setting has been run: few steps in a period leave few choices. */
+/* Was this setting run already? With few steps per period several settings may coincide. */
 static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeoff_setting *setting,
                      double step) {
   for (size_t i = 0; i < r->row_count; i++) {
@@ -561,7 +562,6 @@ static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeo
   return false;
 }
 
-/* From coarse to fine, all step_series_list side by side, as far as the share of the budget goes. */
 strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
                                        double from, double to) {
   int most = step_count(s) + ABOVE;
