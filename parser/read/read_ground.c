@@ -4,83 +4,72 @@
 
 #include "parser/read/reader.h"
 
-/* Friction of one contact while layers of keys are laid over each other. */
+/* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
 typedef struct friction_layers {
   strut_friction friction;
-  bool any, law, given[STRUT_FRICTION_PARAMETER_COUNT]; /* given so far */
-  bool broken;
+  unsigned given;         /* one bit for each key that some layer gave */
+  bool any, broken;       /* there is a layer; one could not be read */
   const strut_tree *last; /* the mapping of the top layer, */
-  strut_owner owner;      /* and whose it is */
+  strut_owner owner;      /* and what messages call it */
 } friction_layers;
 
-static bool is_coefficient(int parameter) {
-  return parameter == STRUT_FRICTION_PARAMETER_MU_STATIC ||
-         parameter == STRUT_FRICTION_PARAMETER_MU_KINETIC;
+static unsigned key_bit(int key) {
+  return 1u << (key - strut_section_first(STRUT_SECTION_FRICTION));
 }
 
-static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owner) {
-  static const int keys[] = {
-#define STRUT_FRICTION_ROW(NAME, ...) STRUT_KEY_FRICTION_##NAME,
-      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
-#undef STRUT_FRICTION_ROW
-  };
-  const strut_slot *both = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fields,
+                      strut_owner owner) {
   f->any = true;
   f->last = fields->map;
   f->owner = owner;
   if (fields->broken) f->broken = true;
-  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-    const strut_slot *slot = strut_slot_of(fields, keys[p]);
-    if (both->state == STRUT_GIVEN && is_coefficient(p)) slot = both;
-    if (slot->state != STRUT_GIVEN) continue;
-    *strut_friction_parameter(&f->friction, p) = slot->number[0];
-    f->given[p] = true;
-  }
-  const strut_slot *law = strut_slot_of(fields, STRUT_KEY_FRICTION_LAW);
-  if (law->state == STRUT_GIVEN) {
-    f->friction.law = (strut_friction_law)law->word;
-    f->law = true;
-  }
+  strut_store_fields(reader, fields, &reader->scene->arena, &f->friction, sizeof f->friction);
+  for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
+    if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
+  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  if (mu->state != STRUT_GIVEN) return;
+  f->friction.mu_static = f->friction.mu_kinetic = mu->number[0];
+  f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
 }
 
-static void report_missing(strut_reader *reader, const friction_layers *f, const char *key,
-                           bool coefficient) {
+/* Reports a key that the law needs and no layer gives, at the top layer. */
+static void report_lack(strut_reader *reader, const friction_layers *f, int key) {
   char expected[200];
-  strut_report_error(
-      reader, f->last->place, "%s lacks '%s', expected %s", strut_owner_text(reader, f->owner), key,
-      coefficient ? "a number such as 0.5"
-                  : strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
+  bool speed = strut_key_at(key)->measure == STRUT_MEASURE_VELOCITY;
+  strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
+                     strut_owner_text(reader, f->owner), strut_key_at(key)->name,
+                     speed ? strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected)
+                           : "a number such as 0.5");
 }
 
-/* Are all numbers given that the friction law needs? Reports at the top layer what is missing, once. */
-static bool finish_friction(strut_reader *reader, friction_layers *f, const strut_tree **said) {
+/* Is what the friction law needs complete? What is missing is reported once for each top layer. */
+static bool complete_friction(strut_reader *reader, friction_layers *f,
+                              const strut_tree **reported) {
   if (!f->any || f->broken) return !f->broken;
-  if (!f->law) f->friction.law = STRUT_FRICTION_KARNOPP;
-  bool complete = true, none = true;
+  if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
+  bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
+  bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  bool complete = true, reported_mu = false;
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-    complete = complete && (f->given[p] || !strut_friction_needs(f->friction.law, p));
-    none = none && !(f->given[p] && is_coefficient(p));
+    int key = strut_key_find(STRUT_SECTION_FRICTION, strut_friction_key(p));
+    if (!strut_friction_needs(f->friction.law, p) || (f->given & key_bit(key))) continue;
+    complete = false;
+    bool both = !statics && !kinetics &&
+                (key == STRUT_KEY_FRICTION_MU_STATIC || key == STRUT_KEY_FRICTION_MU_KINETIC);
+    if (*reported != f->last && !(both && reported_mu))
+      report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : key);
+    reported_mu = reported_mu || both;
   }
-  if (complete) return true;
-  if (*said == f->last) return false;
-  *said = f->last;
-  bool coefficients = false; /* one of them reported */
-  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-    if (f->given[p] || !strut_friction_needs(f->friction.law, p)) continue;
-    if (is_coefficient(p) && coefficients) continue;
-    coefficients = coefficients || is_coefficient(p);
-    report_missing(reader, f, is_coefficient(p) && none ? "mu" : strut_friction_key(p),
-                   is_coefficient(p));
-  }
-  return false;
+  if (!complete) *reported = f->last;
+  return complete;
 }
 
-/* What the contacts of the ground have in common. */
+/* What all contacts of the ground start from. */
 typedef struct ground_defaults {
-  double stiffness, damping, dissipation;
+  strut_contact contact;
   friction_layers friction;
   bool broken;
-  const strut_tree *said;
+  const strut_tree *reported; /* the layer of friction whose lacks were reported last */
 } ground_defaults;
 
 /* Lays the friction of the contact's groups, then its own, over the ground's. */
@@ -93,13 +82,13 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
   for (size_t g = 0; g < count; g++)
     for (size_t i = 0; i < groups[g]->count; i++)
       if (groups[g]->items[i].nested)
-        add_layer(layers, groups[g]->items[i].nested,
+        add_layer(reader, layers, groups[g]->items[i].nested,
                   (strut_owner){"the friction of group", groups[g]->name});
   if (own->state != STRUT_GIVEN || own->from) return;
   strut_fields nested;
   strut_owner mine = {"the friction of contact", owner.name};
-  strut_read_fields(reader, STRUT_ROOM_FRICTION, own->value, mine, &nested);
-  add_layer(layers, &nested, mine);
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, own->value, mine, &nested);
+  add_layer(reader, layers, &nested, mine);
 }
 
 static void read_contact(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
@@ -107,21 +96,15 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   friction_layers layers = defaults->friction;
   strut_owner owner = {"contact", reader->scene->nodes[contact->node].name};
   bool fine = !defaults->broken;
-  contact->stiffness = defaults->stiffness;
-  contact->damping = defaults->damping;
-  contact->dissipation = defaults->dissipation;
   if (key) {
     strut_fields fields;
-    strut_read_fields(reader, STRUT_ROOM_CONTACT, key->next, owner, &fields);
+    strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
-    contact->stiffness = strut_number_or(&fields, STRUT_KEY_CONTACT_STIFFNESS, defaults->stiffness);
-    contact->damping = strut_number_or(&fields, STRUT_KEY_CONTACT_DAMPING, defaults->damping);
-    contact->dissipation =
-        strut_number_or(&fields, STRUT_KEY_CONTACT_DISSIPATION, defaults->dissipation);
+    strut_store_fields(reader, &fields, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
     if (fields.broken) fine = false;
   }
-  if (!finish_friction(reader, &layers, &defaults->said)) fine = false;
+  if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
   contact->friction = layers.friction;
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
@@ -142,7 +125,7 @@ static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' stands twice in 'nodes' of the ground",
+      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of the ground",
                          item->text);
       fine = false;
     } else {
@@ -188,7 +171,7 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
   for (size_t i = 0; i < count; i++) {
     if (!touches[i]) continue;
     size_t c = scene->contact_count++;
-    scene->contacts[c] = strut_contact_default();
+    scene->contacts[c] = defaults->contact;
     scene->contacts[c].node = (int32_t)i;
     read_contact(reader, entry[i], defaults, &scene->contacts[c], &reader->contact_source[c]);
   }
@@ -197,28 +180,20 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
 void strut_read_ground(strut_reader *reader) {
   strut_fields *fields = &reader->ground;
   strut_owner owner = {"the ground", NULL};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
     return;
   strut_require(reader, fields, owner,
                 strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place);
-  strut_ground *ground = &reader->scene->ground;
-  ground->present = true;
-  ground->height = strut_number_or(fields, STRUT_KEY_GROUND_HEIGHT, 0.0);
-  ground->slope = strut_number_or(fields, STRUT_KEY_GROUND_SLOPE, 0.0);
-  ground->belt_speed = strut_number_or(fields, STRUT_KEY_GROUND_BELT_SPEED, 0.0);
-  const strut_slot *law = strut_slot_of(fields, STRUT_KEY_GROUND_DAMPING_LAW);
-  if (law->state == STRUT_GIVEN) ground->damping_law = (strut_ground_damping)law->word;
-  ground_defaults defaults = {
-      .stiffness = strut_number_or(fields, STRUT_KEY_GROUND_STIFFNESS, 1.0),
-      .damping = strut_number_or(fields, STRUT_KEY_GROUND_DAMPING, 0.0),
-      .dissipation = strut_number_or(fields, STRUT_KEY_GROUND_DISSIPATION, 0.0),
-      .broken = fields->broken};
+  strut_ground_section section = {.ground = {.present = true}, .contact = strut_contact_default()};
+  strut_store_fields(reader, fields, &reader->scene->arena, &section, sizeof section);
+  reader->scene->ground = section.ground;
+  ground_defaults defaults = {.contact = section.contact, .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
   if (friction->state == STRUT_GIVEN) {
     strut_fields nested;
     strut_owner mine = {"the friction of the ground", NULL};
-    strut_read_fields(reader, STRUT_ROOM_FRICTION, friction->value, mine, &nested);
-    add_layer(&defaults.friction, &nested, mine);
+    strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
+    add_layer(reader, &defaults.friction, &nested, mine);
   }
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN)
     read_contacts(reader, &defaults);

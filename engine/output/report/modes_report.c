@@ -69,17 +69,17 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
   for (int32_t i = 0; i < modes->closed_count; i++)
     strut_buffer_add(table, "%s%s", i ? ", " : ", on ", name_of(model, modes->closed[i]));
   strut_buffer_add(
-      table, "\n  %d coordinates, %s; the stiffnesses span %.2g\n", (int)modes->coordinates,
+      table, "\n  %d coordinates, %s; condition number %.2g\n", (int)modes->coordinates,
       modes->dense ? "all modes computed" : "the lowest modes computed", modes->condition);
   if (!modes->at_rest)
     strut_buffer_add(table,
-                     "  this shape is no equilibrium: it will not stay to show these modes\n");
+                     "  this shape is not an equilibrium: the structure moves away from it\n");
   char warning[300];
   if (strut_settle_warning(&modes->settle, warning, sizeof warning))
     strut_buffer_add(table, "  %s\n", warning);
   if (!modes->damped_exactly)
     strut_buffer_add(table,
-                     "  damping by the quotient of each mode, coupling between modes left out\n");
+                     "  damping ratios by modal quotient, coupling between modes neglected\n");
 }
 
 static void add_row(strut_buffer *table, size_t i, const strut_mode *mode) {

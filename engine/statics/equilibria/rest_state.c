@@ -220,19 +220,6 @@ static strut_status unknown(const strut_scene *scene, const char *name, strut_er
                     names);
 }
 
-/* Names that only a search gives: unnamed-3, or III-2 where a configuration has several. */
-static bool is_listed(const strut_scene *scene, const char *name) {
-  const char *dash = strrchr(name, '-');
-  if (!dash || dash[1] == 0 || dash[1 + strspn(dash + 1, "0123456789")] != 0) return false;
-  size_t stem = (size_t)(dash - name);
-  if (stem == strlen("unnamed") && strncmp(name, "unnamed", stem) == 0) return true;
-  for (size_t i = 0; i < scene->configuration_count; i++) {
-    const char *own = scene->configurations[i].name;
-    if (strlen(own) == stem && strncmp(own, name, stem) == 0) return true;
-  }
-  return false;
-}
-
 /* The equilibrium of that name in the list that the scene's own search makes. */
 static strut_status from_list(const strut_model *model, const char *name, strut_arena *arena,
                               strut_rest_state *stand, strut_error *error) {
@@ -297,7 +284,7 @@ strut_status strut_rest_state_find(const strut_model *model, const char *name, s
   if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
   if (!c && !start && !drawn) {
-    if (!is_listed(scene, name)) return unknown(scene, name, error);
+    if (!strut_is_listed_name(scene, name)) return unknown(scene, name, error);
     strut_status status = from_list(model, name, arena, stand, error);
     return status ? status : judge(model, arena, stand, error);
   }
