@@ -33,10 +33,10 @@ static bool end(const strut_sweep_worker *w, strut_sweep_job *job, strut_status 
     snprintf(room->message, sizeof room->message, "%.*s", (int)sizeof room->message - 1,
              job->error.message);
   }
-  room->row = (strut_slot){.status = status,
-                           .numbers = room->numbers,
-                           .words = (const char(*)[STRUT_SLOT_WORD])room->words,
-                           .message = room->message};
+  room->row = (strut_result_slot){.status = status,
+                                  .numbers = room->numbers,
+                                  .words = (const char(*)[STRUT_SLOT_WORD])room->words,
+                                  .message = room->message};
   return false;
 }
 
