@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every header compiles alone: as C17 with all warnings, twice in one file (its guard holds), and,
-# if strut.h leads to it, as C++17 too. First proves on made-up headers that it notices.
+# if strut.h leads to it, as C++17 too. All of them compile in one file: no name means two things.
+# First proves on made-up headers that it notices.
 #
 #   sh tests/headers.sh ROOT CC CXX [FOLDER...]
 #
@@ -22,6 +23,13 @@ compiles() {
   printf '#include "%s"\n#include "%s"\nextern int after;\n' "$2" "$2" |
     $cc -std=c17 -D_POSIX_C_SOURCE=200809L $warnings -Wstrict-prototypes -Wvla -I "$1" \
       $others -fsyntax-only -x c -
+}
+# compile_together ROOT HEADER...: says which names clash.
+compile_together() {
+  folder=$1
+  shift
+  printf '#include "%s"\n' "$@" | $cc -std=c17 -D_POSIX_C_SOURCE=200809L -Werror -Wno-psabi \
+    -I "$folder" $others -fsyntax-only -x c -
 }
 # strut.h lends C++ the word "restrict" for the headers below it.
 compiles_as_cxx() {
@@ -59,6 +67,9 @@ compiles "$scratch" a.h || fail "self-test: a good header is refused"
 ! compiles "$scratch" b.h 2>/dev/null || fail "self-test: a header that needs another passes"
 ! compiles "$scratch" c.h 2>/dev/null || fail "self-test: a header without a guard passes"
 compiles "$scratch" d.h || fail "self-test: a C header is refused"
+printf '#ifndef E\n#define E\ntypedef double number;\n#endif\n' >"$scratch/e.h"
+compile_together "$scratch" a.h d.h || fail "self-test: headers without a clash are refused"
+! compile_together "$scratch" a.h e.h 2>/dev/null || fail "self-test: a clash of names passes"
 if [ -n "$cxx" ]; then
   ! compiles_as_cxx "$scratch" d.h 2>/dev/null || fail "self-test: C++'s words pass as names"
 fi
@@ -66,6 +77,7 @@ fi
 
 headers=$(cd "$root" && find engine parser -name '*.h' | sort)
 public=$(reachable "$root" parser/strut.h)
+compile_together "$root" $headers || fail "two headers give one name two meanings"
 for header in $headers; do
   compiles "$root" "$header" || fail "$header does not compile alone"
 done

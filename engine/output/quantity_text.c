@@ -40,8 +40,8 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
   return text;
 }
 
-strut_quantity strut_quantity_of(double value, int digits, const char *unit) {
-  strut_quantity quantity;
+strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit) {
+  strut_rounded_quantity quantity;
   strut_quantity_text(value, digits, unit, quantity.text);
   return quantity;
 }
@@ -52,9 +52,9 @@ static bool takes_prefix(const char *unit) {
   return word > 0 && unit[word] != '^' && strncmp(unit, "kg", 2) != 0;
 }
 
-strut_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
+strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
   if (!isfinite(value) || takes_prefix(unit)) return strut_quantity_of(value, digits, unit);
-  strut_quantity quantity;
+  strut_rounded_quantity quantity;
   bool none = strcmp(unit, "1") == 0;
   strut_c_locale locale = strut_c_locale_enter();
   snprintf(quantity.text, sizeof quantity.text, "%.*g%s%.40s", digits, value, none ? "" : " ",

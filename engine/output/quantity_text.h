@@ -18,11 +18,11 @@ STRUT_API const char *strut_quantity_text(double value, int digits, const char *
                                           char text[STRUT_QUANTITY_TEXT]);
 
 /** As strut_quantity_text, by value for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
-typedef struct strut_quantity {
+typedef struct strut_rounded_quantity {
   char text[STRUT_QUANTITY_TEXT];
-} strut_quantity;
-STRUT_API strut_quantity strut_quantity_of(double value, int digits, const char *unit);
+} strut_rounded_quantity;
+STRUT_API strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit);
 /** As strut_quantity_of for any unit; units that take no prefix ("1", "m^2", "kg m/s") stay unchanged. */
-STRUT_API strut_quantity strut_quantity_of_any(double value, int digits, const char *unit);
+STRUT_API strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit);
 
 #endif

@@ -33,7 +33,7 @@ static const char *text(const cJSON *from, const char *key) {
   return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(from, key));
 }
 
-static strut_quantity in(double value, const char *unit) {
+static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 

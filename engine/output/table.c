@@ -11,7 +11,7 @@
 
 enum { MOST_ROWS = 10, DIGITS = 4 };
 
-static strut_quantity in(double value, const char *unit) {
+static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 

@@ -25,7 +25,7 @@ typedef struct strut_run {
   strut_error *error;
   strut_state *state;
   void *workspace;
-  strut_measure measure;
+  strut_measurement measure;
   strut_recording recording;
   strut_step_limit_monitor guard;
   strut_stick_band band;

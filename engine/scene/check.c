@@ -12,8 +12,8 @@
 #include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
 
-void strut_candidate_equilibrium(strut_checker *checker, strut_subject subject, size_t index,
-                                 const char *key, const char *format, ...) {
+void strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
+                          const char *key, const char *format, ...) {
   strut_findings *f = checker->findings;
   if (f->count >= STRUT_FINDINGS_MOST) {
     f->unstored++;
@@ -45,14 +45,14 @@ void strut_candidate_equilibrium(strut_checker *checker, strut_subject subject, 
 bool strut_find_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
                       const char *owner, double value, strut_range range) {
   if (!isfinite(value))
-    strut_candidate_equilibrium(checker, subject, index, key, "the %s of %s is not a finite number",
-                                key, owner);
+    strut_report_finding(checker, subject, index, key, "the %s of %s is not a finite number", key,
+                         owner);
   else if (range == STRUT_NOT_NEGATIVE && value < 0.0)
-    strut_candidate_equilibrium(checker, subject, index, key,
-                                "the %s of %s must not be negative, found %g", key, owner, value);
+    strut_report_finding(checker, subject, index, key,
+                         "the %s of %s must not be negative, found %g", key, owner, value);
   else if (range == STRUT_ABOVE_ZERO && value <= 0.0)
-    strut_candidate_equilibrium(checker, subject, index, key,
-                                "the %s of %s must be above zero, found %g", key, owner, value);
+    strut_report_finding(checker, subject, index, key, "the %s of %s must be above zero, found %g",
+                         key, owner, value);
   else
     return true;
   return false;
@@ -76,14 +76,13 @@ const char *strut_called(char buffer[200], const char *kind, const char *name, s
 static void check_name(strut_checker *checker, strut_name_map *map, strut_subject subject,
                        const char *kind, const char *name, size_t index) {
   if (!name || !*name) {
-    strut_candidate_equilibrium(checker, subject, index, NULL, "%s number %zu has no name", kind,
-                                index + 1);
+    strut_report_finding(checker, subject, index, NULL, "%s number %zu has no name", kind,
+                         index + 1);
     return;
   }
   int32_t first = strut_name_map_add(map, name, (int32_t)index);
   if (first >= 0)
-    strut_candidate_equilibrium(checker, subject, index, NULL, "there are two %ss '%s'", kind,
-                                name);
+    strut_report_finding(checker, subject, index, NULL, "there are two %ss '%s'", kind, name);
   if (first == -2) checker->out_of_memory = true;
 }
 
@@ -116,26 +115,25 @@ void strut_check_names(strut_checker *checker) {
 void strut_check_nodes(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   if (!scene->node_count)
-    strut_candidate_equilibrium(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
+    strut_report_finding(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
     char owner[200];
     strut_called(owner, "node", node->name, i);
     strut_find_range(checker, STRUT_ON_NODE, i, "mass", owner, node->mass, STRUT_NOT_NEGATIVE);
     if (!isfinite(node->position[0]) || !isfinite(node->position[1]))
-      strut_candidate_equilibrium(checker, STRUT_ON_NODE, i, "position",
-                                  "the position of %s is not finite", owner);
+      strut_report_finding(checker, STRUT_ON_NODE, i, "position",
+                           "the position of %s is not finite", owner);
     else if (!isfinite(node->start[0]) || !isfinite(node->start[1]))
-      strut_candidate_equilibrium(checker, STRUT_ON_NODE, i, "start",
-                                  "the start position of %s is not finite", owner);
+      strut_report_finding(checker, STRUT_ON_NODE, i, "start",
+                           "the start position of %s is not finite", owner);
     for (size_t c = 0; c < 2; c++) {
       if (!isfinite(node->velocity[c]))
-        strut_candidate_equilibrium(checker, STRUT_ON_NODE, i, "velocity",
-                                    "the velocity of %s is not finite", owner);
+        strut_report_finding(checker, STRUT_ON_NODE, i, "velocity",
+                             "the velocity of %s is not finite", owner);
       else if (node->fixed[c] && node->velocity[c] != 0.0)
-        strut_candidate_equilibrium(checker, STRUT_ON_NODE, i, "velocity",
-                                    "%s is fixed in %c and cannot have a velocity there", owner,
-                                    "xy"[c]);
+        strut_report_finding(checker, STRUT_ON_NODE, i, "velocity",
+                             "%s is fixed in %c and cannot have a velocity there", owner, "xy"[c]);
     }
   }
 }
@@ -151,14 +149,13 @@ static bool check_ends(strut_checker *checker, size_t index, const char *owner) 
   const strut_member *m = &checker->scene->members[index];
   for (size_t e = 0; e < 2; e++)
     if (m->node[e] < 0 || (size_t)m->node[e] >= checker->scene->node_count) {
-      strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, "nodes",
-                                  "%s joins a node that does not exist", owner);
+      strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                           "%s joins a node that does not exist", owner);
       return false;
     }
   if (m->node[0] != m->node[1]) return true;
-  strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, "nodes",
-                              "%s joins node '%s' to itself", owner,
-                              checker->scene->nodes[m->node[0]].name);
+  strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins node '%s' to itself",
+                       owner, checker->scene->nodes[m->node[0]].name);
   return false;
 }
 
@@ -178,8 +175,8 @@ static bool check_numbers(strut_checker *checker, size_t index, const char *owne
                              numbers[i].value, STRUT_NOT_NEGATIVE);
   const char *key = rest_key(m->rest_kind);
   if (!key || (unsigned)m->kind > STRUT_CABLE) {
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind",
-                                owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind",
+                         owner);
     return false;
   }
   bool length = m->rest_kind == STRUT_REST_LENGTH || m->rest_kind == STRUT_REST_RATIO;
@@ -195,19 +192,19 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   bool force = m->rest_kind == STRUT_REST_PRETENSION || m->rest_kind == STRUT_REST_FORCE_DENSITY;
   bool elastic = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
-                                "%s has both a stiffness and an axial_stiffness; give one", owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
+                         "%s has both a stiffness and an axial_stiffness; give one", owner);
   else if (!elastic && m->damping == 0.0)
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, NULL,
-                                "%s has neither stiffness nor damping, so it does nothing", owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
+                         "%s has neither stiffness nor damping, so it does nothing", owner);
   else if (force && !elastic && m->rest_value != 0.0)
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, key,
-                                "the %s of %s needs a stiffness", key, owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key, "the %s of %s needs a stiffness",
+                         key, owner);
   else if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, key,
-                                "the %s of %s must not be negative, since a cable cannot push; "
-                                "give a slack cable its rest_length",
-                                key, owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "the %s of %s must not be negative, since a cable cannot push; "
+                         "give a slack cable its rest_length",
+                         key, owner);
   else
     return true;
   return false;
@@ -225,25 +222,24 @@ static void check_shape(strut_checker *checker, size_t index, const char *owner)
   strut_rest rest;
   if (isnan(drawn) || isnan(start)) return; /* said at the node */
   if (drawn == 0.0 && !free_length)
-    strut_candidate_equilibrium(
-        checker, STRUT_ON_MEMBER, index, "nodes",
-        "nodes '%s' and '%s' are drawn in one place, so %s has no direction", a->name, b->name,
-        owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                         "nodes '%s' and '%s' are drawn in one place, so %s has no direction",
+                         a->name, b->name, owner);
   else if (start == 0.0 && !free_length)
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, "nodes",
-                                "nodes '%s' and '%s' start in one place, so %s has no direction",
-                                a->name, b->name, owner);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                         "nodes '%s' and '%s' start in one place, so %s has no direction", a->name,
+                         b->name, owner);
   else if (!strut_member_rest(scene, index, &rest) && m->axial_stiffness > 0.0)
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_MEMBER, index, key,
         "the axial_stiffness of %s needs a rest length above zero, but its %s is %g "
         "(drawn length %g m, axial_stiffness %g N)",
         owner, key, m->rest_value, drawn, m->axial_stiffness);
   else if (!strut_member_rest(scene, index, &rest))
-    strut_candidate_equilibrium(checker, STRUT_ON_MEMBER, index, key,
-                                "the %s %g of %s would need a rest length below zero "
-                                "(drawn length %g m, stiffness %g N/m)",
-                                key, m->rest_value, owner, drawn, m->stiffness);
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "the %s %g of %s would need a rest length below zero "
+                         "(drawn length %g m, stiffness %g N/m)",
+                         key, m->rest_value, owner, drawn, m->stiffness);
 }
 
 void strut_check_members(strut_checker *checker) {
@@ -280,14 +276,14 @@ void strut_check_use(strut_checker *checker) {
     strut_called(owner, "node", node->name, i);
     if (node->mass != 0.0) state[i] |= USED | HEAVY;
     if (!(state[i] & USED))
-      strut_candidate_equilibrium(checker, STRUT_ON_NODE, i, NULL,
-                                  "nothing uses %s: it has no member, no load and no mass", owner);
+      strut_report_finding(checker, STRUT_ON_NODE, i, NULL,
+                           "nothing uses %s: it has no member, no load and no mass", owner);
     else if (checker->purpose == STRUT_FOR_RUN && !(state[i] & HEAVY) &&
              !(node->fixed[0] && node->fixed[1]))
-      strut_candidate_equilibrium(checker, STRUT_ON_NODE, i, "mass",
-                                  "%s has no mass, so a run cannot move it; "
-                                  "give it or one of its members a mass, or fix it",
-                                  owner);
+      strut_report_finding(checker, STRUT_ON_NODE, i, "mass",
+                           "%s has no mass, so a run cannot move it; "
+                           "give it or one of its members a mass, or fix it",
+                           owner);
   }
   strut_release(state);
 }

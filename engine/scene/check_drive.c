@@ -12,16 +12,16 @@ static const double QUARTER_TURN = 1.57079632679489661923;
 static bool check_table(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
   if (!s->point_count) {
-    strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "table",
-                                "the table of %s has no points", owner);
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table", "the table of %s has no points",
+                         owner);
     return false;
   }
   for (size_t i = 0; i < s->point_count; i++) {
     if (!isfinite(s->time[i]) || !isfinite(s->value[i]))
-      strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "table",
-                                  "point %zu in the table of %s is not finite", i + 1, owner);
+      strut_report_finding(checker, STRUT_ON_SIGNAL, index, "table",
+                           "point %zu in the table of %s is not finite", i + 1, owner);
     else if (i && s->time[i] <= s->time[i - 1])
-      strut_candidate_equilibrium(
+      strut_report_finding(
           checker, STRUT_ON_SIGNAL, index, "table",
           "the times in the table of %s must increase, but point %zu at %g s follows %g s", owner,
           i + 1, s->time[i], s->time[i - 1]);
@@ -38,16 +38,15 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   const strut_signal *s = &checker->scene->signals[index];
   uint64_t terms = 1;
   if (!s->term_count) {
-    strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "sum",
-                                "the sum of %s has no terms", owner);
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms",
+                         owner);
     return false;
   }
   for (size_t i = 0; i < s->term_count; i++) {
     int32_t term = s->terms[i];
     if (term < 0 || (size_t)term >= index) {
-      strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "sum",
-                                  "term %zu of %s is not a signal that comes before it", i + 1,
-                                  owner);
+      strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
+                           "term %zu of %s is not a signal that comes before it", i + 1, owner);
       return false;
     }
     if (checker->wild[term]) return false; /* said there */
@@ -56,9 +55,9 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   }
   size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
   if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
-  strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "sum",
-                              "%s has more than %d terms, or sums within sums more than %d deep",
-                              owner, MOST_TERMS, DEEPEST_SUM);
+  strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
+                       "%s has more than %d terms, or sums within sums more than %d deep", owner,
+                       MOST_TERMS, DEEPEST_SUM);
   return false;
 }
 
@@ -77,11 +76,11 @@ static bool check_wave(strut_checker *checker, size_t index, const char *owner) 
       strut_find_range(checker, STRUT_ON_SIGNAL, index, "start", owner, s->start, STRUT_ANY_NUMBER);
   if (!fine) return false;
   if (s->kind == STRUT_RAMP && !isfinite(s->stop))
-    strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
   else if (!(s->stop > s->start))
-    strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, index, "stop",
-                                "the stop of %s must come after its start, found %g s after %g s",
-                                owner, s->stop, s->start);
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop",
+                         "the stop of %s must come after its start, found %g s after %g s", owner,
+                         s->stop, s->start);
   else
     return true;
   return false;
@@ -131,8 +130,7 @@ void strut_check_signals(strut_checker *checker) {
     call_signal(owner, scene, user, i);
     size[i] = depth[i] = 1;
     if ((unsigned)s->kind > STRUT_SUM) {
-      strut_candidate_equilibrium(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind",
-                                  owner);
+      strut_report_finding(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind", owner);
       checker->wild[i] = true;
       continue;
     }
@@ -148,8 +146,8 @@ void strut_check_signals(strut_checker *checker) {
 static void check_friction(strut_checker *checker, size_t index, const char *owner) {
   const strut_friction *f = &checker->scene->contacts[index].friction;
   if ((unsigned)f->law >= STRUT_FRICTION_LAW_COUNT) {
-    strut_candidate_equilibrium(checker, STRUT_ON_CONTACT, index, "law",
-                                "the friction law of %s is unknown", owner);
+    strut_report_finding(checker, STRUT_ON_CONTACT, index, "law",
+                         "the friction law of %s is unknown", owner);
     return;
   }
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
@@ -167,32 +165,30 @@ void strut_check_ground(strut_checker *checker) {
   strut_find_range(checker, STRUT_ON_GROUND, 0, "belt_speed", "the ground", g->belt_speed,
                    STRUT_ANY_NUMBER);
   if (!(fabs(g->slope) < QUARTER_TURN))
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_GROUND, 0, "slope",
         "the slope of the ground must lie between -90 deg and 90 deg, found %g deg",
         g->slope / QUARTER_TURN * 90.0);
   if ((unsigned)g->damping_law > STRUT_DAMPING_HUNT_CROSSLEY)
-    strut_candidate_equilibrium(checker, STRUT_ON_GROUND, 0, "damping_law",
-                                "the ground's damping law is unknown");
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, "damping_law",
+                         "the ground's damping law is unknown");
   if (g->present && !scene->contact_count)
-    strut_candidate_equilibrium(checker, STRUT_ON_GROUND, 0, "nodes",
-                                "no node may touch the ground");
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
   if (!g->present && scene->contact_count)
-    strut_candidate_equilibrium(checker, STRUT_ON_GROUND, 0, NULL,
-                                "there are contacts but no ground");
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are contacts but no ground");
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *c = &scene->contacts[i];
     if (c->node < 0 || (size_t)c->node >= scene->node_count) {
-      strut_candidate_equilibrium(checker, STRUT_ON_CONTACT, i, NULL,
-                                  "contact number %zu is of a node that does not exist", i + 1);
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "contact number %zu is of a node that does not exist", i + 1);
       continue;
     }
     char owner[200];
     strut_called(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
     if (i && c->node <= scene->contacts[i - 1].node)
-      strut_candidate_equilibrium(
-          checker, STRUT_ON_CONTACT, i, NULL,
-          "%s is out of order: contacts follow their nodes, one for each at most", owner);
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "%s is out of order: contacts follow their nodes, one for each at most",
+                           owner);
     strut_find_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
                      STRUT_ABOVE_ZERO);
     strut_find_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
@@ -212,28 +208,27 @@ void strut_check_drives(strut_checker *checker) {
     const strut_actuator *a = &scene->actuators[i];
     strut_called(owner, "actuator", a->name, i);
     if (!there(a->member, scene->member_count))
-      strut_candidate_equilibrium(checker, STRUT_ON_ACTUATOR, i, "member",
-                                  "%s drives a member that does not exist", owner);
+      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
+                           "%s drives a member that does not exist", owner);
     else if (scene->bar_model == STRUT_BARS_RIGID && scene->members[a->member].kind == STRUT_BAR)
-      strut_candidate_equilibrium(
+      strut_report_finding(
           checker, STRUT_ON_ACTUATOR, i, "member",
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
     if (!there(a->signal, scene->signal_count))
-      strut_candidate_equilibrium(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal",
-                                  owner);
+      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
     strut_called(owner, "load", l->name, i);
     if (!there(l->node, scene->node_count))
-      strut_candidate_equilibrium(checker, STRUT_ON_LOAD, i, "node",
-                                  "%s acts on a node that does not exist", owner);
+      strut_report_finding(checker, STRUT_ON_LOAD, i, "node",
+                           "%s acts on a node that does not exist", owner);
     if (!isfinite(l->force[0]) || !isfinite(l->force[1]))
-      strut_candidate_equilibrium(checker, STRUT_ON_LOAD, i, "force",
-                                  "the force of %s is not finite", owner);
+      strut_report_finding(checker, STRUT_ON_LOAD, i, "force", "the force of %s is not finite",
+                           owner);
     if (l->signal != -1 && !there(l->signal, scene->signal_count))
-      strut_candidate_equilibrium(checker, STRUT_ON_LOAD, i, "signal",
-                                  "%s has a signal that does not exist", owner);
+      strut_report_finding(checker, STRUT_ON_LOAD, i, "signal",
+                           "%s has a signal that does not exist", owner);
   }
 }
 
@@ -246,24 +241,23 @@ static bool check_length(strut_checker *checker) {
                         STRUT_NOT_NEGATIVE))
     return false;
   if (e->duration > 0.0 && e->periods > 0.0) {
-    strut_candidate_equilibrium(checker, STRUT_ON_RUN, 0, "periods",
-                                "the run has both a duration and a number of periods; give one");
+    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
+                         "the run has both a duration and a number of periods; give one");
     return false;
   }
   if (e->periods == 0.0) return e->duration > 0.0;
   if (!there(e->period_signal, checker->scene->signal_count)) {
-    strut_candidate_equilibrium(checker, STRUT_ON_RUN, 0, "of",
-                                "a run in periods needs a signal to count them of");
+    strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
+                         "a run in periods needs a signal to count them of");
     return false;
   }
   if (checker->wild[e->period_signal]) return false; /* said there */
   double period = strut_signal_period(checker->scene->signals, e->period_signal);
   if (period > 0.0 && isfinite(period * e->periods)) return true;
   if (period > 0.0 && isfinite(period))
-    strut_candidate_equilibrium(checker, STRUT_ON_RUN, 0, "periods",
-                                "the run is longer than any number");
+    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods", "the run is longer than any number");
   else
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_RUN, 0, "of",
         "'%s' has no period: the run can be counted in periods of a sine, a half-sine, a "
         "square, or a sum whose periods fit into its longest one",
@@ -277,21 +271,20 @@ static void check_window(strut_checker *checker, strut_subject subject, const ch
   bool periods = e->periods > 0.0;
   double whole = periods ? e->periods : e->duration;
   if (last <= whole) return;
-  strut_candidate_equilibrium(checker, subject, 0, "last", "%s the last %g %s of a run of %g %s",
-                              owner, last, periods ? "periods" : "s", whole,
-                              periods ? "periods" : "s");
+  strut_report_finding(checker, subject, 0, "last", "%s the last %g %s of a run of %g %s", owner,
+                       last, periods ? "periods" : "s", whole, periods ? "periods" : "s");
 }
 
 /* The step, and the number of steps that it leads to. */
 static void check_step(strut_checker *checker, bool length_known) {
   const strut_experiment *e = &checker->scene->experiment;
   if (!e->integrator || !*e->integrator)
-    strut_candidate_equilibrium(checker, STRUT_ON_SOLVER, 0, "integrator",
-                                "the solver names no integrator");
+    strut_report_finding(checker, STRUT_ON_SOLVER, 0, "integrator",
+                         "the solver names no integrator");
   if (e->step == 0.0) {
     if (checker->purpose == STRUT_FOR_RUN && !checker->step_told && !(e->accuracy > 0.0))
-      strut_candidate_equilibrium(checker, STRUT_ON_SOLVER, 0, "step",
-                                  "the solver has no step, expected a time such as '0.1 ms'");
+      strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
+                           "the solver has no step, expected a time such as '0.1 ms'");
     return;
   }
   if (!strut_find_range(checker, STRUT_ON_SOLVER, 0, "step", "the solver", e->step,
@@ -300,13 +293,13 @@ static void check_step(strut_checker *checker, bool length_known) {
     return;
   double duration = strut_scene_span(checker->scene).duration;
   if (e->step > duration)
-    strut_candidate_equilibrium(checker, STRUT_ON_SOLVER, 0, "step",
-                                "the step of %g s is longer than the whole run of %g s", e->step,
-                                duration);
+    strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
+                         "the step of %g s is longer than the whole run of %g s", e->step,
+                         duration);
   else if (duration / e->step > 1e15)
-    strut_candidate_equilibrium(checker, STRUT_ON_SOLVER, 0, "step",
-                                "the run of %g s would take more than 1e15 steps of %g s", duration,
-                                e->step);
+    strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
+                         "the run of %g s would take more than 1e15 steps of %g s", duration,
+                         e->step);
 }
 
 void strut_check_experiment(strut_checker *checker) {
@@ -325,27 +318,25 @@ void strut_check_experiment(strut_checker *checker) {
     strut_find_range(checker, STRUT_ON_INITIAL, 0, "evaluations", "settling", settle->evaluations,
                      STRUT_NOT_NEGATIVE);
   if (settle->wanted && !isfinite(settle->step))
-    strut_candidate_equilibrium(checker, STRUT_ON_INITIAL, 0, "step",
-                                "the step of settling is not finite");
+    strut_report_finding(checker, STRUT_ON_INITIAL, 0, "step",
+                         "the step of settling is not finite");
   if (!isfinite(scene->gravity[0]) || !isfinite(scene->gravity[1]))
-    strut_candidate_equilibrium(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
+    strut_report_finding(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
   if ((unsigned)scene->mass_model > STRUT_MASS_LUMPED)
-    strut_candidate_equilibrium(checker, STRUT_ON_SCENE, 0, "mass_model",
-                                "the mass model is unknown");
+    strut_report_finding(checker, STRUT_ON_SCENE, 0, "mass_model", "the mass model is unknown");
   if ((unsigned)scene->bar_model > STRUT_BARS_RIGID)
-    strut_candidate_equilibrium(checker, STRUT_ON_SCENE, 0, "bars", "the model of bars is unknown");
+    strut_report_finding(checker, STRUT_ON_SCENE, 0, "bars", "the model of bars is unknown");
   if (e->steady.wanted && !(e->periods > 0.0) && checker->purpose == STRUT_FOR_RUN)
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_RUN, 0, "measure",
         "steady motion is looked for from period to period: the run needs 'periods' and 'of'");
   bool length_known = check_length(checker);
   if (checker->purpose == STRUT_FOR_RUN && e->duration == 0.0 && e->periods == 0.0)
-    strut_candidate_equilibrium(checker, STRUT_ON_RUN, 0, NULL,
-                                "the run has neither a duration nor periods");
+    strut_report_finding(checker, STRUT_ON_RUN, 0, NULL,
+                         "the run has neither a duration nor periods");
   check_step(checker, length_known);
   if (e->measure_node != -1 && !there(e->measure_node, scene->node_count))
-    strut_candidate_equilibrium(checker, STRUT_ON_RUN, 0, "node",
-                                "the measured node does not exist");
+    strut_report_finding(checker, STRUT_ON_RUN, 0, "node", "the measured node does not exist");
   bool measure = strut_find_range(checker, STRUT_ON_RUN, 0, "last", "the measuring window",
                                   e->measure_last, STRUT_NOT_NEGATIVE);
   bool output = strut_find_range(checker, STRUT_ON_OUTPUT, 0, "last", "the output", e->output_last,

@@ -19,8 +19,8 @@ typedef struct strut_checker {
 } strut_checker;
 
 /** Adds a finding; remembers when memory is out. */
-void strut_candidate_equilibrium(strut_checker *checker, strut_subject subject, size_t index,
-                                 const char *key, const char *format, ...)
+void strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
+                          const char *key, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
 /** A name for messages: "member 'm1'", or "member number 3" where it has none. */

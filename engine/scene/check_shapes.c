@@ -20,15 +20,15 @@ static bool check_set(sets_check *check, const strut_node_set *set, strut_subjec
   const strut_scene *scene = checker->scene;
   check->now++;
   if (!set->count) {
-    strut_candidate_equilibrium(checker, subject, index, key, "the %s of %s have an empty list",
-                                key, owner);
+    strut_report_finding(checker, subject, index, key, "the %s of %s have an empty list", key,
+                         owner);
     return false;
   }
   for (size_t i = 0; i < set->count; i++) {
     int32_t n = set->node[i];
     if (n < 0 || (size_t)n >= scene->node_count) {
-      strut_candidate_equilibrium(checker, subject, index, key,
-                                  "the %s of %s name a node that does not exist", key, owner);
+      strut_report_finding(checker, subject, index, key,
+                           "the %s of %s name a node that does not exist", key, owner);
       return false;
     }
     char node[200];
@@ -36,10 +36,10 @@ static bool check_set(sets_check *check, const strut_node_set *set, strut_subjec
     bool twice = check->stamp[n] == check->now;
     check->stamp[n] = check->now;
     if (check->touches[n] && !twice) continue;
-    strut_candidate_equilibrium(checker, subject, index, key,
-                                twice ? "the %s of %s name %s twice"
-                                      : "the %s of %s name %s, but 'nodes' of the ground lacks it",
-                                key, owner, node);
+    strut_report_finding(checker, subject, index, key,
+                         twice ? "the %s of %s name %s twice"
+                               : "the %s of %s name %s, but 'nodes' of the ground lacks it",
+                         key, owner, node);
     return false;
   }
   return true;
@@ -48,9 +48,9 @@ static bool check_set(sets_check *check, const strut_node_set *set, strut_subjec
 static void check_sets(sets_check *check, const strut_node_set *sets, size_t count,
                        strut_subject subject, size_t index, const char *key, const char *owner) {
   if (count && !check->checker->scene->ground.present) {
-    strut_candidate_equilibrium(check->checker, subject, index, key,
-                                "the %s of %s need a ground to rest on, and the scene has none",
-                                key, owner);
+    strut_report_finding(check->checker, subject, index, key,
+                         "the %s of %s need a ground to rest on, and the scene has none", key,
+                         owner);
     return;
   }
   for (size_t i = 0; i < count; i++)
@@ -65,9 +65,9 @@ static void check_positions(strut_checker *checker, size_t index, const char *ow
     if (isfinite(c->position[i][0]) && isfinite(c->position[i][1])) continue;
     if (!isfinite(drawn[0]) || !isfinite(drawn[1])) continue; /* said at the node */
     char node[200];
-    strut_candidate_equilibrium(checker, STRUT_ON_CONFIGURATION, index, NULL,
-                                "the position of %s in %s is not finite",
-                                strut_called(node, "node", scene->nodes[i].name, i), owner);
+    strut_report_finding(checker, STRUT_ON_CONFIGURATION, index, NULL,
+                         "the position of %s in %s is not finite",
+                         strut_called(node, "node", scene->nodes[i].name, i), owner);
     return;
   }
 }
@@ -76,23 +76,22 @@ static void check_search(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_search *search = &scene->search;
   if (search->starts < 0 || search->starts > STRUT_MOST_STARTS)
-    strut_candidate_equilibrium(checker, STRUT_ON_EQUILIBRIA, 0, "starts",
-                                "the starts of the search for equilibria must be from 0 to %d",
-                                STRUT_MOST_STARTS);
+    strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "starts",
+                         "the starts of the search for equilibria must be from 0 to %d",
+                         STRUT_MOST_STARTS);
   if ((double)search->seed > STRUT_MOST_SEED)
-    strut_candidate_equilibrium(checker, STRUT_ON_EQUILIBRIA, 0, "seed",
-                                "the seed of the search for equilibria must be at most %.0f",
-                                STRUT_MOST_SEED);
+    strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "seed",
+                         "the seed of the search for equilibria must be at most %.0f",
+                         STRUT_MOST_SEED);
   if (scene->start_equilibrium < -1 ||
       (scene->start_equilibrium >= 0 &&
        (size_t)scene->start_equilibrium >= scene->configuration_count))
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_INITIAL, 0, NULL,
         "the initial state is the equilibrium of a configuration that does not exist");
   else if (scene->start_equilibrium >= 0 && scene->settle.wanted)
-    strut_candidate_equilibrium(
-        checker, STRUT_ON_INITIAL, 0, NULL,
-        "the initial state is an equilibrium, so there is nothing to settle");
+    strut_report_finding(checker, STRUT_ON_INITIAL, 0, NULL,
+                         "the initial state is an equilibrium, so there is nothing to settle");
 }
 
 void strut_check_shapes(strut_checker *checker) {

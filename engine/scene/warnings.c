@@ -83,7 +83,7 @@ static void warn_of_rest_lengths(strut_checker *checker) {
     name(&below, member, scene->members[member].name);
   }
   if (!below.count) return;
-  strut_candidate_equilibrium(
+  strut_report_finding(
       checker, STRUT_ON_MEMBER, below.first, "rest_length_below_zero",
       "the drive takes the rest length of '%s' to %.4g m at t = %.4g s, below zero, where a "
       "member has no meaning; give it a smaller amplitude or a longer member%s%s",
@@ -118,7 +118,7 @@ static void warn_of_depths(strut_checker *checker) {
     name(&below, (size_t)contact->node, node->name);
   }
   if (below.count)
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_NODE, below.first, "inside_ground",
         "node%s %s begin%s inside the ground, '%s' %.3g m deep, and will be thrown out of it; "
         "raise the structure, or lower ground.height",
@@ -166,7 +166,7 @@ static void warn_of_pairs(strut_checker *checker) {
   }
   strut_release(pairs);
   if (twice.count)
-    strut_candidate_equilibrium(
+    strut_report_finding(
         checker, STRUT_ON_MEMBER, twice.first, "same_nodes",
         "members %s join the same two nodes, so that both act there; leave one out if that "
         "is not meant",
@@ -191,10 +191,10 @@ static void warn_of_loose_masses(strut_checker *checker) {
   }
   strut_release(used);
   if (loose.count)
-    strut_candidate_equilibrium(checker, STRUT_ON_NODE, loose.first, "loose_mass",
-                                "node%s %s %s mass and can move, but no member holds %s",
-                                loose.count > 1 ? "s" : "", names_of(&loose),
-                                loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
+    strut_report_finding(checker, STRUT_ON_NODE, loose.first, "loose_mass",
+                         "node%s %s %s mass and can move, but no member holds %s",
+                         loose.count > 1 ? "s" : "", names_of(&loose),
+                         loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
 }
 
 strut_status strut_scene_warn(const strut_scene *scene, strut_findings *warnings) {

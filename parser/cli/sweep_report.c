@@ -19,7 +19,7 @@ strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bo
 }
 
 /* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
-static void format_row(const strut_sweep_plan *plan, const strut_slot *row, char *text,
+static void format_row(const strut_sweep_plan *plan, const strut_result_slot *row, char *text,
                        size_t size) {
   size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
   *text = '\0';
@@ -139,7 +139,7 @@ static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
   int64_t count = strut_slots_plan_of(slots)->count;
   int reported = 0;
   for (int64_t i = 0; i < count && reported < MOST_FAILURES && strut_slots_failed(slots); i++) {
-    strut_slot row;
+    strut_result_slot row;
     long long point = strut_slots_point(slots, i);
     if (!strut_slots_get(slots, point, &row) || row.status == STRUT_OK) continue;
     if (json) {

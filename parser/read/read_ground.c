@@ -42,33 +42,26 @@ static void report_lack(strut_reader *reader, const friction_layers *f, int key)
                            : "a number such as 0.5");
 }
 
-static bool is_coefficient(int parameter) {
-  return parameter == STRUT_FRICTION_PARAMETER_MU_STATIC ||
-         parameter == STRUT_FRICTION_PARAMETER_MU_KINETIC;
-}
-
 /*
  * Are all numbers given that the friction law needs? What is missing is reported once for each top layer;
  * where no coefficient is given, as one lacking key, mu.
  */
 static bool complete_friction(strut_reader *reader, friction_layers *f,
                               const strut_tree **reported) {
-  static const int keys[] = {
-#define STRUT_FRICTION_ROW(NAME, ...) STRUT_KEY_FRICTION_##NAME,
-      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
-#undef STRUT_FRICTION_ROW
-  };
   if (!f->any || f->broken) return !f->broken;
   if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
-  unsigned coefficients =
-      key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
-  bool complete = true, first = *reported != f->last, mu = false;
+  bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
+  bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  bool complete = true, reported_mu = false;
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-    if (!strut_friction_needs(f->friction.law, p) || f->given & key_bit(keys[p])) continue;
+    int key = strut_key_find(STRUT_SECTION_FRICTION, strut_friction_key(p));
+    if (!strut_friction_needs(f->friction.law, p) || (f->given & key_bit(key))) continue;
     complete = false;
-    bool both = is_coefficient(p) && !(f->given & coefficients);
-    if (first && !(both && mu)) report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : keys[p]);
-    mu = mu || both;
+    bool both = !statics && !kinetics &&
+                (key == STRUT_KEY_FRICTION_MU_STATIC || key == STRUT_KEY_FRICTION_MU_KINETIC);
+    if (*reported != f->last && !(both && reported_mu))
+      report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : key);
+    reported_mu = reported_mu || both;
   }
   if (!complete) *reported = f->last;
   return complete;

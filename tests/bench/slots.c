@@ -28,7 +28,7 @@ static strut_status write_all(strut_slots *slots, strut_error *error) {
   char words[1][STRUT_SLOT_WORD] = {"periodic"};
   for (int64_t i = 0; i < POINTS && status == STRUT_OK; i++) {
     for (int k = 0; k < NUMBERS; k++) numbers[k] = sin((double)(i + k));
-    strut_slot row = {STRUT_OK, numbers, (const char(*)[STRUT_SLOT_WORD])words, NULL};
+    strut_result_slot row = {STRUT_OK, numbers, (const char(*)[STRUT_SLOT_WORD])words, NULL};
     status = strut_slots_put(slots, i, &row, error);
   }
   return status;

@@ -108,8 +108,8 @@ static void run_shard(strut_slots_plan plan, strut_shard shard, int64_t most) {
     double numbers[] = {0.1 * (double)p, p % 4 ? 1.0 / (double)(p + 1) : (double)NAN};
     char words[1][STRUT_SLOT_WORD];
     snprintf(words[0], sizeof words[0], p % 2 ? "I" : "II, \"b\"");
-    strut_slot row = {p == 7 ? STRUT_DIVERGED : STRUT_OK, numbers, (const char(*)[24])words,
-                      p == 7 ? "node 'a', gone" : NULL};
+    strut_result_slot row = {p == 7 ? STRUT_DIVERGED : STRUT_OK, numbers, (const char(*)[24])words,
+                             p == 7 ? "node 'a', gone" : NULL};
     assert_int_equal(strut_slots_put(slots, p, &row, NULL), STRUT_OK);
     most--;
   }

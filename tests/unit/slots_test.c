@@ -36,13 +36,13 @@ static strut_status put(strut_slots *slots, int64_t point, strut_error *error) {
   snprintf(words[0], sizeof words[0], "state %d", (int)(point % 7));
   snprintf(message, sizeof message, "gone at t = %d s", (int)point);
   bool failed = point % 5 == 4;
-  strut_slot row = {failed ? STRUT_DIVERGED : STRUT_OK, numbers, (const char(*)[24])words,
-                    failed ? message : NULL};
+  strut_result_slot row = {failed ? STRUT_DIVERGED : STRUT_OK, numbers, (const char(*)[24])words,
+                           failed ? message : NULL};
   return strut_slots_put(slots, point, &row, error);
 }
 
 static void check_row(strut_slots *slots, int64_t point) {
-  strut_slot row;
+  strut_result_slot row;
   char word[STRUT_SLOT_WORD], message[64] = "";
   assert_true(strut_slots_done(slots, point));
   assert_true(strut_slots_get(slots, point, &row));
@@ -100,7 +100,7 @@ static void test_rows_come_back(void **unused) {
   assert_int_equal(strut_slots_missing(slots), 500);
   assert_int_equal(strut_slots_failed(slots), 100);
   check_row(slots, 999);
-  strut_slot row;
+  strut_result_slot row;
   assert_false(strut_slots_get(slots, 499, &row));
   assert_int_equal(put(slots, 499, NULL), STRUT_OK);
   check_row(slots, 499);
@@ -190,7 +190,7 @@ static void test_a_file_that_is_cut(void **unused) {
       if (i < whole) {
         check_row(slots, i);
       } else {
-        strut_slot row;
+        strut_result_slot row;
         assert_false(strut_slots_done(slots, i));
         assert_false(strut_slots_get(slots, i, &row));
         assert_int_equal(put(slots, i, NULL), STRUT_OK);
@@ -459,7 +459,7 @@ static void test_texts_that_do_not_fit(void **unused) {
   for (int i = 0; i < 200; i++) strcat(message, "\xC3\xA9");
   memset(words[0], 'w', sizeof words[0]); /* without an end */
   double numbers[] = {-(double)NAN, HUGE_VAL};
-  strut_slot row = {STRUT_SINGULAR, numbers, (const char(*)[24])words, message};
+  strut_result_slot row = {STRUT_SINGULAR, numbers, (const char(*)[24])words, message};
   assert_int_equal(strut_slots_put(slots, 0, &row, NULL), STRUT_OK);
   row.message = "two\nlines\tof\x7Ftext";
   assert_int_equal(strut_slots_put(slots, 1, &row, NULL), STRUT_OK);
@@ -555,9 +555,9 @@ static void test_failed_rows_once_more(void **unused) {
   const char *path = scratch_path("a.slots");
   const double numbers[] = {1.0, 2.0};
   const char words[1][STRUT_SLOT_WORD] = {"well"};
-  const strut_slot good = {STRUT_OK, numbers, words, NULL};
+  const strut_result_slot good = {STRUT_OK, numbers, words, NULL};
   strut_slots_plan plan = a_plan(1000);
-  strut_slot row;
+  strut_result_slot row;
   make_file(path, 1000);
   strut_slots *slots = open_slots(path, &plan);
   assert_int_equal(strut_slots_failed(slots), 200);

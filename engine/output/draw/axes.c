@@ -83,8 +83,8 @@ static void write_number(char *text, size_t size, const char *format, int decima
   write_power(text + used, size - used, exponent);
 }
 
-strut_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
-  strut_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
+strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
+  strut_rounded_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
   const char *space = strchr(plain.text, ' ');
   bool micro = space && space[1] == 'u' && strcmp(space + 2, unit) == 0;
   snprintf(drawn.text, sizeof drawn.text, "%s%.*s%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",

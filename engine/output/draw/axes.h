@@ -66,7 +66,7 @@ STRUT_API const char *strut_prefix(double largest, const char *unit, double *fac
 /**
  * A quantity as drawings write it: as strut_quantity_of, with a real minus sign and Greek micro.
  */
-STRUT_API strut_quantity strut_drawn_quantity(double value, int digits, const char *unit);
+STRUT_API strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit);
 
 enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis and their texts. */

@@ -311,7 +311,7 @@ static void append_velocity(const strut_run_scene *run, strut_canvas *canvas, do
                             double room, strut_font font, char line[LINE]) {
   size_t used = strlen(line);
   double width, height;
-  strut_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
+  strut_rounded_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
   snprintf(line + used, LINE - used, "; velocity of %s %s", strut_run_measured_name(run),
            text.text);
   strut_text_size(canvas, line, font, &width, &height);

@@ -84,7 +84,7 @@ strut_status strut_panel_page_draw(const char *path, const char *title,
 
 static const double PANEL_WIDTH = 165, ASPECT = 0.62, INDENT = 30;
 enum { NAME = 48, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
-enum { MOST_ENTRIES = STRUT_MOST_GROUPS * STRUT_MOST_Y + 1 };
+enum { MOST_ENTRIES = STRUT_MOST_TABLE_GROUPS * STRUT_MOST_Y + 1 };
 
 typedef struct maker {
   const strut_table_figure *figure;
@@ -325,8 +325,8 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
     status = strut_table_groups_find(table, figure->panels, STRUT_MOST_PANELS, "panels", &m.panels,
                                      error);
   if (status == STRUT_OK)
-    status =
-        strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "curves", &m.curves, error);
+    status = strut_table_groups_find(table, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
+                                     &m.curves, error);
   if (status == STRUT_OK) {
     find_axes(&m);
     status = draw_page(&m, path, error);

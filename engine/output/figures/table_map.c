@@ -151,8 +151,8 @@ static strut_status prepare_grid(mapper *m, strut_error *error) {
     status = strut_table_groups_find(m->table, f->panels, STRUT_MOST_PANELS, "panels", &m->panels,
                                      error);
   if (status == STRUT_OK && !m->table->columns[f->value].value)
-    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_GROUPS, "categories", &m->names,
-                                     error);
+    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_TABLE_GROUPS, "categories",
+                                     &m->names, error);
   if (status != STRUT_OK) return status;
   qsort(m->names.name, m->names.count, sizeof *m->names.name, by_text);
   if (m->names.count && !*m->names.name[0]) { /* an empty text is no category */
@@ -253,8 +253,8 @@ strut_status strut_table_savings(const char *path, const strut_table_savings_fig
   strut_status status = strut_table_numbers(table, figure->x, error);
   if (status == STRUT_OK) status = strut_table_numbers(table, figure->y, error);
   if (status == STRUT_OK)
-    status =
-        strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "methods", &t.methods, error);
+    status = strut_table_groups_find(table, figure->by, STRUT_MOST_TABLE_GROUPS, "methods",
+                                     &t.methods, error);
   if (status == STRUT_OK) {
     t.bargains = strut_arena_allocate(&arena, table->row_count, sizeof *t.bargains);
     if (!t.bargains) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");

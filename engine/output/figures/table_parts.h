@@ -8,12 +8,12 @@
 #include "engine/output/draw/canvas.h"
 #include "engine/output/figures/table_figure.h"
 
-enum { STRUT_MOST_GROUPS = 40 };
+enum { STRUT_MOST_TABLE_GROUPS = 40 };
 
 /** The different texts of a column, in their order; of no column, one group without a name. */
 typedef struct strut_table_groups {
   size_t count;
-  const char *name[STRUT_MOST_GROUPS];
+  const char *name[STRUT_MOST_TABLE_GROUPS];
 } strut_table_groups;
 
 /** STRUT_USAGE where there are more than `most`, named `what` in the message ("panels"). */

@@ -10,7 +10,7 @@
 
 enum { MOST_MEMBERS = 40, DIGITS = 7 };
 
-static strut_quantity in(double value, const char *unit) {
+static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 

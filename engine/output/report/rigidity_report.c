@@ -256,7 +256,7 @@ char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *mod
 
 enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
 
-static strut_quantity in(double value, const char *unit) {
+static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 

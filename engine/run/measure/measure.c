@@ -12,8 +12,8 @@ static const double MARK_TOLERANCE = 1e-6;
 /* A mean velocity of so little beside the nodes' own is what rounding leaves of a symmetric motion. */
 static const double CANCELLED = 1e-10;
 
-void strut_measure_track(const strut_model *model, const strut_state *state, const strut_measure *m,
-                         double *x, double *v) {
+void strut_measure_track(const strut_model *model, const strut_state *state,
+                         const strut_measurement *m, double *x, double *v) {
   if (m->node >= 0) {
     *x = state->q[2 * m->node];
     *v = state->v[2 * m->node];
@@ -28,7 +28,7 @@ void strut_measure_track(const strut_model *model, const strut_state *state, con
   *v = rate / m->total_mass;
 }
 
-static void place_marks(const strut_span *span, double begin, strut_measure *m) {
+static void place_marks(const strut_span *span, double begin, strut_measurement *m) {
   for (size_t i = 0; i < m->marks; i++)
     m->time[i] = begin + (span->period > 0 ? span->window_start + (double)i * span->period
                                            : (i ? span->duration : span->window_start));
@@ -36,7 +36,7 @@ static void place_marks(const strut_span *span, double begin, strut_measure *m) 
 }
 
 void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
-                          size_t periods, strut_measure *m) {
+                          size_t periods, strut_measurement *m) {
   size_t contacts = (size_t)model->contacts.count;
   m->marks = periods + 1 < m->room ? periods + 1 : m->room;
   for (size_t i = 0; i < m->marks; i++) m->time[i] = begin + (double)i * period;
@@ -47,8 +47,8 @@ void strut_measure_window(const strut_model *model, strut_state *state, double b
 }
 
 strut_status strut_measure_create(const strut_model *model, const strut_time_grid *grid,
-                                  double begin, size_t room, strut_measure *m) {
-  *m = (strut_measure){.grid = *grid, .node = model->scene->experiment.measure_node};
+                                  double begin, size_t room, strut_measurement *m) {
+  *m = (strut_measurement){.grid = *grid, .node = model->scene->experiment.measure_node};
   strut_span span = strut_scene_span(model->scene);
   double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
   size_t contacts = (size_t)model->contacts.count;
@@ -70,7 +70,7 @@ strut_status strut_measure_create(const strut_model *model, const strut_time_gri
   return STRUT_OK;
 }
 
-int64_t strut_measure_first_step(const strut_measure *m) {
+int64_t strut_measure_first_step(const strut_measurement *m) {
   double n = floor(m->time[0] / m->grid.step + MARK_TOLERANCE);
   return n > 0 ? (int64_t)n : 0;
 }
@@ -82,11 +82,11 @@ static double fastest_node(const strut_model *model, const strut_state *state) {
   return most;
 }
 
-static strut_marks marks_of(const strut_measure *m, double length) {
+static strut_marks marks_of(const strut_measurement *m, double length) {
   return (strut_marks){.step = m->grid.step, .length = length, .count = m->marks, .time = m->time};
 }
 
-void strut_measure_begin(const strut_model *model, strut_state *state, strut_measure *m) {
+void strut_measure_begin(const strut_model *model, strut_state *state, strut_measurement *m) {
   strut_marks marks = marks_of(m, m->grid.step);
   m->fastest = fastest_node(model, state);
   if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
@@ -98,7 +98,8 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
   }
 }
 
-static void count_contacts(const strut_model *model, const strut_state *state, strut_measure *m) {
+static void count_contacts(const strut_model *model, const strut_state *state,
+                           strut_measurement *m) {
   const strut_contact_table *c = &model->contacts;
   m->window_steps++;
   for (int32_t i = 0; i < c->count; i++) {
@@ -109,19 +110,19 @@ static void count_contacts(const strut_model *model, const strut_state *state, s
 }
 
 /* Is the next mark within the latest step, which ended as step n? */
-static bool mark_reached(const strut_measure *m, double n) {
+static bool mark_reached(const strut_measurement *m, double n) {
   return m->next < m->marks && m->time[m->next] / m->grid.step <= n + MARK_TOLERANCE;
 }
 
 /* Length of the step that ended as step n: the last one of a run may be shorter. */
-static double length_of(const strut_measure *m, int64_t n) {
+static double length_of(const strut_measurement *m, int64_t n) {
   double rest = n == m->grid.last ? strut_time_grid_rest(&m->grid) : 0.0;
   return rest > 0.0 ? rest : m->grid.step;
 }
 
 /* Apart from strut_measure_step, which most steps leave without it. */
 static __attribute__((noinline)) void pass_marks(const strut_model *model, const strut_state *state,
-                                                 strut_measure *m, double x, double v) {
+                                                 strut_measurement *m, double x, double v) {
   double n = (double)state->step, step = m->grid.step, length = length_of(m, state->step);
   m->fastest = fmax(m->fastest, fastest_node(model, state));
   while (mark_reached(m, n)) {
@@ -131,7 +132,7 @@ static __attribute__((noinline)) void pass_marks(const strut_model *model, const
   }
 }
 
-void strut_measure_step(const strut_model *model, const strut_state *state, strut_measure *m) {
+void strut_measure_step(const strut_model *model, const strut_state *state, strut_measurement *m) {
   double x, v;
   strut_measure_track(model, state, m, &x, &v);
   count_contacts(model, state, m);
@@ -140,17 +141,18 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
   m->last_v = v;
 }
 
-void strut_measure_step_quantities(const strut_model *model, strut_state *state, strut_measure *m) {
+void strut_measure_step_quantities(const strut_model *model, strut_state *state,
+                                   strut_measurement *m) {
   strut_marks marks = marks_of(m, length_of(m, state->step));
   strut_measure_step(model, state, m);
   strut_quantities_step(m->quantities, &marks, state);
 }
 
-bool strut_measure_is_zero(const strut_measure *m, double velocity) {
+bool strut_measure_is_zero(const strut_measurement *m, double velocity) {
   return fabs(velocity) <= CANCELLED * m->fastest;
 }
 
-void strut_measure_finish(const strut_model *model, const strut_measure *m,
+void strut_measure_finish(const strut_model *model, const strut_measurement *m,
                           strut_summary *summary) {
   size_t passed = m->next;
   if (m->quantities) strut_quantities_finish(m->quantities, summary);
@@ -174,4 +176,4 @@ void strut_measure_finish(const strut_model *model, const strut_measure *m,
   }
 }
 
-void strut_measure_free(strut_measure *measure) { strut_arena_free(&measure->arena); }
+void strut_measure_free(strut_measurement *measure) { strut_arena_free(&measure->arena); }

@@ -15,7 +15,7 @@
  * point's x at a mark is found by cubic Hermite interpolation within the step around it, so that
  * periods that the step does not divide are measured exactly.
  */
-typedef struct strut_measure {
+typedef struct strut_measurement {
   strut_time_grid grid;
   int32_t node;          /* tracked node, or -1: centre of mass */
   double total_mass;     /* [kg] */
@@ -30,34 +30,35 @@ typedef struct strut_measure {
   double fastest;         /* largest speed of a node at the window's begin and at marks [m/s] */
   strut_quantities *quantities; /* NULL where the scene names none */
   strut_arena arena;
-} strut_measure;
+} strut_measurement;
 
 /**
  * Prepares for a run that begins at the time `begin`, less the grid's offset [s]; room: marks that a later window may need.
  * STRUT_OK or STRUT_NO_MEMORY.
  */
 strut_status strut_measure_create(const strut_model *model, const strut_time_grid *grid,
-                                  double begin, size_t room, strut_measure *measure);
+                                  double begin, size_t room, strut_measurement *measure);
 /** x [m] and velocity [m/s] of the tracked point. */
 void strut_measure_track(const strut_model *model, const strut_state *state,
-                         const strut_measure *measure, double *x, double *v);
+                         const strut_measurement *measure, double *x, double *v);
 /** Another window from now on, `begin` [s]: so many periods, within the room for marks. */
 void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
-                          size_t periods, strut_measure *measure);
+                          size_t periods, strut_measurement *measure);
 /** First step number n after which strut_measure_step must be called for every step. */
-int64_t strut_measure_first_step(const strut_measure *measure);
+int64_t strut_measure_first_step(const strut_measurement *measure);
 /** Before the first measured step: takes the point's x and v, and the quantities' values. */
-void strut_measure_begin(const strut_model *model, strut_state *state, strut_measure *measure);
+void strut_measure_begin(const strut_model *model, strut_state *state, strut_measurement *measure);
 /** After each step from then on. Allocates nothing. */
-void strut_measure_step(const strut_model *model, const strut_state *state, strut_measure *measure);
+void strut_measure_step(const strut_model *model, const strut_state *state,
+                        strut_measurement *measure);
 /** The same with the quantities, which must be there. */
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
-                                   strut_measure *measure);
+                                   strut_measurement *measure);
 /** Fills velocity, quantities, spread, window and contacts of the summary from the marks passed so far. */
-void strut_measure_finish(const strut_model *model, const strut_measure *measure,
+void strut_measure_finish(const strut_model *model, const strut_measurement *measure,
                           strut_summary *summary);
 /** Is a mean velocity nothing but rounding, as of a symmetric motion? */
-bool strut_measure_is_zero(const strut_measure *measure, double velocity);
-void strut_measure_free(strut_measure *measure);
+bool strut_measure_is_zero(const strut_measurement *measure, double velocity);
+void strut_measure_free(strut_measurement *measure);
 
 #endif

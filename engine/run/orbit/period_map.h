@@ -20,7 +20,7 @@ typedef struct strut_period_map {
   strut_state *state;
   const strut_integrator *method;
   void *workspace;
-  strut_measure measure;
+  strut_measurement measure;
   double dt, period; /* [s] */
   double time;       /* where an application begins, for drives and loads [s]; set it freely */
   int64_t steps;     /* of one drive period */

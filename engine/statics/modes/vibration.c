@@ -222,7 +222,8 @@ void strut_vibration_multiply(const strut_vibration *v, const double *matrix, co
   strut_sparse_multiply(&a, x, y);
 }
 
-strut_spread strut_vibration_spread(const strut_vibration *v, int32_t j, const double *x) {
+strut_end_displacement strut_vibration_spread(const strut_vibration *v, int32_t j,
+                                              const double *x) {
   const strut_member_table *t = &v->model->members;
   const int32_t *row_of = v->shape->row_of;
   double d[2];
@@ -231,5 +232,5 @@ strut_spread strut_vibration_spread(const strut_vibration *v, int32_t j, const d
     d[c] = (b >= 0 ? x[b] : 0.0) - (a >= 0 ? x[a] : 0.0);
   }
   double ux = v->member[j].ux.hi, uy = v->member[j].uy.hi;
-  return (strut_spread){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
+  return (strut_end_displacement){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
 }

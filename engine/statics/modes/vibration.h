@@ -61,9 +61,10 @@ void strut_vibration_multiply(const strut_vibration *vibration, const double *ma
 void strut_vibration_mass(const strut_vibration *vibration, const strut_dd *x, strut_dd *y);
 
 /** How far the ends of member j move apart in the motion x (n), along it and across it. */
-typedef struct strut_spread {
+typedef struct strut_end_displacement {
   double along, across;
-} strut_spread;
-strut_spread strut_vibration_spread(const strut_vibration *vibration, int32_t j, const double *x);
+} strut_end_displacement;
+strut_end_displacement strut_vibration_spread(const strut_vibration *vibration, int32_t j,
+                                              const double *x);
 
 #endif

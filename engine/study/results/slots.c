@@ -257,7 +257,7 @@ static void fill_text(unsigned char *field, size_t room, const char *text) {
 }
 
 /* Encodes a slot; all NANs become the same one. */
-static void fill_slot(const strut_slots *s, int64_t point, const strut_slot *row,
+static void fill_slot(const strut_slots *s, int64_t point, const strut_result_slot *row,
                       unsigned char *slot) {
   slot_head head = {.point = point, .status = (uint32_t)row->status};
   unsigned char *at = slot + sizeof head;
@@ -274,7 +274,7 @@ static void fill_slot(const strut_slots *s, int64_t point, const strut_slot *row
   memcpy(slot, &head, sizeof head);
 }
 
-strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_slot *row,
+strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_result_slot *row,
                              strut_error *error) {
   unsigned char slot[STRUT_SLOT_MOST];
   int64_t i = slot_of(slots, point);
@@ -310,7 +310,7 @@ static const unsigned char *find(strut_slots *s, int64_t i) {
   return NULL;
 }
 
-bool strut_slots_get(strut_slots *slots, int64_t point, strut_slot *row) {
+bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row) {
   int64_t i = slot_of(slots, point);
   const unsigned char *slot = i < 0 ? NULL : find(slots, i);
   if (!slot) return false;
@@ -321,16 +321,16 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_slot *row) {
   memcpy(slots->numbers, slot + sizeof head, numbers);
   memcpy(slots->words, slot + sizeof head + numbers, words);
   memcpy(slots->message, slot + sizeof head + numbers + words, sizeof slots->message);
-  *row = (strut_slot){.status = (strut_status)head.status,
-                      .numbers = slots->numbers,
-                      .words = (const char(*)[STRUT_SLOT_WORD])slots->words,
-                      .message = slots->message};
+  *row = (strut_result_slot){.status = (strut_status)head.status,
+                             .numbers = slots->numbers,
+                             .words = (const char(*)[STRUT_SLOT_WORD])slots->words,
+                             .message = slots->message};
   return true;
 }
 
 strut_status strut_slots_retry(strut_slots *slots, strut_error *error) {
   for (int64_t i = 0; i < slots->plan.count && strut_slots_failed(slots) > 0; i++) {
-    strut_slot row;
+    strut_result_slot row;
     if (!is_done(slots, i)) continue;
     if (!strut_slots_get(slots, strut_slots_point(slots, i), &row))
       return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' has changed while it was read",

@@ -47,12 +47,12 @@ typedef struct strut_slots_plan {
 } strut_slots_plan;
 
 /** A row: numbers and words in the order of their columns. */
-typedef struct strut_slot {
+typedef struct strut_result_slot {
   strut_status status;                  /* STRUT_OK, or why the point failed */
   const double *numbers;                /* (columns that are numbers); NAN: missing */
   const char (*words)[STRUT_SLOT_WORD]; /* (columns that are words) */
   const char *message;                  /* of a failed point, or NULL; cut at STRUT_SLOT_MESSAGE */
-} strut_slot;
+} strut_result_slot;
 
 /** An open file of slots. */
 typedef struct strut_slots strut_slots;
@@ -93,8 +93,8 @@ STRUT_API int64_t strut_slots_failed(const strut_slots *slots);
  * of allocations. STRUT_USAGE where the point has its result already or is not this file's;
  * STRUT_FILE_TROUBLE on a full disk: the point counts as missing then.
  */
-STRUT_API strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_slot *row,
-                                       strut_error *error);
+STRUT_API strut_status strut_slots_put(strut_slots *slots, int64_t point,
+                                       const strut_result_slot *row, strut_error *error);
 /**
  * Points that failed count as missing from now on. Their rows stay in the file until they have others,
  * so that whoever opens it next finds them still, unless they were computed.
@@ -106,6 +106,6 @@ STRUT_API strut_status strut_slots_sync(strut_slots *slots, strut_error *error);
  * False where the slot is missing; the row is good until the next call for the same file. One thread
  * at a time.
  */
-STRUT_API bool strut_slots_get(strut_slots *slots, int64_t point, strut_slot *row);
+STRUT_API bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row);
 
 #endif

@@ -114,7 +114,8 @@ static void put_text(writer *w, const char *text, size_t room, char mark) {
   end_cell(w, mark);
 }
 
-static void put_row(writer *w, const strut_slots_plan *plan, int64_t point, const strut_slot *row) {
+static void put_row(writer *w, const strut_slots_plan *plan, int64_t point,
+                    const strut_result_slot *row) {
   size_t numbers = 0, words = 0;
   put_number(w, (double)point);
   for (size_t i = 0; i < plan->column_count; i++) {
@@ -136,7 +137,7 @@ strut_status strut_study_table_write(const char *directory, const char *name,
   if (status != STRUT_OK) return status;
   put_header(&w, plan);
   for (int64_t point = 0; point < plan->points && !w.failed; point++) {
-    strut_slot row;
+    strut_result_slot row;
     if (!strut_slots_get(sources[(size_t)point % count], point, &row)) {
       strut_file_abandon(&w.file);
       return strut_fail(error, STRUT_USAGE, "no table yet: point %lld is missing",

@@ -206,7 +206,7 @@ static void count_warnings(strut_sweep_state *state, const strut_sweep_job *job)
 }
 
 static void count_point(sweep *s, const strut_sweep_job *job) {
-  const strut_slot *row = &job->cells.row;
+  const strut_result_slot *row = &job->cells.row;
 #ifdef _OPENMP
 #pragma omp critical(strut_sweep_report_progress)
 #endif

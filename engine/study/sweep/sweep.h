@@ -62,7 +62,7 @@ typedef struct strut_sweep_state {
   int64_t computed;             /* by this call */
   double seconds;               /* since it began, or went on */
   int64_t last;                 /* the latest point */
-  const strut_slot *row;        /* and its row */
+  const strut_result_slot *row; /* and its row */
   size_t warning_count;
   strut_sweep_warning warnings[STRUT_SWEEP_MOST_WARNINGS]; /* by code */
 } strut_sweep_state;

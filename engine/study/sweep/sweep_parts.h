@@ -16,7 +16,7 @@ typedef struct strut_row_buffer {
   char (*words)[STRUT_SLOT_WORD];  /* (columns) */
   size_t number_count, word_count; /* filled so far */
   char message[STRUT_SLOT_MESSAGE];
-  strut_slot row;
+  strut_result_slot row;
 } strut_row_buffer;
 
 /* sweep_columns.c */

@@ -33,7 +33,7 @@ static bool finish_point(const strut_sweep_worker *w, strut_sweep_job *job, stru
     snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
              job->error.message);
   }
-  cells->row = (strut_slot){.status = status,
+  cells->row = (strut_result_slot){.status = status,
                             .numbers = cells->numbers,
                             .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
                             .message = cells->message};
