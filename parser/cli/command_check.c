@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
@@ -19,8 +20,6 @@
 #include "parser/cli/streams.h"
 
 enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
-
-static const double TURN = 6.283185307179586476925;
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
@@ -68,7 +67,7 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
     printf("  no run             a free node has no mass: statics only\n");
     return;
   }
-  double step = scene->experiment.step, hertz = plan->largest_frequency / TURN;
+  double step = scene->experiment.step, hertz = plan->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
          plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
   bool bound = plan->limits.bound;
@@ -98,7 +97,7 @@ static void print_bands(const strut_model *model) {
   int32_t first = -1, more = -1;
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
     double here = strut_stick_band_needed(model, method, i, scene->experiment.step);
-    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].stick_velocity)) continue;
+    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].friction.stick_velocity)) continue;
     if (first < 0) first = i;
     if (here > needed) needed = here;
     more++;
@@ -111,7 +110,7 @@ static void print_bands(const strut_model *model) {
           "strut: warning: stick_velocity %s of node '%s'%s is narrower than the change of slip in "
           "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
           "smaller step, or a method with events\n",
-          in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
+          in(e->friction.stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
           in(scene->experiment.step, "s").text, in(needed, "m/s").text);
 }
 
@@ -194,7 +193,7 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene
   strut_json_integer(json, root, "bytes", (int64_t)plan->bytes);
   strut_json_bool(json, root, "runnable", plan->runnable);
   strut_json_number(json, root, "largest_frequency",
-                    plan->runnable ? plan->largest_frequency / TURN : (double)NAN);
+                    plan->runnable ? plan->largest_frequency / STRUT_TAU : (double)NAN);
   strut_json_number(json, root, "step", scene->experiment.step);
   strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
   strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);

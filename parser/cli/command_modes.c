@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/commands.h"
 
-#include "engine/output/figures/modes_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/modes_report.h"
 #include "parser/cli/open_model.h"

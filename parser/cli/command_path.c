@@ -7,7 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/figures/path_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/path_report.h"
 #include "engine/statics/path/path.h"

@@ -18,11 +18,12 @@
 static const size_t ROOM = (size_t)1 << 24;
 
 static const char *const searches[] = {"all", "none", NULL};
-enum { SEARCH_ALL, SEARCH_NONE };
+enum { SEARCH_ALL, SEARCH_NONE, SEARCH_OF_MODEL };
 
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "FILE.html", "the page to write (default RUN.html)"},
-    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH", "show all equilibria (default) or none"},
+    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH",
+     "all or none (default: all of a MODEL, none of a RUN)"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter of MODEL; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -61,7 +62,7 @@ static strut_status find_equilibria(const strut_model *model, int search,
                                     const volatile sig_atomic_t *interrupt, strut_equilibria *all,
                                     strut_error *remark) {
   strut_equilibria_options wanted = {.interrupt = interrupt};
-  if (search == SEARCH_NONE) return STRUT_OK;
+  if (search != SEARCH_ALL) return STRUT_OK;
   strut_status status = strut_equilibria_find(model, &wanted, all, remark);
   return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
@@ -102,12 +103,13 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
     if (!yaml) status = strut_fail(&error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK) {
-    strut_page page = {.model = opened->model,
-                       .motion = opened->run ? &opened->motion : NULL,
-                       .equilibria = remark.status == STRUT_OK ? &all : NULL,
-                       .remark = search == SEARCH_NONE ? "not searched for" : remark.message,
-                       .summary = opened->summary,
-                       .yaml = yaml};
+    strut_page page = {
+        .model = opened->model,
+        .motion = opened->run ? &opened->motion : NULL,
+        .equilibria = remark.status == STRUT_OK ? &all : NULL,
+        .remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message,
+        .summary = opened->summary,
+        .yaml = yaml};
     status = write_page(arguments, &page, interrupt, &error);
   }
   if (status != STRUT_OK) strut_print_error(&error);
@@ -124,13 +126,14 @@ static strut_status run_view(const strut_arguments *given) {
     arguments->output = page;
   if (!arguments->output)
     return strut_print_usage_error(&strut_command_view, "missing -o FILE.html");
-  int search = SEARCH_ALL;
+  int search = SEARCH_OF_MODEL;
   strut_status status =
       strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
   if (status == STRUT_OK) status = check_output(arguments->output);
   if (status == STRUT_OK)
     status = strut_open_run(&strut_command_view, arguments, STRUT_OPEN_AS_RUN, ROOM, &opened);
   if (status != STRUT_OK) return status;
+  if (search == SEARCH_OF_MODEL && !opened.run) search = SEARCH_ALL;
   status = make_page(arguments, &opened, search);
   strut_opened_free(&opened);
   return status;
@@ -143,10 +146,12 @@ const strut_command strut_command_view = {
     .details =
         "\nRUN is a directory written by 'strut run MODEL -o DIR': the page plays its motion, "
         "with\n"
-        "charts. For a MODEL the page shows the shape at the start. Both include the equilibria\n"
-        "and the text of the scene. The page is a single file that works offline; above about\n"
-        "4 MB it keeps an even selection of the frames, and says so. Without -o it is RUN.html or\n"
-        "MODEL.html beside the input; a file that strut did not write is never overwritten.\n",
+        "charts, parameters and summary; --equilibria all adds the equilibria as cards. For a\n"
+        "MODEL the page shows the shape at the start and the equilibria. The page is a single "
+        "file\n"
+        "that works offline; above about 4 MB it keeps an even selection of the frames, and says\n"
+        "so. Without -o it is RUN.html or MODEL.html beside the input; a file that strut did not\n"
+        "write is never overwritten.\n",
     .options = options,
     .run = run_view,
 };

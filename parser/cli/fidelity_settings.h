@@ -17,7 +17,7 @@
        "none, karnopp, coulomb or smooth, instead of the file's"},                                 \
   {                                                                                                \
     STRUT_OPTION_DAMPING_LAW, "damping-law", "LAW",                                                \
-        "of the ground: printed or hunt_crossley, instead of the file's"                           \
+        "of the ground: approach_only or hunt_crossley, instead of the file's"                     \
   }
 
 /** Puts the options into the scene. STRUT_USAGE with the reason on stderr. */

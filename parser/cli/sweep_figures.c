@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/output/ownership.h"
 #include "engine/study/sweep/study_runs.h"
 #include "parser/cli/streams.h"

@@ -72,6 +72,9 @@ strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_swee
                                          arguments->override_count, file, &error);
   if (!status) status = try_ends(file);
   if (status) return report(file, status, &error);
+  const char *notes = strut_study_notes(file);
+  if (!notes) return strut_print_out_of_memory();
+  fputs(notes, stderr);
   status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, &error);
   if (!status) status = strut_sweep_figures_check(&study->plan, &error);
   if (!status && !identify(file, study->slots.hash)) status = STRUT_NO_MEMORY;

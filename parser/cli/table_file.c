@@ -7,7 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
-#include "parser/expression/number.h"
+#include "parser/expression/expression.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/diagnostics.h"
 

@@ -70,7 +70,7 @@ expect 2 sweep wrong.yaml -o wrong --quiet
 err_has "found 'peek'; did you mean 'peak'?"
 { cat study.yaml && echo 'keep: [peak, peak]'; } >twice.yaml
 expect 2 sweep twice.yaml -o twice --quiet
-err_has "'peak' stands twice in 'keep' of the study"
+err_has "'peak' appears twice in 'keep' of the study"
 
 # A quantity in a study's own run.
 { sed "/figures/d" study.yaml && echo 'run: {measure: {quantities: {low: {of: bob.y, take: min}}}}' &&

@@ -133,7 +133,14 @@ def crawler():
           f"summary: {rows}")
     run("view", "crawl", "-o", "again.html", "-q")
     check(open("again.html").read() == text, "not the same bytes twice")
-    cards(page.data, "crawl/scene.yaml")
+    parameters = {row["label"]: row["value"] for row in page.data["parameters"]}
+    check(parameters == {"frequency": "10 Hz", "amplitude": "0.1 mm", "friction": "0.1", "start": "I",
+                         "step": "0.1 ms", "integration method": "rk4",
+                         "integration step": "100 us"}, f"parameters: {parameters}")
+    check(page.data["equilibria"] is None and not page.data["equilibria_remark"],
+          "equilibria that nobody asked for")
+    run("view", "crawl", "--equilibria", "all", "-o", "all.html")
+    cards(Page("all.html").data, "crawl/scene.yaml")
 
 
 def cards(data, scene):

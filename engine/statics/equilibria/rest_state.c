@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -14,20 +15,12 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
-static double largest(const double *x, int32_t n) {
-  double most = 0.0;
-  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  return most;
-}
-
 static double member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
-    const double *a = q + t->from[j], *b = q + t->to[j];
-    double dx = b[0] - a[0], dy = b[1] - a[1];
-    double stretch = sqrt(dx * dx + dy * dy) - t->rest[j];
-    if (stretch > t->slack[j]) sum += fabs(t->stiffness[j] * stretch);
+    strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
+    sum += fabs(strut_member_elastic_force(t, j, &pose));
   }
   return sum;
 }
@@ -38,8 +31,7 @@ static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest
   stand->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->normal);
   if (!stand->closed || !stand->normal) return false;
   for (int32_t i = 0; i < c->count; i++) {
-    const double *at = stand->q + c->at[i];
-    double gap = at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
+    double gap = strut_contact_gap(c, i, stand->q);
     if (!(gap < 0)) continue;
     stand->closed[stand->closed_count] = c->entry[i].node;
     stand->normal[stand->closed_count++] = -c->entry[i].stiffness * gap;
@@ -56,7 +48,7 @@ static strut_status judge(const strut_model *model, strut_arena *arena, strut_re
   double *g = strut_allocate((size_t)potential->n, sizeof *g);
   if (g && find_closed(model, arena, stand)) {
     strut_potential_gradient(potential, stand->q, g);
-    stand->residual = largest(g, potential->n);
+    stand->residual = strut_largest_magnitude(g, potential->n);
     stand->scale = potential->force_scale;
     if (!(stand->scale > 0)) stand->scale = member_forces(model, stand->q);
     double rounding = 4 * strut_potential_rounding(potential, stand->q);

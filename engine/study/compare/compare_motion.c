@@ -31,7 +31,7 @@ static strut_status run_window(const strut_compare_work *work, const strut_summa
   if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not support */
     e->step = run->step;
   } else {
-    e->integrator = "adaptive";
+    e->integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
     e->tolerance = WINDOW_TOLERANCE;
     e->step = period / STEPS;
   }

@@ -3,14 +3,14 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/base/vec.h"
+#include "engine/model/pose.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/rigid_motions.h"
 #include "engine/statics/rigidity/linear_matrices.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare_parts.h"
-
-static const double TURN = 6.283185307179586476925;
 
 static void put_counts(strut_compare_work *work, const strut_rigidity *r) {
   const strut_mechanisms *m = &r->mechanisms;
@@ -181,7 +181,7 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
     for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
       if (modes.list[i].kind == STRUT_MODE_ELASTIC)
         strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
-                          modes.list[i].angular_frequency / TURN);
+                          modes.list[i].angular_frequency / STRUT_TAU);
   } else {
     status = strut_compare_leave_failed(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
                                         &error, status, false);
@@ -218,7 +218,7 @@ static void hold_contacts(stiff *s, const strut_model *model, const double *q,
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     uint32_t at = c->at[i];
-    if (!(q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1] < 0)) continue;
+    if (!(strut_contact_gap(c, i, q) < 0)) continue;
     for (uint32_t a = 0; a < 2; a++)
       for (uint32_t b = 0; b < 2; b++)
         if (row_of[at + a] >= 0 && row_of[at + b] >= 0)

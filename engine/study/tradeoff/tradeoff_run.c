@@ -22,7 +22,7 @@ double strut_tradeoff_time_left(const tradeoff_study *s, double share) {
 }
 
 bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
-  return strcmp(method->name, "adaptive") == 0;
+  return method->role == STRUT_ROLE_REFERENCE;
 }
 
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
