@@ -1,10 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the documents say to type works: every command of every ```sh block of README.md and
-# docs/*.md runs in a scratch folder (one per document, holding models/) with the strut just built
-# first on the PATH, and none fails. Two blocks of README.md install and build, which is not done
-# here: the one for the tests must be what .ci/run runs, the one for users the same with another
-# preset, and its last command runs here.
+# The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md
+# runs in a scratch folder (one per document, holding models/) with the strut just built first on the
+# PATH, and none fails; every link leads to a file and, after #, to a heading of it; and every source
+# file that is named exists. Two blocks of README.md install and build, which is not done here: the one
+# for the tests must be what .ci/run runs, the one for users the same with another preset, and its last
+# command runs here.
 #
 #   sh tests/docs.sh ROOT STRUT
 # shellcheck disable=SC2016  # backticks that mark a fence, not a command
@@ -26,7 +27,7 @@ blocks() {
     !inside && /^ *```/ {
       inside = 1
       language = $0; sub("^ *```", "", language)
-      if (language !~ /^(sh|yaml|json|c|text|csv|cmake)$/)
+      if (language !~ /^(sh|yaml|json|c|text|csv|cmake|diff)$/)
         print file ":" NR ": a fence marked \"" language "\": sh for commands, text for the rest"
       out = ""
       if (language == "sh") out = folder "/" (marker == "" ? sprintf("%05d.sh", NR) : marker ".command")
@@ -60,6 +61,40 @@ commands_work() {
   done
 }
 
+# dead_links FILE: the links of FILE, to files and to headings, that lead nowhere. Web addresses are not
+# followed.
+dead_links() {
+  folder=$(dirname "$1")
+  awk '/^ *```/ { inside = !inside } !inside' "$1" | grep -o ']([^) ]*)' | sed 's/^](//; s/)$//' |
+    grep -v '^[a-z]*:' | sort -u |
+    while read -r link; do
+      file=${link%%#*}
+      heading=${link#"$file"}
+      target=$1
+      [ -z "$file" ] || target=$folder/$file
+      if [ ! -e "$target" ]; then
+        echo "$1: no file for the link $link"
+      elif [ -n "$heading" ] && ! headings "$target" | grep -qxF "${heading#\#}"; then
+        echo "$1: no heading for the link $link"
+      fi
+    done
+}
+
+# lost_files FILE: source files that FILE names, with or without ending, and that do not exist.
+lost_files() {
+  grep -oE '`(engine|parser|tests|models)/[A-Za-z0-9_/.-]+`' "$1" | tr -d '`' | grep -v NAME | sort -u |
+    while read -r path; do
+      [ -e "$root/$path" ] || [ -e "$root/$path.c" ] || [ -e "$root/$path.h" ] ||
+        echo "$1: there is no $path"
+    done
+}
+
+# headings FILE: the anchors of its headings, as GitHub and GitLab name them.
+headings() {
+  awk '/^ *```/ { inside = !inside } !inside && /^#+ / { sub(/^#+ /, ""); print tolower($0) }' "$1" |
+    sed 's/[^a-z0-9_ -]//g; s/ /-/g'
+}
+
 # Self-test: a document whose commands work, and some that must be noticed.
 ran=0
 document() { printf '%b' "$1" >"$scratch/made-up.md"; rm -rf "$scratch/self"; }
@@ -73,11 +108,24 @@ for bad in '```sh\nfalse\ntrue\n```\n' '```sh\nfalse | cat\n```\n' '```bash\ntru
     fail "self-test: passes: $bad"
 done
 
+document '# A\n## One, two\n[b](#one-two) [c](https://example.org/x)\n'
+[ -z "$(dead_links "$scratch/made-up.md")" ] || fail "self-test: a good link is dead"
+for bad in '# A\n[b](#two)\n' '# A\n[b](nowhere.md)\n'; do
+  document "$bad"
+  [ -n "$(dead_links "$scratch/made-up.md")" ] || fail "self-test: passes: $bad"
+done
+document 'See `engine/base` and `engine/base/memory`, `engine/output/NAME.c`.\n'
+[ -z "$(lost_files "$scratch/made-up.md")" ] || fail "self-test: a file that exists is lost"
+document 'See `engine/base/nowhere.c`.\n'
+[ -n "$(lost_files "$scratch/made-up.md")" ] || fail "self-test: a lost file passes"
+
 ran=0
-for document in "$root"/README.md "$root"/docs/*.md; do
+for document in "$root"/README.md "$root"/docs/*.md "$root"/docs/*/*.md; do
   [ -e "$document" ] || continue
   commands_work "$document" "$scratch/$(basename "$document" .md)" ||
-    fail "$(basename "$document"): not as it says"
+    fail "${document#"$root"/}: a command fails"
+  lost=$(dead_links "$document"; lost_files "$document")
+  [ -z "$lost" ] || fail "$lost"
 done
 echo "$ran blocks of commands ran"
 [ "$ran" -gt 0 ] || fail "there were no commands"

@@ -29,16 +29,16 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
   member_powers powers = {0};
   members_kernel(model, state, q, v, force, ledger, &powers);
   if (!ledger) return;
-  double *power = state->power, drive = 0.0, lost = 0.0, moved = power[STRUT_POWER_EXCHANGED];
+  double *power = state->power, drive = 0.0, lost = 0.0, exchanged = power[STRUT_POWER_EXCHANGED];
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers.drive[l];
     lost += powers.lost[l];
-    moved += powers.moved[l] + powers.lost[l];
+    exchanged += powers.exchanged[l] + powers.lost[l];
   }
   /* whole vectors, since whole vectors are read next: one gathered from parts would have to wait */
   strut_lanes_store(power + STRUT_POWER_DRIVE,
                     (strut_lanes){drive, power[STRUT_POWER_LOAD], 0.0, lost});
-  strut_lanes_store(power + STRUT_POWER_CONTACT, (strut_lanes){0.0, 0.0, moved, 0.0});
+  strut_lanes_store(power + STRUT_POWER_CONTACT, (strut_lanes){0.0, 0.0, exchanged, 0.0});
 }
 
 /* All forces but the ground's. */

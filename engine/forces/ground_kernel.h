@@ -11,7 +11,6 @@
 
 #include <math.h>
 
-#include "engine/forces/friction.h"
 #include "engine/model/hot.h"
 #include "engine/model/state.h"
 
@@ -34,12 +33,10 @@ STRUT_INLINE double ground_damper(const strut_contact_entry *e, double spring, d
 /* Within Karnopp's band at the ends of rigid bars friction is found with their forces: 0 here. */
 STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal, double slip,
                                     double applied, bool bars_rigid) {
-  if (e->law == STRUT_FRICTION_NONE) return 0.0;
-  if (e->law == STRUT_FRICTION_SMOOTH)
-    return strut_friction_smooth(normal, slip, e->mu_kinetic, e->width);
-  if (bars_rigid && fabs(slip) < e->stick_velocity) return 0.0;
-  return strut_friction_force(normal, slip, applied, e->mu_static, e->mu_kinetic,
-                              e->stick_velocity);
+  const strut_friction *f = &e->friction;
+  bool band = strut_friction_states(f->law) == STRUT_FRICTION_STICK_BAND;
+  if (bars_rigid && band && fabs(slip) < f->stick_velocity) return 0.0;
+  return strut_friction_force(f, normal, slip, applied);
 }
 
 /* One node in contact; f, v: its force and velocity; gap < 0. */
@@ -56,8 +53,7 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   if (rough) {
     double applied = sloped ? sum[0] * c->tangent[0] + sum[1] * c->tangent[1] : sum[0];
     friction = laws ? ground_friction(e, normal, slip, applied, state->rigid)
-                    : strut_friction_force(normal, slip, applied, e->mu_static, e->mu_kinetic,
-                                           e->stick_velocity);
+                    : strut_friction_force_KARNOPP(&e->friction, normal, slip, applied);
   }
   if (sloped)
     reaction = (strut_pair){friction * c->tangent[0] + normal * c->normal[0],

@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "engine/forces/lane_tables.h"
 #include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
@@ -102,7 +103,7 @@ STRUT_LANE_INLINE void lane_sincos(lane_real turns, lane_real *sine, lane_real *
     for (int l = 0; l < LANE_WIDTH; l++)
       if (far[l]) turns[l] -= floor(turns[l]);
   lane_real rounded = 4.0 * turns + rounder, quarter = rounded - rounder;
-  lane_real x = 6.283185307179586476925 * (turns - 0.25 * quarter);
+  lane_real x = STRUT_TAU * (turns - 0.25 * quarter);
   lane_real s = lane_sine_of_small(x), c = lane_cosine_of_small(x);
   lane_mask quadrant = (lane_mask)rounded, odd = -(quadrant & 1);
   lane_real first = lane_choose(odd, c, s), second = lane_choose(odd, s, c);
@@ -188,8 +189,8 @@ STRUT_LANE_INLINE lane_values lane_values_of(const strut_lane_tables *t, size_t 
                        .rest_rate = lane_row(t->rest_rate, j, p),
                        .stiffness = lane_row(t->stiffness, j, p),
                        .damping = lane_row(t->damping, j, p),
-                       .taut_stretch = lane_row(t->taut_stretch, j, p),
-                       .taut_tension = lane_row(t->taut_tension, j, p)};
+                       .slack_length_threshold = lane_row(t->slack_length_threshold, j, p),
+                       .slack_force_threshold = lane_row(t->slack_force_threshold, j, p)};
 }
 
 /* Vector from the first to the second node, length, and its inverse or 0. */
@@ -244,18 +245,18 @@ STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *rest
 STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
                                        lane_powers (*powers)[LANE_PARTS]) {
   lane_real drive = {0}, lost = {0}, zero = {0},
-            moved = lane_row(t->power, STRUT_POWER_EXCHANGED, p);
+            exchanged = lane_row(t->power, STRUT_POWER_EXCHANGED, p);
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers[l][p].drive;
     lost += powers[l][p].lost;
-    moved += powers[l][p].moved + powers[l][p].lost;
+    exchanged += powers[l][p].exchanged + powers[l][p].lost;
   }
   lane_put(t->power, STRUT_POWER_DRIVE, p, drive);
   lane_put(t->power, STRUT_POWER_BELT, p, zero);
   lane_put(t->power, STRUT_POWER_MEMBERS, p, lost);
   lane_put(t->power, STRUT_POWER_CONTACT, p, zero);
   lane_put(t->power, STRUT_POWER_FRICTION, p, zero);
-  lane_put(t->power, STRUT_POWER_EXCHANGED, p, moved);
+  lane_put(t->power, STRUT_POWER_EXCHANGED, p, exchanged);
 }
 
 /* Slots of padding pull with no force, and no one asks for the place where they do. */
@@ -266,7 +267,7 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
   lane_powers powers[STRUT_LANES][LANE_PARTS];
   lane_real none = {0};
   for (int l = 0; l < STRUT_LANES && ledger; l++)
-    LANE_EACH((powers[l][p] = (lane_powers){.drive = none, .moved = none, .lost = none}));
+    LANE_EACH((powers[l][p] = (lane_powers){.drive = none, .exchanged = none, .lost = none}));
   for (int32_t b = 0; b < m->blocks; b++) {
     int32_t begin = b * STRUT_BLOCK,
             end = begin + STRUT_BLOCK < m->count ? begin + STRUT_BLOCK : m->count;
@@ -289,7 +290,7 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
 
 /* Ground */
 
-/* See strut_friction_force. */
+/* See strut_friction_force_KARNOPP. */
 STRUT_LANE_INLINE lane_real lane_friction(const double *entry, int p, lane_real normal,
                                           lane_real slip, lane_real applied) {
   lane_mask slides = lane_magnitude(slip) >= lane_row(entry, STRUT_LANE_STICK, p);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
   if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_LAWS))) return false;
@@ -75,8 +77,8 @@ static void list_tables(strut_lane_tables *t, table *list) {
                              {&t->rest0, slots},
                              {&t->rest, slots},
                              {&t->rest_rate, slots},
-                             {&t->taut_stretch, slots},
-                             {&t->taut_tension, slots},
+                             {&t->slack_length_threshold, slots},
+                             {&t->slack_force_threshold, slots},
                              {&t->constant, length},
                              {&t->contact, m->contacts.count * STRUT_LANE_CONTACT_ROWS},
                              {&t->ground, STRUT_LANE_GROUND_ROWS},
@@ -115,7 +117,7 @@ static void spread(double *to, int32_t width, int32_t lane, const double *from, 
 static void fill_wave(double *to, int32_t width, int32_t lane, const strut_signal *s) {
   const double row[STRUT_LANE_WAVE_ROWS] = {
       [STRUT_LANE_AMPLITUDE] = s->amplitude,
-      [STRUT_LANE_RATE] = s->amplitude * 6.283185307179586476925 * s->frequency,
+      [STRUT_LANE_RATE] = s->amplitude * STRUT_TAU * s->frequency,
       [STRUT_LANE_FREQUENCY] = s->frequency,
       [STRUT_LANE_PHASE] = s->phase,
       [STRUT_LANE_START] = s->start,
@@ -147,9 +149,9 @@ static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_
     const strut_contact_entry *e = &c->entry[i];
     const double row[STRUT_LANE_CONTACT_ROWS] = {[STRUT_LANE_STIFFNESS] = e->stiffness,
                                                  [STRUT_LANE_DAMPING] = e->damping,
-                                                 [STRUT_LANE_MU_STATIC] = e->mu_static,
-                                                 [STRUT_LANE_MU_KINETIC] = e->mu_kinetic,
-                                                 [STRUT_LANE_STICK] = e->stick_velocity};
+                                                 [STRUT_LANE_MU_STATIC] = e->friction.mu_static,
+                                                 [STRUT_LANE_MU_KINETIC] = e->friction.mu_kinetic,
+                                                 [STRUT_LANE_STICK] = e->friction.stick_velocity};
     spread(t->contact + i * STRUT_LANE_CONTACT_ROWS * t->width, t->width, lane, row,
            STRUT_LANE_CONTACT_ROWS);
   }
@@ -167,8 +169,8 @@ void strut_lane_tables_fill(strut_lane_tables *t, int32_t lane, const strut_mode
   spread(t->rest0, width, lane, s->rest, s->slots);
   spread(t->rest, width, lane, s->rest, s->slots);
   spread(t->rest_rate, width, lane, NULL, s->slots);
-  spread(t->taut_stretch, width, lane, s->slack, s->slots);
-  spread(t->taut_tension, width, lane, s->slack, s->slots);
+  spread(t->slack_length_threshold, width, lane, s->slack, s->slots);
+  spread(t->slack_force_threshold, width, lane, s->slack, s->slots);
   spread(t->constant, width, lane, m->constant_force, m->length);
   spread(t->load_x, width, lane, m->loads.x, m->loads.count);
   spread(t->load_y, width, lane, m->loads.y, m->loads.count);

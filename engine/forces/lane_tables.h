@@ -51,18 +51,18 @@ typedef struct strut_lane_tables {
   const strut_model *model[STRUT_MOST_LANES]; /* whose numbers each lane has; NULL: none yet */
   double *stiffness, *damping, *rest0;        /* (slots, width) */
   double *rest, *rest_rate;                   /* (slots, width) now, as driven */
-  double *taut_stretch, *taut_tension;        /* (slots, width) */
-  double *constant;                           /* (length, width) */
-  double *contact;                            /* (contacts, STRUT_LANE_CONTACT_ROWS, width) */
-  double *ground;                             /* (STRUT_LANE_GROUND_ROWS, width) */
-  double *wave;                               /* (drives + loads, STRUT_LANE_WAVE_ROWS, width) */
-  bool *all_waves;                            /* (drives + loads) sines and half-waves only? */
-  double *load_factor;                        /* (loads, width) now */
-  double *load_x, *load_y;                    /* (loads, width) */
-  double *inverse;                            /* (length, width) of masses that none couples */
-  double *block_inverse[2];                   /* as strut_mass_operator, times width */
-  double *force;                              /* (length, width) */
-  double *power;                              /* (STRUT_POWER_COUNT, width) */
+  double *slack_length_threshold, *slack_force_threshold; /* (slots, width) */
+  double *constant;                                       /* (length, width) */
+  double *contact;          /* (contacts, STRUT_LANE_CONTACT_ROWS, width) */
+  double *ground;           /* (STRUT_LANE_GROUND_ROWS, width) */
+  double *wave;             /* (drives + loads, STRUT_LANE_WAVE_ROWS, width) */
+  bool *all_waves;          /* (drives + loads) sines and half-waves only? */
+  double *load_factor;      /* (loads, width) now */
+  double *load_x, *load_y;  /* (loads, width) */
+  double *inverse;          /* (length, width) of masses that none couples */
+  double *block_inverse[2]; /* as strut_mass_operator, times width */
+  double *force;            /* (length, width) */
+  double *power;            /* (STRUT_POWER_COUNT, width) */
 } strut_lane_tables;
 
 /** Is there a kernel for what the model needs: no rigid bars, no factor, the printed laws only? */

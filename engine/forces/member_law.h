@@ -20,10 +20,10 @@
 #define STRUT_DEFINE_MEMBER_LAW(inlined, number, mask, PREFIX)                                     \
   typedef struct PREFIX##_values {                                                                 \
     number length, rate; /* of the whole member [m], [m/s] */                                      \
-    number rest, rest_rate, stiffness, damping, taut_stretch, taut_tension;                        \
+    number rest, rest_rate, stiffness, damping, slack_length_threshold, slack_force_threshold;     \
   } PREFIX##_values;                                                                               \
   typedef struct PREFIX##_powers {                                                                 \
-    number drive, moved, lost;                                                                     \
+    number drive, exchanged, lost;                                                                 \
   } PREFIX##_powers;                                                                               \
                                                                                                    \
   inlined number PREFIX##_tension(const PREFIX##_values *m, unsigned terms, bool ledger,           \
@@ -34,15 +34,15 @@
     number own_rate = driven ? m->rate - m->rest_rate : m->rate;                                   \
     if (terms & STRUT_TERM_DAMPING) tension = elastic + m->damping * own_rate;                     \
     if (terms & STRUT_TERM_SLACK) {                                                                \
-      mask taut = stretch > m->taut_stretch;                                                       \
-      mask pulling = taut & (tension > m->taut_tension);                                           \
+      mask taut = stretch > m->slack_length_threshold;                                             \
+      mask pulling = taut & (tension > m->slack_force_threshold);                                  \
       tension = (number)(pulling & (mask)tension);                                                 \
       if (ledger) elastic = (number)(taut & (mask)elastic);                                        \
     }                                                                                              \
     if (ledger && driven) {                                                                        \
       number power = -tension * m->rest_rate;                                                      \
       powers->drive += power;                                                                      \
-      powers->moved += (number)((mask)power & 0x7fffffffffffffffLL);                               \
+      powers->exchanged += (number)((mask)power & 0x7fffffffffffffffLL);                           \
     }                                                                                              \
     if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += (tension - elastic) * own_rate;    \
     return tension;                                                                                \

@@ -40,14 +40,15 @@ STRUT_INLINE strut_lanes members_root(strut_lanes x) {
 STRUT_INLINE member_values members_values(const strut_member_table *t, const strut_state *state,
                                           int32_t j, bool driven, strut_lanes length,
                                           strut_lanes rate) {
-  return (member_values){.length = length,
-                         .rate = rate,
-                         .rest = strut_lanes_load((driven ? state->rest : t->rest) + j),
-                         .rest_rate = strut_lanes_load(state->rest_rate + j),
-                         .stiffness = strut_lanes_load(t->stiffness + j),
-                         .damping = strut_lanes_load(t->damping + j),
-                         .taut_stretch = strut_lanes_load(state->taut_stretch + j),
-                         .taut_tension = strut_lanes_load(state->taut_tension + j)};
+  return (member_values){
+      .length = length,
+      .rate = rate,
+      .rest = strut_lanes_load((driven ? state->rest : t->rest) + j),
+      .rest_rate = strut_lanes_load(state->rest_rate + j),
+      .stiffness = strut_lanes_load(t->stiffness + j),
+      .damping = strut_lanes_load(t->damping + j),
+      .slack_length_threshold = strut_lanes_load(state->slack_length_threshold + j),
+      .slack_force_threshold = strut_lanes_load(state->slack_force_threshold + j)};
 }
 
 STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {

@@ -1,30 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/integrator.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "engine/forces/rigid.h"
 
 static const strut_integrator *const table[] = {
-    &strut_integrator_rk4,        &strut_integrator_euler,        &strut_integrator_verlet,
-    &strut_integrator_rk4_events, &strut_integrator_euler_events, &strut_integrator_verlet_events,
-    &strut_integrator_adaptive,   &strut_integrator_midpoint};
+#define STRUT_INTEGRATOR_ROW(row, word) &strut_integrator_##row,
+    STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)
+#undef STRUT_INTEGRATOR_ROW
+};
+enum { COUNT = sizeof table / sizeof table[0] };
 
-const strut_integrator *strut_integrator_at(size_t i) {
-  return i < sizeof table / sizeof table[0] ? table[i] : NULL;
-}
+const strut_integrator *strut_integrator_at(size_t i) { return i < COUNT ? table[i] : NULL; }
 
 const strut_integrator *strut_integrator_find(const char *name) {
-  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+  for (size_t i = 0; i < COUNT; i++)
     if (!strcmp(table[i]->name, name)) return table[i];
   return NULL;
 }
 
-/* The first contact with exact sticking, or -1. */
-static int32_t sticking(const strut_model *model) {
+const strut_integrator *strut_integrator_for(strut_integrator_role role) {
+  assert(role != STRUT_ROLE_NONE);
+  for (size_t i = 0; i < COUNT; i++)
+    if (table[i]->role == role) return table[i];
+  assert(!"every role has a method");
+  return NULL;
+}
+
+int32_t strut_first_exact_contact(const strut_model *model) {
   for (int32_t i = 0; i < model->contacts.count; i++)
-    if (model->contacts.entry[i].law == STRUT_FRICTION_COULOMB) return i;
+    if (strut_friction_states(model->contacts.entry[i].friction.law) == STRUT_FRICTION_EXACT_STICK)
+      return i;
   return -1;
+}
+
+const strut_integrator *strut_integrator_for_settling(const strut_model *model) {
+  bool exact = strut_first_exact_contact(model) >= 0;
+  return strut_integrator_for(exact ? STRUT_ROLE_EXACT_STICK : STRUT_ROLE_PLAIN);
 }
 
 strut_status strut_integrator_check(const strut_model *model, strut_error *error) {
@@ -32,12 +46,13 @@ strut_status strut_integrator_check(const strut_model *model, strut_error *error
   const char *name = scene->experiment.integrator;
   const strut_integrator *method = strut_integrator_find(name);
   if (!method) return strut_fail(error, STRUT_USAGE, "there is no integrator '%s'", name);
-  int32_t exact = sticking(model);
+  int32_t exact = strut_first_exact_contact(model);
   if (exact >= 0 && !method->events)
     return strut_fail(error, STRUT_USAGE,
-                      "friction law coulomb at node '%s' needs a method with events; use "
+                      "friction law %s at node '%s' needs a method with events; use "
                       "solver.integrator rk4-events, verlet-events or adaptive instead of %s, or "
                       "the law karnopp",
+                      strut_friction_law_at(model->contacts.entry[exact].friction.law)->word,
                       scene->nodes[model->contacts.entry[exact].node].name, name);
   if (method->no_ground && model->contacts.count > 0)
     return strut_fail(error, STRUT_USAGE,

@@ -16,6 +16,23 @@ typedef enum strut_region {
   STRUT_REGIONS
 } strut_region;
 
+/** What the program chooses a method for where the user names none; see strut_integrator_for. */
+typedef enum strut_integrator_role {
+  STRUT_ROLE_NONE,
+  STRUT_ROLE_PLAIN,       /* settling, relaxing and steps that are halved */
+  STRUT_ROLE_EXACT_STICK, /* the same where a friction law sticks exactly */
+  STRUT_ROLE_COARSE,      /* the first, coarse run of a requested accuracy */
+  STRUT_ROLE_REFERENCE,   /* chooses its steps by its own estimate of the error */
+  STRUT_ROLE_STIFF        /* long steps over stiff members that hardly move */
+} strut_integrator_role;
+
+/** The kernel that steps several runs at once, lanes/batch.h. */
+typedef enum strut_lane_method {
+  STRUT_LANES_NONE, /* runs are stepped one by one */
+  STRUT_LANES_RK4,
+  STRUT_LANES_VERLET
+} strut_lane_method;
+
 /** A method. Its workspace belongs to one state, whose arena holds it: freeing the state frees it. */
 typedef struct strut_integrator {
   const char *name;        /* as the language calls it */
@@ -23,6 +40,8 @@ typedef struct strut_integrator {
   int order;               /* of convergence on smooth scenes */
   int evaluations;         /* of the forces per step, where no event interrupts it */
   strut_region region;
+  strut_integrator_role role; /* each at most once in the table */
+  strut_lane_method lanes;
   bool implicit_damper; /* the ground's dampers do not limit the step */
   bool events;          /* locates events: modes of contacts are frozen within a step */
   bool rigid;           /* keeps the lengths of rigid bars */
@@ -43,6 +62,12 @@ typedef struct strut_integrator {
 STRUT_API const strut_integrator *strut_integrator_at(size_t i);
 /** The method of that name, or NULL. */
 STRUT_API const strut_integrator *strut_integrator_find(const char *name);
+/** The method of a role other than STRUT_ROLE_NONE. */
+STRUT_API const strut_integrator *strut_integrator_for(strut_integrator_role role);
+/** The method of STRUT_ROLE_PLAIN, or of STRUT_ROLE_EXACT_STICK where the model has such a contact. */
+STRUT_API const strut_integrator *strut_integrator_for_settling(const strut_model *model);
+/** Index of the first contact whose friction law sticks exactly, or -1. */
+STRUT_API int32_t strut_first_exact_contact(const strut_model *model);
 /**
  * Can the scene's method run the model? STRUT_USAGE, with what to change, where there is no such
  * method, exact Coulomb friction has none with events, contacts have one that cannot step over them,
@@ -52,8 +77,8 @@ STRUT_API const strut_integrator *strut_integrator_find(const char *name);
 STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_error *error);
 
 /* The rows of the table. */
-extern const strut_integrator strut_integrator_rk4, strut_integrator_euler, strut_integrator_verlet,
-    strut_integrator_rk4_events, strut_integrator_euler_events, strut_integrator_verlet_events,
-    strut_integrator_adaptive, strut_integrator_midpoint;
+#define STRUT_INTEGRATOR_ROW(row, word) extern const strut_integrator strut_integrator_##row;
+STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)
+#undef STRUT_INTEGRATOR_ROW
 
 #endif

@@ -240,6 +240,7 @@ const strut_integrator strut_integrator_midpoint = {
     .order = 2,
     .evaluations = 4, /* about: as many as Newton's method takes */
     .region = STRUT_REGION_ALL,
+    .role = STRUT_ROLE_STIFF,
     .no_ground = true,
     .create = midpoint_create,
     .restart = midpoint_restart,

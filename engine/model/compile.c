@@ -171,20 +171,15 @@ static void compile_contacts(strut_model *model, bool *failed) {
   for (size_t i = 0; i < count; i++) {
     const strut_contact *contact = &scene->contacts[i];
     at[i] = 2 * (uint32_t)contact->node;
-    entry[i] = (strut_contact_entry){.node = contact->node,
-                                     .stiffness = contact->stiffness,
-                                     .damping = contact->damping,
-                                     .law = contact->friction.law};
+    entry[i] = (strut_contact_entry){
+        .node = contact->node, .stiffness = contact->stiffness, .damping = contact->damping};
     if (scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
       entry[i].damping = 0.0;
       entry[i].dissipation = contact->dissipation;
       model->plan |= STRUT_TERM_LAWS;
     }
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
-    entry[i].mu_static = contact->friction.mu_static;
-    entry[i].mu_kinetic = contact->friction.mu_kinetic;
-    entry[i].stick_velocity = contact->friction.stick_velocity;
-    entry[i].width = contact->friction.width;
+    entry[i].friction = contact->friction;
     model->plan |= STRUT_TERM_FRICTION;
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->plan |= STRUT_TERM_LAWS;
   }

@@ -54,12 +54,9 @@ typedef struct strut_member_table {
 /** One node that may touch: a record, because most of them are only asked whether they do. */
 typedef struct strut_contact_entry {
   int32_t node;
-  double stiffness, damping;    /* c_g [N/m], k_g [N s/m] */
-  double mu_static, mu_kinetic; /* mu_0, mu [1]; 0 without friction */
-  double stick_velocity;        /* delta [m/s] */
-  double width;                 /* of the smooth law [m/s] */
-  double dissipation;           /* chi of the Hunt-Crossley law [s/m]; 0 with the printed one */
-  strut_friction_law law;
+  double stiffness, damping; /* c_g [N/m], k_g [N s/m] */
+  double dissipation;        /* chi of the Hunt-Crossley law [s/m]; 0 with the approach-only one */
+  strut_friction friction;   /* its numbers are 0 without friction */
 } strut_contact_entry;
 
 typedef struct strut_contact_table {

@@ -18,14 +18,15 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->v = strut_arena_allocate(arena, both, sizeof(double));
   state->rest = strut_arena_allocate(arena, slots, sizeof(double));
   state->rest_rate = strut_arena_allocate(arena, slots, sizeof(double));
-  state->taut_stretch = strut_arena_allocate(arena, slots, sizeof(double));
-  state->taut_tension = strut_arena_allocate(arena, slots, sizeof(double));
+  state->slack_length_threshold = strut_arena_allocate(arena, slots, sizeof(double));
+  state->slack_force_threshold = strut_arena_allocate(arena, slots, sizeof(double));
   state->force = strut_arena_allocate(arena, both, sizeof(double));
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
-  if (!state->q || !state->v || !state->rest || !state->taut_stretch || !state->taut_tension ||
-      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch) {
+  if (!state->q || !state->v || !state->rest || !state->slack_length_threshold ||
+      !state->slack_force_threshold || !state->rest_rate || !state->force || !state->normal ||
+      !state->friction || !state->scratch) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -48,8 +49,8 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   memcpy(state->q, model->start, both);
   memcpy(state->v, model->velocity, both);
   memcpy(state->rest, model->members.rest, slots);
-  memcpy(state->taut_stretch, model->members.slack, slots);
-  memcpy(state->taut_tension, model->members.slack, slots);
+  memcpy(state->slack_length_threshold, model->members.slack, slots);
+  memcpy(state->slack_force_threshold, model->members.slack, slots);
   memset(state->rest_rate, 0, slots);
   memset(state->work, 0, sizeof state->work);
   memset(state->power, 0, sizeof state->power);

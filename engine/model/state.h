@@ -41,7 +41,7 @@ typedef struct strut_state {
   double *q;                     /* positions [m] */
   double *v;                     /* velocities [m/s] */
   double work[STRUT_POWER_ROOM]; /* powers integrated since t = 0 [J] */
-  double load_mark;              /* strut_energy_reset_load_work: where the works count from [J] */
+  double load_work_origin;       /* strut_energy_reset_load_work: where the works count from [J] */
   double refined_until;          /* methods that refine after touchdowns do so until then [s] */
   int64_t evaluations;           /* of the forces since the reset */
   int64_t events;                /* switches located in time, since the reset */
@@ -55,9 +55,10 @@ typedef struct strut_state {
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */
   double *rest_rate; /* (slots) [m/s] */
-  double *taut_stretch, *taut_tension; /* (slots) a member acts where both are exceeded [m], [N]:
+  double *slack_length_threshold,
+      *slack_force_threshold; /* (slots) a member acts where both are exceeded [m], [N]:
                         0 for cables, -INFINITY otherwise; methods with events freeze cables here */
-  double drive_time;  /* the time these two are for [s]; NAN before the first evaluation */
+  double drive_time;          /* the time these two are for [s]; NAN before the first evaluation */
   double time_offset; /* drives and loads stand where they do so much later than n * dt [s] */
 
   /* position, velocity and time dependent: strut_forces */

@@ -17,10 +17,13 @@ typedef struct strut_buffer {
   bool failed; /* memory was out: the text is not complete */
 } strut_buffer;
 
-/** Appends. Numbers look as in the C locale only between strut_c_locale_enter and leave. */
+/** Appends. Call between strut_c_locale_enter and leave for numbers in the C locale. */
 STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/** Hands the text over (release it) and zeroes the buffer; NULL when memory was out. */
+/** Returns the text, to be released by the caller, and zeroes the buffer; NULL if memory was out. */
 STRUT_API char *strut_buffer_take(strut_buffer *buffer);
+
+/** Appends (count) bytes in base64, without line breaks. */
+STRUT_API void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count);
 
 #endif

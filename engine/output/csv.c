@@ -9,7 +9,7 @@
 
 enum { BUFFER = 1 << 16, FILE_COUNT = 4 };
 
-/* Which channels stand in which file; a file without channels is not written. */
+/* The channels of each file; a file without channels is not written. */
 static const struct {
   const char *name;
   unsigned channels;
@@ -32,7 +32,7 @@ typedef struct csv {
   size_t width; /* doubles in a row of the recorder */
   table tables[FILE_COUNT];
   size_t used;
-  char buffer[BUFFER]; /* what is on its way into one file */
+  char buffer[BUFFER]; /* not yet written */
 } csv;
 
 static strut_status flush(csv *self, table *t, strut_error *error) {
@@ -42,7 +42,7 @@ static strut_status flush(csv *self, table *t, strut_error *error) {
   return strut_file_trouble(&t->file, error);
 }
 
-/* A cell of the header; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
+/* A cell of the header; RFC 4180 requires quotes around one with a comma, a quote or a break. */
 static void write_cell(FILE *stream, const char *const parts[4], const char *unit) {
   bool quoted = false;
   for (int i = 0; i < 4; i++) quoted = quoted || strpbrk(parts[i], ",\"\r\n");
@@ -67,7 +67,7 @@ static void write_name(FILE *stream, const strut_record_channel *channel, size_t
   write_cell(stream, parts, channel->unit);
 }
 
-/* Adds the columns of one item, channel after channel: everything about a node stands together. */
+/* Adds the columns of one item, channel by channel, so that the columns of a node are adjacent. */
 static void add_item(table *t, unsigned mask, const strut_record_layout *layout, size_t item) {
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *channel = &layout->channels[i];
@@ -149,7 +149,7 @@ static strut_status take_rows(void *context, const double *rows, size_t count, s
   return STRUT_OK;
 }
 
-/* All files or none: where one fails, those before it go too. */
+/* Completes all files or none. */
 static strut_status commit(csv *self, strut_error *error) {
   for (int i = 0; i < FILE_COUNT; i++) {
     if (!self->tables[i].file.stream) continue;

@@ -50,11 +50,11 @@ strut_status strut_directory_create(const char *directory, strut_error *error) {
   return status;
 }
 
-/* Creates `path`.PID-N, the first N that nobody has; its name goes into `part`. */
-static int create_beside(const char *path, char *part, size_t room) {
+/* Creates `path`.PID-N with the first free N; writes that name into `part`. */
+static int create_beside(const char *path, char *part, size_t capacity) {
   int descriptor = -1;
   for (int i = 0; i < MOST_NAMES; i++) {
-    snprintf(part, room, "%s.%ld-%d", path, (long)getpid(), i);
+    snprintf(part, capacity, "%s.%ld-%d", path, (long)getpid(), i);
     descriptor = open(part, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 || errno != EEXIST) break;
   }
@@ -67,10 +67,10 @@ static void forget(strut_file *file) {
   *file = (strut_file){0};
 }
 
-/* Opens for writing what file->path names, an owned text or NULL where memory was out. */
+/* Opens file->path for writing; it is an owned text, or NULL if memory was out. */
 static strut_status open_beside(strut_file *file, strut_error *error) {
-  size_t room = file->path ? strlen(file->path) + NUMBER_ROOM : 1;
-  file->part = strut_allocate(room, 1);
+  size_t capacity = file->path ? strlen(file->path) + NUMBER_ROOM : 1;
+  file->part = strut_allocate(capacity, 1);
   if (!file->path || !file->part) {
     forget(file);
     return no_memory(error);
@@ -84,7 +84,7 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
     return status;
   }
   if (!folder) {
-    descriptor = create_beside(file->path, file->part, room);
+    descriptor = create_beside(file->path, file->part, capacity);
     code = errno;
   }
   if (descriptor >= 0) {
@@ -103,20 +103,20 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
 
 strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
                              strut_error *error) {
-  size_t room = strlen(directory) + strlen(name) + 2;
-  *file = (strut_file){.path = strut_allocate(room, 1)};
-  if (file->path) snprintf(file->path, room, "%s/%s", directory, name);
+  size_t capacity = strlen(directory) + strlen(name) + 2;
+  *file = (strut_file){.path = strut_allocate(capacity, 1)};
+  if (file->path) snprintf(file->path, capacity, "%s/%s", directory, name);
   return open_beside(file, error);
 }
 
 strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error) {
-  size_t room = strlen(path) + 1;
-  *file = (strut_file){.path = strut_allocate(room, 1)};
-  if (file->path) memcpy(file->path, path, room);
+  size_t capacity = strlen(path) + 1;
+  *file = (strut_file){.path = strut_allocate(capacity, 1)};
+  if (file->path) memcpy(file->path, path, capacity);
   return open_beside(file, error);
 }
 
-/* Makes a rename durable. Some file systems cannot synchronise a directory: no trouble. */
+/* Makes a rename durable. Some file systems cannot synchronise a directory, which is not an error. */
 static int synchronise_parent(const char *path) {
   const char *slash = strrchr(path, '/');
   size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
@@ -192,6 +192,14 @@ strut_status strut_file_write_text(const char *directory, const char *name, cons
   strut_file file;
   strut_status status = strut_file_open(&file, directory, name, error);
   return status == STRUT_OK ? write_and_commit(&file, text, error) : status;
+}
+
+strut_status strut_file_write_block(const char *directory, const char *name, char *text,
+                                    strut_error *error) {
+  if (!text) return no_memory(error);
+  strut_status status = strut_file_write_text(directory, name, text, error);
+  strut_release(text);
+  return status;
 }
 
 strut_status strut_file_write_path(const char *path, const char *text, strut_error *error) {

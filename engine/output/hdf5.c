@@ -11,7 +11,7 @@
 
 enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8, CHANNELS = 6, SCALES = 12 };
 
-/* One growing dataset; rows are gathered until they fill a chunk. */
+/* One growing dataset; rows are collected until they fill a chunk. */
 typedef struct series {
   hid_t dataset;
   int rank;
@@ -33,7 +33,7 @@ typedef struct hdf5 {
   strut_hdf5_scale scales[SCALES];
 } hdf5;
 
-/* What stands along the second dimension, and along the third. */
+/* Labels of the second and the third dimension. */
 static const char *item_scale(strut_channel id) {
   switch (id) {
     case STRUT_CHANNEL_POSITION:
@@ -54,7 +54,7 @@ static const char *component_scale(strut_channel id) {
   }
 }
 
-/* Closes the HDF5 file; false where not all of it could be written. */
+/* Closes the HDF5 file; false if not all of it could be written. */
 static bool close_file(hdf5 *self) {
   bool good = true;
   if (self->id > 0) good = H5Fclose(self->id) >= 0;
@@ -73,7 +73,7 @@ static void abandon(hdf5 *self) {
   self->scale_count = 0;
 }
 
-/* The scale of that name, made of the names if it is not there yet; NULL on failure. */
+/* The scale of that name, created from the names if necessary; NULL on failure. */
 static strut_hdf5_scale *scale_of_names(hdf5 *self, const char *name, const char *const *names,
                                         size_t count) {
   for (int i = 0; i < self->scale_count; i++) {
@@ -86,7 +86,7 @@ static strut_hdf5_scale *scale_of_names(hdf5 *self, const char *name, const char
   return scale;
 }
 
-/* Rows of one chunk: about CHUNK_BYTES, and not more than will come. A very long row is cut. */
+/* Rows per chunk: about CHUNK_BYTES, and no more than will be recorded. Very long rows are split. */
 static bool create_series(hdf5 *self, series *s, const char *name, const char *unit,
                           size_t expected_rows) {
   hsize_t chunk[STRUT_HDF5_RANK] = {1, s->shape[1], s->shape[2]};
@@ -128,7 +128,7 @@ static bool create_channel(hdf5 *self, const strut_record_channel *channel, size
   return strut_hdf5_scale_attach(self->id, s->dataset, channel->name, STRUT_HDF5_RANK, scales);
 }
 
-/* The driver does not fail; this is how its trouble is noticed. */
+/* The driver does not report failures; they are read from its state here. */
 static bool written(const hdf5 *self) {
   if (self->disk.trouble) errno = self->disk.trouble;
   return !self->disk.trouble;
@@ -212,7 +212,7 @@ static strut_status take_rows(void *context, const double *rows, size_t count, s
   return status;
 }
 
-/* Writes what is held, closes, and gives the file its name. */
+/* Writes pending rows, closes the file and renames it. */
 static strut_status complete(hdf5 *self, strut_status run_status, strut_error *error) {
   errno = 0;
   bool good = true;
@@ -220,7 +220,7 @@ static strut_status complete(hdf5 *self, strut_status run_status, strut_error *e
   good = good && strut_hdf5_text(self->id, "status", strut_status_text(run_status));
   int code = errno;
   bool closed = close_file(self);
-  if (!good && !errno) errno = code; /* what failed first is the reason */
+  if (!good && !errno) errno = code; /* report the first failure */
   good = good && closed;
   return good ? strut_file_commit(&self->file, error) : strut_file_trouble(&self->file, error);
 }
@@ -259,7 +259,7 @@ void strut_hdf5_leave_at_exit(void) { H5dont_atexit(); }
 void strut_hdf5_free(strut_sink *sink) {
   if (!sink) return;
   hdf5 *self = sink->context;
-  if (self->id > 0) { /* else the library may not even have begun, and need not */
+  if (self->id > 0) { /* otherwise the library is not initialised, and need not be */
     strut_hdf5_quiet quiet = strut_hdf5_hush();
     abandon(self);
     strut_hdf5_unhush(quiet);

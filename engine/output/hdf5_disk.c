@@ -16,14 +16,14 @@ typedef struct strut_hdf5_piece {
   unsigned char bytes[];
 } piece;
 
-/* What HDF5 holds of an open file; its own part must come first. */
+/* The driver's file object; the part that HDF5 defines must come first. */
 typedef struct driver_file {
   H5FD_t common;
   strut_hdf5_disk *disk;
   haddr_t end, allocated; /* end of what was written; end of what HDF5 may use */
 } driver_file;
 
-/* The setting that carries the disk from create to open. */
+/* The property that passes the disk from create to open. */
 typedef struct driver_setting {
   strut_hdf5_disk *disk;
 } driver_setting;
@@ -89,7 +89,7 @@ static herr_t read_bytes(H5FD_t *common, H5FD_mem_t type, hid_t transfer, haddr_
     if (got <= 0) break;
     done += (size_t)got;
   }
-  memset(to + done, 0, size - done); /* beyond what was written */
+  memset(to + done, 0, size - done); /* past the end of the data */
   for (const piece *p = disk->first; p; p = p->next) copy_overlap(p, address, size, to);
   return 0;
 }

@@ -15,14 +15,14 @@
 typedef struct strut_hdf5_disk {
   int descriptor;                 /* open for reading and writing; not owned */
   int trouble;                    /* errno of the first failure, or 0 */
-  hid_t driver;                   /* HDF5 1.10 still looks at it after it let go of it */
-  struct strut_hdf5_piece *first; /* what could not be written, in order */
+  hid_t driver;                   /* HDF5 1.10 still reads it after releasing it */
+  struct strut_hdf5_piece *first; /* data that could not be written, in order */
   struct strut_hdf5_piece **last;
 } strut_hdf5_disk;
 
 /** A new HDF5 file, without times in it, on an empty file's descriptor. Negative on failure. */
 hid_t strut_hdf5_disk_create(strut_hdf5_disk *disk, int descriptor);
-/** Frees what was kept and the driver; call it after the file was closed. Zeroed: nothing to do. */
+/** Frees pending data and the driver, after the file was closed. A zeroed struct is allowed. */
 void strut_hdf5_disk_free(strut_hdf5_disk *disk);
 
 #endif

@@ -15,7 +15,7 @@
 
 enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = 8 };
 
-/** HDF5's printing of errors, switched off for a while and given back. */
+/** Switches HDF5's printing of errors off and back on. */
 typedef struct strut_hdf5_quiet {
   H5E_auto2_t function;
   void *data;
@@ -39,7 +39,7 @@ hid_t strut_hdf5_names(hid_t file, const char *name, const char *const *names, s
 /** A dimension scale and who uses it along which dimension. */
 typedef struct strut_hdf5_scale {
   const char *name; /* not owned; also the dataset's name */
-  hid_t dataset;    /* owned by whoever opened it */
+  hid_t dataset;    /* owned by the function that opened it */
   hobj_ref_t reference;
   int user_count;
   struct {
@@ -50,10 +50,10 @@ typedef struct strut_hdf5_scale {
 
 /** Makes a dataset a scale. */
 bool strut_hdf5_scale_begin(strut_hdf5_scale *scale, hid_t file, hid_t dataset, const char *name);
-/** Ties each dimension of a dataset to a scale; NULL: it has none. */
+/** Attaches a scale, or none for NULL, to each dimension of a dataset. */
 bool strut_hdf5_scale_attach(hid_t file, hid_t dataset, const char *name, int rank,
                              strut_hdf5_scale *scales[STRUT_HDF5_RANK]);
-/** Writes down who uses the scale, after the last attach. */
+/** Stores the list of users of the scale, after the last attach. */
 bool strut_hdf5_scale_end(const strut_hdf5_scale *scale);
 
 #endif

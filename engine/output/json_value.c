@@ -15,7 +15,7 @@ strut_json strut_json_begin(void) {
   return (strut_json){root, root == NULL};
 }
 
-/* Takes the value over. */
+/* Takes ownership of the value. */
 static cJSON *add(strut_json *json, cJSON *to, const char *key, cJSON *value) {
   bool added = value && to && !json->failed;
   if (added) added = key ? cJSON_AddItemToObject(to, key, value) : cJSON_AddItemToArray(to, value);

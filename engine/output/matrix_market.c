@@ -22,7 +22,7 @@ static const char *const names[] = {"node_names.csv",
                                     "damping.mtx",
                                     NULL};
 
-/* All that the files are made of. */
+/* The data of all files. */
 typedef struct source {
   const strut_model *model;
   const double *q;
@@ -39,7 +39,7 @@ static void write_number(FILE *stream, double value) {
   fputs(text, stream);
 }
 
-/* RFC 4180 wants quotes around a text that holds a comma, a quote or a break. */
+/* RFC 4180 requires quotes around a text with a comma, a quote or a break. */
 static void write_text(FILE *stream, const char *text) {
   bool quoted = strpbrk(text, ",\"\r\n") != NULL;
   if (quoted) fputc('"', stream);
@@ -118,7 +118,7 @@ static void write_equilibrium(FILE *stream, const source *from) {
     }
 }
 
-/* The lower triangle; zeros that only keep a place are left out. */
+/* The lower triangle; structural zeros are omitted. */
 static void write_symmetric(FILE *stream, const source *from, const strut_sparse *matrix,
                             const char *what) {
   int32_t count = 0;

@@ -18,9 +18,10 @@
 enum { BLOCK = 1 << 16, ENTRY_NUMBERS = 64, LIST_MOST = 1 << 28 };
 
 typedef struct list {
-  char *text; /* "" where there is none */
+  char *text; /* "" if there is no list */
   size_t length;
-  size_t at; /* behind the entry found last: names are mostly asked for in the order of the list */
+  size_t
+      at; /* after the entry found last, as names are mostly requested in the order of the list */
 } list;
 
 static strut_status no_memory(strut_error *error) {
@@ -72,25 +73,25 @@ static int measure_at(int folder, const char *name, uint64_t *size, uint64_t *su
   return code;
 }
 
-/* The whole list of a folder; an empty one where there is none that can be read. */
+/* Reads the list of a folder; an empty one if none can be read. */
 static strut_status read_list(int folder, list *l, strut_error *error) {
   struct stat found;
   *l = (list){.text = NULL};
   int file = openat(folder, STRUT_OWNERSHIP_LIST, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  size_t room = 0;
+  size_t capacity = 0;
   if (file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_size < LIST_MOST)
-    room = (size_t)found.st_size;
-  l->text = strut_allocate(room + 1, 1);
+    capacity = (size_t)found.st_size;
+  l->text = strut_allocate(capacity + 1, 1);
   ssize_t got = 1;
-  while (l->text && l->length < room && got > 0) {
-    got = read(file, l->text + l->length, room - l->length);
+  while (l->text && l->length < capacity && got > 0) {
+    got = read(file, l->text + l->length, capacity - l->length);
     if (got > 0) l->length += (size_t)got;
   }
   if (file >= 0) close(file);
   return l->text ? STRUT_OK : no_memory(error);
 }
 
-/* The next entry of that name from the list's place on, going around once; false: none is left. */
+/* Finds the next entry of that name, cyclically from the current place; false: none is left. */
 static bool next_entry(list *l, const char *name, size_t *visited, uint64_t *size, uint64_t *sum) {
   size_t wanted = strlen(name);
   while (*visited < l->length) {
@@ -118,7 +119,7 @@ static bool is_listed(list *l, const char *name, uint64_t size, uint64_t sum) {
   return false;
 }
 
-/* May the file be replaced? 0, EEXIST where it is not strut's, or another errno. */
+/* May the file be replaced? 0, EEXIST if strut did not write it, or another errno. */
 static int check_one(int folder, list *l, const char *name) {
   struct stat found;
   uint64_t size = 0, sum = 0;
@@ -136,7 +137,7 @@ strut_status strut_ownership_check(const char *directory, const char *const *nam
                                    strut_error *error) {
   list l = {.text = NULL};
   int folder = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return STRUT_OK; /* nothing there, or writing will say what is wrong */
+  if (folder < 0) return STRUT_OK; /* does not exist, or writing will report the error */
   strut_status status = read_list(folder, &l, error);
   for (int i = 0; names[i] && status == STRUT_OK; i++) {
     int code = check_one(folder, &l, names[i]);
@@ -155,7 +156,7 @@ strut_status strut_ownership_check(const char *directory, const char *const *nam
   return status;
 }
 
-/* The list of a folder, to append to; -1 where that is not possible. */
+/* Opens the list of a folder for appending; -1 on failure. */
 static int open_list(int folder) {
   struct stat found;
   int file = openat(folder, STRUT_OWNERSHIP_LIST,
@@ -167,10 +168,10 @@ static int open_list(int folder) {
 
 /* Appends an entry in one piece, since other processes may append as well. 0 or an errno. */
 static int append(int folder, const char *name, uint64_t size, uint64_t sum) {
-  size_t room = strlen(name) + ENTRY_NUMBERS;
-  char *line = strut_allocate(room, 1);
+  size_t capacity = strlen(name) + ENTRY_NUMBERS;
+  char *line = strut_allocate(capacity, 1);
   if (!line) return ENOMEM;
-  int length = snprintf(line, room, "%" PRIu64 " %016" PRIx64 " %s\n", size, sum, name);
+  int length = snprintf(line, capacity, "%" PRIu64 " %016" PRIx64 " %s\n", size, sum, name);
   int file = open_list(folder), code = 0;
   errno = 0;
   if (file >= 0 && write(file, line, (size_t)length) != length) code = errno ? errno : ENOSPC;
@@ -223,7 +224,7 @@ static char *split(const char *path, const char **name) {
   return folder;
 }
 
-/* A folder that results_begin made: it moves as a whole, and who moves it knows the rules. */
+/* Is it a staging folder? Ownership is checked when its files are moved. */
 static bool is_stage(const char *folder) {
   const char *slash = strrchr(folder, '/');
   return strncmp(slash ? slash + 1 : folder, STRUT_STAGE_PREFIX, strlen(STRUT_STAGE_PREFIX)) == 0;

@@ -17,12 +17,12 @@ enum { STRUT_QUANTITY_TEXT = 64 };
 STRUT_API const char *strut_quantity_text(double value, int digits, const char *unit,
                                           char text[STRUT_QUANTITY_TEXT]);
 
-/** The same by value, for use within one call of printf: strut_quantity_of(v, 4, "m").text. */
+/** As strut_quantity_text, by value for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
 typedef struct strut_quantity {
   char text[STRUT_QUANTITY_TEXT];
 } strut_quantity;
 STRUT_API strut_quantity strut_quantity_of(double value, int digits, const char *unit);
-/** The same in any unit: those that take no prefix ("1", "m^2", "kg m/s") stand as they are. */
+/** As strut_quantity_of for any unit; units that take no prefix ("1", "m^2", "kg m/s") stay unchanged. */
 STRUT_API strut_quantity strut_quantity_of_any(double value, int digits, const char *unit);
 
 #endif

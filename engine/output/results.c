@@ -50,14 +50,14 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
   return status;
 }
 
-/* Moves the file, or removes an older run's where there is none. 0 or an errno. */
+/* Moves the file, or removes that of an earlier run if this one has none. 0 or an errno. */
 static int move(const char *from, const char *to) {
   if (rename(from, to) == 0) return 0;
   if (errno != ENOENT) return errno;
   return unlink(to) == 0 || errno == ENOENT ? 0 : errno;
 }
 
-/* The room for paths is taken before the first file moves: nothing but the moves can fail then. */
+/* Memory for paths is allocated before the first move, so that then only the moves can fail. */
 static int move_all(const strut_results *results) {
   size_t longest = 0;
   for (int i = 0; results->names[i]; i++)

@@ -13,26 +13,26 @@
 #include "engine/base/status.h"
 #include "engine/output/stage.h"
 
-/** Results being gathered. Zero-initialise. */
+/** Results being written. Zero-initialise. */
 typedef struct strut_results {
   char *directory;          /* where they will be */
-  const char *stage;        /* where they are written: give this one to the writers */
+  const char *stage;        /* where they are written until the commit: pass this to the writers */
   strut_stage held;         /* the same folder, as this process holds it */
   bool made;                /* the directory did not exist before */
-  const char *const *names; /* of all files that may be among them, NULL after the last */
+  const char *const *names; /* of all possible files, NULL after the last */
 } strut_results;
 
 /** The i-th name of a file of results, or NULL after the last. */
 STRUT_API const char *strut_results_name(int i);
-/** Creates the directory and finds out whether it can be written to. */
+/** Creates the directory and checks that it is writable. */
 STRUT_API strut_status strut_results_begin(strut_results *results, const char *directory,
                                            strut_error *error);
-/** The same for files of other names than those of a run: `names` ends with NULL and is kept. */
+/** As strut_results_begin, for other file names than those of a run: `names` ends with NULL and is kept. */
 STRUT_API strut_status strut_results_begin_named(strut_results *results, const char *directory,
                                                  const char *const *names, strut_error *error);
-/** Moves the files to where they belong; on failure as strut_results_abandon. */
+/** Moves the files to their directory; on failure as strut_results_abandon. */
 STRUT_API strut_status strut_results_commit(strut_results *results, strut_error *error);
-/** Removes all that was written, and the directory if it is new. A zeroed struct is allowed. */
+/** Removes all written files, and the directory if it is new. A zeroed struct is allowed. */
 STRUT_API void strut_results_abandon(strut_results *results);
 
 #endif

@@ -12,7 +12,7 @@
 
 #include "engine/base/memory.h"
 
-/* The file that says whose folder it is, its first line, and the machine in the second. */
+/* The file that marks a folder: its first line names the owner, its second the machine. */
 #define MARK ".strut-stage"
 #define MARK_BEGIN "strut gathers results here; this may be removed when it does not run any more\n"
 
@@ -20,7 +20,7 @@ enum { MOST_NAMES = 1000, NUMBER_ROOM = 48, HOST_MOST = 64 };
 
 typedef char mark_text[sizeof MARK_BEGIN + HOST_MOST + 1];
 
-/* What the mark of this machine says. */
+/* States of the mark. */
 static void fill_mark(mark_text text) {
   char host[HOST_MOST] = "";
   if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
@@ -38,11 +38,11 @@ static bool write_mark(int folder) {
 
 typedef enum mark {
   MARK_NONE,
-  MARK_BEGUN, /* its writer was killed while it wrote */
+  MARK_BEGUN, /* its writer was killed while writing it */
   MARK_WHOLE
 } mark;
 
-/* The mark of a process of this machine, as the folder bears it. */
+/* Reads the mark of a folder. */
 static mark read_mark(int folder) {
   mark_text wanted, found = "";
   fill_mark(wanted);
@@ -74,7 +74,7 @@ static bool holds_only_mark(int folder) {
   return only;
 }
 
-/* Removes the files in it, the mark last: what is left half empty can still be recognised. */
+/* Removes the files, the mark last, so that a partly emptied folder stays recognisable. */
 static void empty(int folder) {
   DIR *directory = open_directory(folder);
   if (!directory) return;
@@ -127,13 +127,14 @@ static bool hold(strut_stage *stage) {
 }
 
 strut_status strut_stage_create(strut_stage *stage, const char *directory, strut_error *error) {
-  size_t room = strlen(directory) + NUMBER_ROOM;
-  *stage = (strut_stage){.path = strut_allocate(room, 1)};
+  size_t capacity = strlen(directory) + NUMBER_ROOM;
+  *stage = (strut_stage){.path = strut_allocate(capacity, 1)};
   if (!stage->path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
   strut_stage_sweep(directory);
   int code = EEXIST;
   for (int i = 0; i < MOST_NAMES && (code == EEXIST || code == ENOENT); i++) {
-    snprintf(stage->path, room, "%s/" STRUT_STAGE_PREFIX "%ld-%d", directory, (long)getpid(), i);
+    snprintf(stage->path, capacity, "%s/" STRUT_STAGE_PREFIX "%ld-%d", directory, (long)getpid(),
+             i);
     if (mkdir(stage->path, 0777) == 0 && hold(stage)) return STRUT_OK;
     code = errno;
   }

@@ -13,19 +13,19 @@
 
 #include "engine/base/status.h"
 
-/** How their names begin. */
+/** Prefix of their names. */
 #define STRUT_STAGE_PREFIX ".strut-stage-"
 
 typedef struct strut_stage {
-  char *path; /* of the folder; NULL: there is none */
+  char *path; /* of the folder, or NULL */
   int lock;   /* its descriptor, which holds the lock */
 } strut_stage;
 
-/** Makes one inside the directory, after removing what killed processes have left there. */
+/** Creates one inside the directory, after removing those of killed processes. */
 strut_status strut_stage_create(strut_stage *stage, const char *directory, strut_error *error);
-/** Removes it with all that is in it. A zeroed one is allowed. */
+/** Removes it with its contents. A zeroed struct is allowed. */
 void strut_stage_remove(strut_stage *stage);
-/** Removes what killed processes have left in the directory; true if there was anything. */
+/** Removes the folders that killed processes left in the directory; true if there were any. */
 bool strut_stage_sweep(const char *directory);
 
 #endif

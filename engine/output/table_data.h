@@ -10,9 +10,9 @@
 #include "engine/base/memory.h"
 
 typedef struct strut_table_column {
-  const char *name, *unit; /* unit: "" where there is none */
-  const char *const *text; /* (rows) as written; NULL, or of NULLs, where only values are known */
-  const double *value;     /* (rows), NAN where nothing is written; NULL: not all are numbers */
+  const char *name, *unit; /* unit may be "" */
+  const char *const *text; /* (rows) as written; NULL, or NULL entries, if only values are known */
+  const double *value;     /* (rows), NAN for empty cells; NULL: not all are numbers */
 } strut_table_column;
 
 /** Owned by its arena. Zero-initialise. */

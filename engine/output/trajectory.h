@@ -10,8 +10,8 @@
 /** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */
 typedef struct strut_trajectory {
   size_t frames, node_count, member_count, contact_count;
-  size_t every;          /* frames are every so many-th of the recorded samples; 1: all */
-  size_t recorded;       /* samples that there were */
+  size_t every;          /* stride of the frames in the recorded samples; 1: all */
+  size_t recorded;       /* number of recorded samples */
   double *time;          /* (frames) */
   double *position;      /* (frames, nodes, 2); NULL only where positions were not recorded */
   double *velocity;      /* (frames, nodes, 2) */
@@ -25,7 +25,7 @@ typedef struct strut_trajectory {
 } strut_trajectory;
 enum { STRUT_ENERGIES = 10 };
 
-/** As many doubles as a trajectory holds at most unless told otherwise: half a gigabyte. */
+/** Default limit on the doubles of a trajectory: half a gigabyte. */
 #define STRUT_TRAJECTORY_ROOM ((size_t)1 << 26)
 
 /**

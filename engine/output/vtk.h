@@ -20,12 +20,12 @@
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
 
-/** More frames than this are thinned evenly, the first of all kept. */
+/** More frames than this are thinned evenly; the first is kept. */
 enum { STRUT_VTK_MOST_FRAMES = 10000 };
 
-/** What was written. */
+/** Report of an export. */
 typedef struct strut_vtk_written {
-  size_t frames, every; /* every so many-th of the motion's frames */
+  size_t frames, every; /* every: stride in the frames of the motion */
 } strut_vtk_written;
 
 /**

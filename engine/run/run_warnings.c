@@ -16,7 +16,7 @@ static void warn_of_bands(const strut_run *r) {
     if (!(s->contacts[i].band_needed > 0.0)) continue;
     if (!count++) first = s->contacts[i].node;
     needed = fmax(needed, s->contacts[i].band_needed);
-    double band = r->model->contacts.entry[i].stick_velocity;
+    double band = r->model->contacts.entry[i].friction.stick_velocity;
     times = fmax(times, s->contacts[i].band_needed / band);
   }
   char more[40] = "";

@@ -8,6 +8,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/integrate/integrator.h"
+#include "engine/model/pose.h"
 
 /* Evaluations after which accelerations that rounding alone explains count as rest. */
 static const int64_t PATIENCE = 1000000;
@@ -50,13 +51,13 @@ static double rounding(const strut_relaxation *r) {
   memset(force, 0, (size_t)model->length * sizeof *force);
   for (int32_t j = 0; j < t->count; j++) {
     const double *a = r->state->q + t->from[j], *b = r->state->q + t->to[j];
-    double far = fmax(fmax(fabs(a[0]), fabs(a[1])), fmax(fabs(b[0]), fabs(b[1])));
+    double far = strut_coordinate_rounding(a, b);
     force[t->from[j]] += t->stiffness[j] * far;
     force[t->to[j]] += t->stiffness[j] * far;
   }
   for (int32_t i = 0; i < model->node_count; i++)
     if (model->weight[i] > 0.0) worst = fmax(worst, force[2 * i] / model->weight[i]);
-  return 4.0 * DBL_EPSILON * worst;
+  return 4.0 * worst;
 }
 
 static strut_status give_up(const strut_relaxation *r, strut_error *error) {
@@ -137,14 +138,6 @@ strut_status strut_relaxation_run(strut_relaxation *r, strut_error *error) {
   return relax(r, error);
 }
 
-/* Runge-Kutta, or with exact Coulomb friction, which that cannot take, the same from event to event. */
-static const strut_integrator *method_of(const strut_model *model) {
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    if (model->contacts.entry[i].law == STRUT_FRICTION_COULOMB)
-      return strut_integrator_find("rk4-events");
-  return strut_integrator_find("rk4");
-}
-
 strut_status strut_relaxation_create(const strut_model *model, strut_relaxation *r,
                                      strut_error *error) {
   *r = (strut_relaxation){.model = NULL};
@@ -157,7 +150,7 @@ strut_status strut_relaxation_create(const strut_model *model, strut_relaxation 
   status = strut_model_compile(&r->scene, &r->model, error);
   if (!status) status = strut_state_create(r->model, &r->state, error);
   if (status) return status;
-  r->method = method_of(r->model);
+  r->method = strut_integrator_for_settling(r->model);
   r->workspace = r->method->create(r->model, r->state);
   return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }

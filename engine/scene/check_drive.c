@@ -147,19 +147,16 @@ void strut_check_signals(strut_checker *checker) {
 
 static void check_friction(strut_checker *checker, size_t index, const char *owner) {
   const strut_friction *f = &checker->scene->contacts[index].friction;
-  if ((unsigned)f->law > STRUT_FRICTION_SMOOTH) {
+  if ((unsigned)f->law >= STRUT_FRICTION_LAW_COUNT) {
     strut_candidate_equilibrium(checker, STRUT_ON_CONTACT, index, "law",
                                 "the friction law of %s is unknown", owner);
     return;
   }
-  strut_find_range(checker, STRUT_ON_CONTACT, index, "mu_static", owner, f->mu_static,
-                   STRUT_NOT_NEGATIVE);
-  strut_find_range(checker, STRUT_ON_CONTACT, index, "mu_kinetic", owner, f->mu_kinetic,
-                   STRUT_NOT_NEGATIVE);
-  strut_find_range(checker, STRUT_ON_CONTACT, index, "stick_velocity", owner, f->stick_velocity,
-                   f->law == STRUT_FRICTION_KARNOPP ? STRUT_ABOVE_ZERO : STRUT_NOT_NEGATIVE);
-  strut_find_range(checker, STRUT_ON_CONTACT, index, "width", owner, f->width,
-                   f->law == STRUT_FRICTION_SMOOTH ? STRUT_ABOVE_ZERO : STRUT_NOT_NEGATIVE);
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
+    strut_find_range(
+        checker, STRUT_ON_CONTACT, index, strut_friction_key(p), owner, strut_friction_value(f, p),
+        strut_friction_needs(f->law, p) && strut_friction_above_zero(p) ? STRUT_ABOVE_ZERO
+                                                                        : STRUT_NOT_NEGATIVE);
 }
 
 void strut_check_ground(strut_checker *checker) {

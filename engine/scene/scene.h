@@ -16,6 +16,7 @@
 #include "engine/base/export.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/scene/friction.h"
 #include "engine/scene/quantity.h"
 #include "engine/scene/signal.h"
 
@@ -57,22 +58,6 @@ typedef struct strut_member {
   strut_rest_kind rest_kind;
   double rest_value; /* in the unit of rest_kind */
 } strut_member;
-
-typedef enum strut_friction_law {
-  STRUT_FRICTION_NONE,
-  STRUT_FRICTION_KARNOPP, /* with a stick band, equation (9) of the paper as printed */
-  STRUT_FRICTION_COULOMB, /* exact: a stuck node does not move. Needs a method with events */
-  STRUT_FRICTION_SMOOTH   /* -mu N u / sqrt(u^2 + width^2): creeps, but has no jump */
-} strut_friction_law;
-
-/** Friction between a node and the ground, u being the speed along it. */
-typedef struct strut_friction {
-  strut_friction_law law;
-  double mu_static;      /* mu_0 [1], >= 0; not used by the smooth law */
-  double mu_kinetic;     /* mu [1], >= 0 */
-  double stick_velocity; /* delta [m/s], > 0 with the Karnopp law */
-  double width;          /* of the smooth law [m/s], > 0 with it */
-} strut_friction;
 
 /** How the ground damps; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
@@ -189,6 +174,23 @@ typedef struct strut_steady {
                             that was long enough already; 0: tolerance */
   bool shooting;      /* finish the orbit by Newton's method, and give its Floquet multipliers */
 } strut_steady;
+
+/**
+ * X(row, "word"): the methods of integration, in the order of their table; their rows strut_integrator_*
+ * are in engine/integrate.
+ */
+#define STRUT_INTEGRATORS(X)                                                                       \
+  X(rk4, "rk4")                                                                                    \
+  X(euler, "euler")                                                                                \
+  X(verlet, "verlet")                                                                              \
+  X(rk4_events, "rk4-events")                                                                      \
+  X(euler_events, "euler-events")                                                                  \
+  X(verlet_events, "verlet-events")                                                                \
+  X(adaptive, "adaptive")                                                                          \
+  X(midpoint, "midpoint")
+/** Their words as the key table lists them: "rk4|euler|...". */
+#define STRUT_INTEGRATOR_WORD(row, word) "|" word
+#define STRUT_INTEGRATOR_WORDS (&("" STRUT_INTEGRATORS(STRUT_INTEGRATOR_WORD))[1])
 
 /** What to integrate, for how long, and what to measure. */
 typedef struct strut_experiment {

@@ -1,29 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_form.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/form_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/form_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_FROM, "from", "WHAT", "densities, lengths or prestress; else as the model says"},
-    {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE", "what every cable pulls with at least"},
-    {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY", "the same as a force density"},
+    {STRUT_OPTION_FROM, "from", "WHAT",
+     "densities, lengths or prestress (default: by what the model gives)"},
+    {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE",
+     "lower bound on the tension of every cable"},
+    {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY",
+     "lower bound on the force density of every cable"},
     {STRUT_OPTION_OBJECTIVE, "objective", "WHAT",
-     "of many prestresses: least largest, sum or squares"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
-    {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print what it holds"},
-    {STRUT_OPTION_JSON, "json", NULL, "print what the form holds as one JSON object instead"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "with -o, print nothing"},
+     "which prestress: minimal largest (default), sum or squares"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print a report"},
+    {STRUT_OPTION_JSON, "json", NULL, "print the report as one JSON object instead of the model"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -43,7 +44,9 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
     status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_DENSITY,
                                  STRUT_DIM_STIFFNESS, &wanted->least_density);
   if (status == STRUT_OK && (wanted->least_tension < 0 || wanted->least_density < 0)) {
-    fprintf(stderr, "strut form: what cables pull with at least is above 0: they only pull\n");
+    fprintf(
+        stderr,
+        "strut form: --least-tension and --least-density must not be negative: cables only pull\n");
     status = STRUT_USAGE;
   }
   wanted->from = (strut_form_source)(source + 1);
@@ -51,15 +54,15 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
   return status;
 }
 
-/* What is printed: with -o what the form holds, unless nobody wants to know; else the model. */
+/* The text to print: a report with -o, else the model. */
 static char *text_for(const strut_arguments *arguments, const strut_scene *scene,
                       const strut_form *form) {
   if (arguments->json) return strut_form_json(form, scene);
   return arguments->output ? strut_form_table(form, scene) : strut_scene_write(scene);
 }
 
-static strut_status show(const strut_arguments *arguments, const strut_scene *scene,
-                         const strut_form *form) {
+static strut_status report_form(const strut_arguments *arguments, const strut_scene *scene,
+                                const strut_form *form) {
   strut_error error = {0};
   bool silent = arguments->quiet && arguments->output && !arguments->json;
   char *model = arguments->output ? strut_scene_write(scene) : NULL;
@@ -76,8 +79,8 @@ static strut_status show(const strut_arguments *arguments, const strut_scene *sc
   return status;
 }
 
-static strut_status draw(const strut_plot *plot, const strut_scene *scene, const double (*drawn)[2],
-                         strut_error *error) {
+static strut_status draw_form(const strut_plot *plot, const strut_scene *scene,
+                              const double (*drawn)[2], strut_error *error) {
   strut_model *model = NULL;
   if (!plot->path) return STRUT_OK;
   strut_status status = strut_model_compile(scene, &model, error);
@@ -86,21 +89,21 @@ static strut_status draw(const strut_plot *plot, const strut_scene *scene, const
   return status;
 }
 
-/* Finds, shows and draws; `drawn` (node_count) is for the positions as they were. */
-static strut_status find(const strut_arguments *arguments, const strut_form_options *wanted,
-                         const strut_plot *plot, strut_scene *scene, double (*drawn)[2]) {
+/* Finds the form, prints and draws it; `drawn` (node_count) receives the former positions. */
+static strut_status find_form(const strut_arguments *arguments, const strut_form_options *wanted,
+                              const strut_plot *plot, strut_scene *scene, double (*drawn)[2]) {
   strut_form form;
   strut_error error = {0};
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
   strut_status status = strut_form_find(scene, wanted, &form, &error);
-  if (status == STRUT_OK) status = show(arguments, scene, &form);
-  if (status == STRUT_OK) status = draw(plot, scene, (const double(*)[2])drawn, &error);
+  if (status == STRUT_OK) status = report_form(arguments, scene, &form);
+  if (status == STRUT_OK) status = draw_form(plot, scene, (const double(*)[2])drawn, &error);
   if (error.message[0]) strut_print_error(&error);
   return status;
 }
 
-static strut_status run(const strut_arguments *arguments) {
+static strut_status run_form(const strut_arguments *arguments) {
   strut_scene scene;
   strut_form_options wanted = {0};
   strut_plot plot;
@@ -112,7 +115,8 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
   if (status != STRUT_OK) return status;
   double(*drawn)[2] = strut_arena_allocate(&arena, scene.node_count, sizeof *drawn);
-  status = drawn ? find(arguments, &wanted, &plot, &scene, drawn) : strut_print_out_of_memory();
+  status =
+      drawn ? find_form(arguments, &wanted, &plot, &scene, drawn) : strut_print_out_of_memory();
   strut_arena_free(&arena);
   strut_scene_free(&scene);
   return status;
@@ -121,14 +125,16 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_form = {
     .name = "form",
     .model = "MODEL",
-    .summary = "finds a shape in equilibrium, and writes the model that holds it",
+    .summary = "finds an equilibrium shape or prestress, and writes that model",
     .details =
-        "\nFrom densities: the shape that the members' force densities make, or the nearest\n"
-        "densities that make one. From lengths: the shape that the rest lengths make. From\n"
-        "prestress: the drawn shape, with rest lengths that hold it under gravity, loads and\n"
-        "on the ground, every cable in tension. Without --from a model with force densities\n"
-        "means densities, one with rest lengths lengths, any other prestress.\n"
-        "The new model, printed or written to FILE, stands still when it is run.\n",
+        "\n--from densities: the shape given by the force densities of the members, or the "
+        "nearest\n"
+        "densities for which one exists. --from lengths: the shape given by the rest lengths.\n"
+        "--from prestress: the drawn shape, with rest lengths that hold it under gravity, loads "
+        "and\n"
+        "ground forces, every cable in tension. By default, densities if the model gives force\n"
+        "densities, lengths if it gives rest lengths, otherwise prestress.\n"
+        "The new model is printed or written to FILE; it stays at rest when run without drives.\n",
     .options = options,
-    .run = run,
+    .run = run_form,
 };

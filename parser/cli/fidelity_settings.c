@@ -41,10 +41,14 @@ static strut_status set_friction(strut_scene *scene, strut_friction_law law) {
     strut_friction *f = &scene->contacts[i].friction;
     if (f->law == STRUT_FRICTION_NONE) continue;
     any = true;
-    if (law == STRUT_FRICTION_KARNOPP && !(f->stick_velocity > 0.0))
-      return refuse("friction-law", "karnopp needs ground.friction.stick_velocity in the model");
-    if (law == STRUT_FRICTION_SMOOTH && !(f->width > 0.0))
-      return refuse("friction-law", "smooth needs ground.friction.width in the model");
+    for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+      char needs[120];
+      if (!strut_friction_needs(law, p) || !strut_friction_above_zero(p)) continue;
+      if (strut_friction_value(f, p) > 0.0) continue;
+      snprintf(needs, sizeof needs, "%s needs ground.friction.%s in the model",
+               strut_friction_law_at(law)->word, strut_friction_key(p));
+      return refuse("friction-law", needs);
+    }
     f->law = law;
   }
   return any ? STRUT_OK : refuse("friction-law", "needs a ground with friction in the model");

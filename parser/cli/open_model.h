@@ -5,15 +5,17 @@
 #ifndef STRUT_PARSER_CLI_OPEN_MODEL_H
 #define STRUT_PARSER_CLI_OPEN_MODEL_H
 
+#include "engine/model/model.h"
+#include "engine/output/trajectory.h"
 #include "engine/scene/check.h"
 #include "engine/scene/scene.h"
 #include "parser/cli/options.h"
 
-/** How a command wants its scene. */
+/** Purpose of opening a scene. */
 typedef enum strut_open_purpose {
-  STRUT_OPEN_FOR_RUN, /* an equilibrium to start from is found and put into the start positions */
-  STRUT_OPEN_AS_RUN,  /* the same for a run if the file says anything about one, else for statics */
-  STRUT_OPEN_FOR_ANY  /* like that, but an equilibrium to start from remains a wish */
+  STRUT_OPEN_FOR_RUN, /* for a run; a start equilibrium is resolved into start positions */
+  STRUT_OPEN_AS_RUN,  /* as above if the file describes a run, else for statics */
+  STRUT_OPEN_FOR_ANY  /* as STRUT_OPEN_AS_RUN, but a start equilibrium stays unresolved */
 } strut_open_purpose;
 
 /** Reads the model that the arguments name; messages go to stderr. strut_scene_free frees it. */
@@ -27,7 +29,7 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
                                    strut_scene *scene);
 
-/** Says on stderr what a valid scene has that is hardly meant: see strut_scene_warn. */
+/** Prints the warnings of a valid scene on stderr: see strut_scene_warn. */
 strut_status strut_warn_of_scene(const strut_scene *scene);
 
 /**
@@ -36,7 +38,36 @@ strut_status strut_warn_of_scene(const strut_scene *scene);
  */
 strut_status strut_check_output_writable(const strut_arguments *arguments,
                                          const char *const *names);
-/** The same for one file; a path of NULL is none. */
+/** As above for one file; does nothing for NULL. */
 strut_status strut_try_file(const char *path);
+
+typedef struct strut_named_shape {
+  const char *name; /* "drawn", or the value of --at */
+  const double *q;  /* (length) positions [m], in the arena */
+} strut_named_shape;
+
+/** Finds the shape that --at names, by default the drawn one; errors as strut_rest_state_find. */
+strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
+                                    strut_arena *arena, strut_named_shape *shape,
+                                    strut_error *error);
+
+/** Must not move in memory: the model refers to the scene. Zero-initialise. */
+typedef struct strut_opened {
+  bool run; /* the argument was a directory that `strut run -o` made */
+  strut_scene scene;
+  strut_model *model;
+  strut_trajectory motion; /* of a run: positions of one frame or more */
+  char *summary;           /* of a run: the text of its summary.json, or NULL */
+} strut_opened;
+
+/**
+ * Opens what the command's argument names. A directory is a run: its scene.yaml is read, and as
+ * many frames of its trajectory.h5 as fit into `room` doubles; --set is refused then. Anything else is a
+ * model, opened for `purpose`. Messages go to stderr; on failure nothing is left to free.
+ */
+strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
+                            strut_open_purpose purpose, size_t room, strut_opened *opened);
+/** A zeroed struct is allowed. */
+void strut_opened_free(strut_opened *opened);
 
 #endif

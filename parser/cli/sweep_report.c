@@ -1,47 +1,49 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/sweep_report.h"
+#include "parser/cli/sweep.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "parser/cli/streams.h"
 
 enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300, MOST_FAILURES = 20, MOST_GAPS = 20 };
 
-/* Between two lines where there is no terminal, and before the first bar [s]. */
-static const double NOW_AND_THEN = 30.0, PATIENCE = 0.5;
+/* Between two lines without a terminal, and before the first bar [s]. */
+static const double REPORT_INTERVAL = 30.0, PATIENCE = 0.5;
 
 strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet) {
   return (strut_sweep_progress){.bar = strut_progress_begin(quiet), .plan = plan, .quiet = quiet};
 }
 
 /* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
-static void tell_row(const strut_sweep_plan *plan, const strut_slot *row, char *text, size_t room) {
+static void format_row(const strut_sweep_plan *plan, const strut_slot *row, char *text,
+                       size_t size) {
   size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
   *text = '\0';
-  for (size_t i = 0; i < plan->column_count && i < most && used < room; i++) {
+  for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
     const strut_slot_column *c = &plan->columns[i];
     const char *unit = strcmp(c->unit, "1") == 0 ? "" : c->unit;
-    int n = c->word ? snprintf(text + used, room - used, "%s%s %s", i ? ", " : "", c->name,
+    int n = c->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "", c->name,
                                row->words[word++])
-                    : snprintf(text + used, room - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
+                    : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
                                row->numbers[number++], *unit ? " " : "", unit);
     used += n > 0 ? (size_t)n : 0;
   }
-  if (row->status != STRUT_OK && used < room)
-    snprintf(text + used, room - used, ": %s", strut_status_text(row->status));
+  if (row->status != STRUT_OK && used < size)
+    snprintf(text + used, size - used, ": %s", strut_status_text(row->status));
 }
 
 /* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
-static void tell_state(const strut_sweep_state *state, char *text, size_t room) {
+static void format_state(const strut_sweep_state *state, char *text, size_t size) {
   char left[32], failed[40] = "";
   double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
   strut_progress_time(left, sizeof left,
                       rate > 0.0 ? (double)(state->points - state->done) / rate : HUGE_VAL);
   if (state->failed) snprintf(failed, sizeof failed, " (%lld failed)", (long long)state->failed);
-  snprintf(text, room, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
+  snprintf(text, size, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
            (long long)state->points, failed, rate, left);
 }
 
@@ -50,19 +52,19 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
   strut_progress *bar = &progress->bar;
   char text[TEXT], row[TEXT], all[2 * TEXT + 8], blocks[BAR_ROOM];
   if (progress->quiet || state->seconds < PATIENCE) return;
-  if (!bar->wanted && state->seconds - progress->told < NOW_AND_THEN) return;
-  progress->told = state->seconds;
-  tell_state(state, text, sizeof text);
-  tell_row(progress->plan, state->row, row, sizeof row);
+  if (!bar->wanted && state->seconds - progress->reported < REPORT_INTERVAL) return;
+  progress->reported = state->seconds;
+  format_state(state, text, sizeof text);
+  format_row(progress->plan, state->row, row, sizeof row);
   snprintf(all, sizeof all, "%s; %s", text, row);
   if (!bar->wanted) {
     fprintf(stderr, "strut: %s\n", all);
     return;
   }
-  int room = bar->columns - 1, width = room > 3 * WIDTH ? WIDTH : 0;
+  int size = bar->columns - 1, width = size > 3 * WIDTH ? WIDTH : 0;
   strut_progress_bar(blocks, width, (double)state->done / (double)state->points, bar->unicode);
   const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
-  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, room - width - 1, room - width - 1, all);
+  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, size - width - 1, size - width - 1, all);
   fflush(stderr);
   bar->shown = true;
 }
@@ -135,13 +137,13 @@ static void add_gaps(strut_buffer *b, strut_slots *slots, bool json) {
 
 static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
   int64_t count = strut_slots_plan_of(slots)->count;
-  int told = 0;
-  for (int64_t i = 0; i < count && told < MOST_FAILURES && strut_slots_failed(slots); i++) {
+  int reported = 0;
+  for (int64_t i = 0; i < count && reported < MOST_FAILURES && strut_slots_failed(slots); i++) {
     strut_slot row;
     long long point = strut_slots_point(slots, i);
     if (!strut_slots_get(slots, point, &row) || row.status == STRUT_OK) continue;
     if (json) {
-      strut_buffer_add(b, "%s{\"point\": %lld, \"status\": ", told ? ", " : "", point);
+      strut_buffer_add(b, "%s{\"point\": %lld, \"status\": ", reported ? ", " : "", point);
       add_string(b, strut_status_text(row.status));
       strut_buffer_add(b, ", \"message\": ");
       add_string(b, row.message ? row.message : "");
@@ -150,11 +152,11 @@ static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
       strut_buffer_add(b, "failed: point %lld: %s: %s\n", point, strut_status_text(row.status),
                        row.message ? row.message : "");
     }
-    told++;
+    reported++;
   }
-  if (!json && told == MOST_FAILURES && strut_slots_failed(slots) > told)
+  if (!json && reported == MOST_FAILURES && strut_slots_failed(slots) > reported)
     strut_buffer_add(b, "... and %lld more; the table has all\n",
-                     (long long)strut_slots_failed(slots) - told);
+                     (long long)strut_slots_failed(slots) - reported);
 }
 
 strut_status strut_sweep_print_status(strut_slots *slots, bool json) {
@@ -173,6 +175,26 @@ strut_status strut_sweep_print_status(strut_slots *slots, bool json) {
   return print_buffer(&b);
 }
 
+void strut_sweep_print_warnings(const strut_sweep_state *state) {
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n", (long long)w->runs,
+            (long long)state->computed, (long long)w->point, w->text);
+  }
+}
+
+static void add_warnings(strut_buffer *b, const strut_sweep_state *state) {
+  strut_buffer_add(b, ", \"warnings\": [");
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    strut_buffer_add(b, "%s{\"code\": \"%s\", \"runs\": %lld, \"point\": %lld, \"text\": ",
+                     i ? ", " : "", w->code, (long long)w->runs, (long long)w->point);
+    add_string(b, w->text);
+    strut_buffer_add(b, "}");
+  }
+  strut_buffer_add(b, "]");
+}
+
 strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json) {
   strut_buffer b = {0};
   char time[32];
@@ -182,11 +204,58 @@ strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *t
                      (long long)state->points, (long long)state->failed,
                      (long long)state->computed);
     add_string(&b, table);
+    add_warnings(&b, state);
     strut_buffer_add(&b, "}\n");
   } else {
-    strut_buffer_add(&b, "%lld points, %lld failed; %lld computed now, in %s\n%s\n",
+    strut_buffer_add(&b, "%lld points, %lld failed; %lld computed in %s\n%s\n",
                      (long long)state->points, (long long)state->failed, (long long)state->computed,
                      time, table);
   }
   return print_buffer(&b);
+}
+
+/* ---- shards ---- */
+
+static strut_status add_shard(strut_buffer *b, const char *directory, strut_shard shard,
+                              strut_arena *arena, bool json) {
+  strut_error error = {0};
+  strut_slots *slots = NULL;
+  strut_slots_plan plan;
+  char *path = strut_shard_path(directory, shard, arena);
+  if (!path) return strut_print_out_of_memory();
+  strut_status status = strut_slots_read(path, &slots, &plan, &error);
+  if (status != STRUT_OK) {
+    strut_print_error(&error);
+    return status;
+  }
+  long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
+  strut_buffer_add(b,
+                   json ? "{\"shard\": %lld, \"points\": %lld, \"done\": %lld, \"missing\": %lld, "
+                          "\"failed\": %lld}"
+                        : "shard %lld: %lld points: %lld done, %lld missing, %lld of the done "
+                          "failed\n",
+                   (long long)shard.index, (long long)plan.count, (long long)plan.count - missing,
+                   missing, failed);
+  strut_slots_close(slots);
+  return STRUT_OK;
+}
+
+strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
+                                      strut_arena *arena, bool json) {
+  strut_buffer b = {0};
+  strut_status status = STRUT_OK;
+  if (json) strut_buffer_add(&b, "{\"shard_count\": %lld, \"shards\": [", (long long)found->count);
+  for (int64_t i = 0; i < found->count && status == STRUT_OK; i++) {
+    if (json && i) strut_buffer_add(&b, ", ");
+    if (found->there[i])
+      status = add_shard(&b, directory, (strut_shard){i, found->count}, arena, json);
+    else
+      strut_buffer_add(&b, json ? "{\"shard\": %lld, \"done\": 0}" : "shard %lld: not started\n",
+                       (long long)i);
+  }
+  if (json) strut_buffer_add(&b, "]}\n");
+  char *text = strut_buffer_take(&b);
+  if (status == STRUT_OK) status = text ? strut_print(text) : strut_print_out_of_memory();
+  strut_release(text);
+  return status;
 }

@@ -20,7 +20,7 @@ typedef struct reader {
   strut_diagnostics diagnostics;
   strut_table *table;
   const char **cell; /* all cells, row by row, the header first */
-  size_t cell_count, cell_room;
+  size_t cell_count, cell_capacity;
   bool failed; /* memory was out */
 } reader;
 
@@ -35,13 +35,13 @@ static void step(reader *r) {
 }
 
 static void keep(reader *r, const char *cell) {
-  if (r->cell_count == r->cell_room) {
-    size_t room = 2 * r->cell_room + 1024;
-    const char **more = strut_reallocate(r->cell, room, sizeof *more);
+  if (r->cell_count == r->cell_capacity) {
+    size_t capacity = 2 * r->cell_capacity + 1024;
+    const char **more = strut_reallocate(r->cell, capacity, sizeof *more);
     r->failed = r->failed || !more;
     if (!more) return;
     r->cell = more;
-    r->cell_room = room;
+    r->cell_capacity = capacity;
   }
   r->failed = r->failed || !cell;
   r->cell[r->cell_count++] = cell;
@@ -75,7 +75,7 @@ static void read_quoted(reader *r) {
   keep(r, copy);
   for (;;) {
     if (r->at >= r->end) {
-      strut_diagnose(&r->diagnostics, begin, "a quoted cell that nothing closes");
+      strut_diagnose(&r->diagnostics, begin, "unterminated quoted cell");
       return;
     }
     bool quote = *r->at == '"';
@@ -126,7 +126,7 @@ static void read_lines(reader *r) {
     uint32_t line = r->line;
     size_t before = r->cell_count, count = read_line(r);
     if (count == 1 && r->cell[before] && !*r->cell[before] && columns > 1) {
-      r->cell_count = before; /* an empty line says nothing */
+      r->cell_count = before; /* skip an empty line */
       continue;
     }
     if (count != columns && !r->failed)
@@ -151,7 +151,7 @@ static bool name_column(reader *r, size_t i) {
   return column->name && column->unit;
 }
 
-/* A number, or nothing at all. */
+/* A number, or NAN for an empty cell. */
 static bool read_number(const char *text, double *value) {
   static const char *const nothing[] = {"", "nan", "NaN", "null", "none", "-"};
   for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)

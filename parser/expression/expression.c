@@ -7,13 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/expression/expression_parts.h"
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/text.h"
 
 enum { DEPTH_MOST = 64, LENGTH_MOST = 1000 };
-
-#define PI 3.14159265358979323846
 
 static bool read_sum(strut_expression_reader *r, strut_quantity *q);
 static bool read_signed(strut_expression_reader *r, strut_quantity *q);
@@ -84,7 +83,7 @@ static bool read_name(strut_expression_reader *r, size_t length, strut_quantity 
     return read_call(r, function, begin, q);
   }
   if (length == 2 && memcmp(name, "pi", 2) == 0) {
-    *q = (strut_quantity){.value = PI, .bare = true};
+    *q = (strut_quantity){.value = STRUT_PI, .bare = true};
     strut_expression_emit_number(r, q);
     return true;
   }

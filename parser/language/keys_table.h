@@ -61,7 +61,7 @@
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Friction of every contact; without it the ground is frictionless.") \
   X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", BY_HAND, "Settings of single contacts, by the name of the node.") \
-  X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, "none|karnopp|coulomb|smooth", FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: the regularised law -mu_kinetic N u / sqrt(u^2 + width^2), under which contacts creep.") \
+  X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, STRUT_FRICTION_WORDS, FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: the regularised law -mu_kinetic N u / sqrt(u^2 + width^2), under which contacts creep.") \
   X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both friction coefficients.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of kinetic friction.") \
@@ -118,7 +118,7 @@
   X(EQUILIBRIA, SUPPORTS, "supports", NODE_SETS, NONE, ANY, "every pair that can carry", OPTIONAL, 0, "", BY_HAND, "Contact nodes to support in turn: the first node of each list is pinned, the others roll on the ground.") \
   X(EQUILIBRIA, STARTS, "starts", NUMBER, NONE, WHOLE(0, STRUT_MOST_STARTS), "until few equilibria can be missing", OPTIONAL, 0, "", FIELD(strut_search, starts), "Random starts for each list of supports.") \
   X(EQUILIBRIA, SEED, "seed", NUMBER, NONE, WHOLE(0, STRUT_MOST_SEED), "1", WRITTEN, 0, "", FIELD(strut_search, seed), "Seed of the random starts; the same seed gives the same result.") \
-  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, "rk4", WRITTEN, 0, "rk4|euler|verlet|rk4-events|euler-events|verlet-events|adaptive|midpoint", FIELD(strut_experiment, integrator), "Time integration method.") \
+  X(SOLVER, INTEGRATOR, "integrator", WORD, NONE, ANY, "rk4", WRITTEN, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_experiment, integrator), "Time integration method.") \
   X(SOLVER, STEP, "step", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, step), "Time step; with `adaptive`, the longest step. A run needs `step` or `accuracy`.") \
   X(SOLVER, TOLERANCE, "tolerance", NUMBER, NONE, ABOVE_ZERO, "1e-6", OPTIONAL, 0, "", FIELD(strut_experiment, tolerance), "Relative local error per step of `adaptive`.") \
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine), "Methods with events divide the step by this factor after a touchdown; 1 switches the refinement off.") \

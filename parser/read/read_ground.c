@@ -42,31 +42,33 @@ static void report_lack(strut_reader *reader, const friction_layers *f, int key)
                            : "a number such as 0.5");
 }
 
-/* Is what the friction law needs complete? What is missing is reported once for each top layer. */
+static bool is_coefficient(int parameter) {
+  return parameter == STRUT_FRICTION_PARAMETER_MU_STATIC ||
+         parameter == STRUT_FRICTION_PARAMETER_MU_KINETIC;
+}
+
+/*
+ * Are all numbers given that the friction law needs? What is missing is reported once for each top layer;
+ * where no coefficient is given, as one lacking key, mu.
+ */
 static bool complete_friction(strut_reader *reader, friction_layers *f,
                               const strut_tree **reported) {
+  static const int keys[] = {
+#define STRUT_FRICTION_ROW(NAME, ...) STRUT_KEY_FRICTION_##NAME,
+      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+  };
   if (!f->any || f->broken) return !f->broken;
   if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
-  if (f->friction.law == STRUT_FRICTION_NONE) return true;
-  bool smooth = f->friction.law == STRUT_FRICTION_SMOOTH;
-  bool karnopp = f->friction.law == STRUT_FRICTION_KARNOPP;
-  bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
-  bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
-  const struct {
-    int key;
-    bool lacks;
-  } needs[] = {
-      {STRUT_KEY_FRICTION_MU, !statics && !kinetics},
-      {STRUT_KEY_FRICTION_MU_STATIC, !statics && kinetics && !smooth},
-      {STRUT_KEY_FRICTION_MU_KINETIC, statics && !kinetics},
-      {STRUT_KEY_FRICTION_STICK_VELOCITY,
-       karnopp && !(f->given & key_bit(STRUT_KEY_FRICTION_STICK_VELOCITY))},
-      {STRUT_KEY_FRICTION_WIDTH, smooth && !(f->given & key_bit(STRUT_KEY_FRICTION_WIDTH))}};
-  bool complete = true;
-  for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
-    if (!needs[i].lacks) continue;
+  unsigned coefficients =
+      key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  bool complete = true, first = *reported != f->last, mu = false;
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+    if (!strut_friction_needs(f->friction.law, p) || f->given & key_bit(keys[p])) continue;
     complete = false;
-    if (*reported != f->last) report_lack(reader, f, needs[i].key);
+    bool both = is_coefficient(p) && !(f->given & coefficients);
+    if (first && !(both && mu)) report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : keys[p]);
+    mu = mu || both;
   }
   if (!complete) *reported = f->last;
   return complete;

@@ -4,9 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/read/reader.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* What the values of a signal under construction measure. */
 typedef struct meaning {
@@ -71,7 +70,7 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
     if (key->measure == STRUT_MEASURE_CONTEXT)
       fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
     else if (key->measure == STRUT_MEASURE_ANGLE)
-      signal->phase = slot->number[0] / TWO_PI; /* kept in turns */
+      signal->phase = slot->number[0] / STRUT_TAU; /* kept in turns */
   }
   strut_store_fields(reader, &fields, &reader->scene->arena, signal, sizeof *signal);
   return fine;

@@ -4,9 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/write/writer.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* The name of the signal in the file; NULL if it is written where it is used. */
 static const char *signal_name(const strut_writer *writer, int32_t index) {
@@ -17,10 +16,10 @@ static const char *signal_name(const strut_writer *writer, int32_t index) {
 
 /* The angle in radians that reads back as exactly this number of turns, if there is one. */
 static double radians(double turns) {
-  double angle = turns * TWO_PI, up = angle, down = angle;
+  double angle = turns * STRUT_TAU, up = angle, down = angle;
   for (int i = 0; i < 4; i++) {
-    if (up / TWO_PI == turns) return up;
-    if (down / TWO_PI == turns) return down;
+    if (up / STRUT_TAU == turns) return up;
+    if (down / STRUT_TAU == turns) return down;
     up = nextafter(up, (double)INFINITY);
     down = nextafter(down, -(double)INFINITY);
   }

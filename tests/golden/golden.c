@@ -31,6 +31,11 @@ const strut_integrator *strut_integrator_find(const char *name) {
   return NULL;
 }
 
+const strut_integrator *strut_integrator_for_settling(const strut_model *model) {
+  (void)model;
+  return &strut_integrator_rk4;
+}
+
 static uint64_t hash_run(const strut_model *model, strut_state *state,
                          const strut_integrator *method, int64_t steps) {
   void *workspace = method->create(model, state);

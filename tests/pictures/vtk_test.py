@@ -163,7 +163,7 @@ def test_thinning():
     call(0, "run", "fine.yaml", "--quiet", "-o", "fine")
     said = call(0, "export", "fine", "--format", "vtk", "-o", "thin").stdout
     listed = [d for d in datasets("thin") if d[1] == 0]
-    check(len(listed) == 8334 and "8334 frames" in said and "of 25001 recorded" in said, said)
+    check(len(listed) == 8334 and "8334 frames" in said and "from 25001 recorded" in said, said)
     times = [r["time"] for r in rows("fine/nodes.csv")]
     check([d[0] for d in listed] == times[::3], "which frames")
     check(read("thin/structure_00000.vtp").GetPointData().GetArray("velocity") is None, "velocity")

@@ -8,7 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/study/results/merge.h"
+#include "engine/study/results/shard.h"
 #include "engine/study/results/study_table.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"

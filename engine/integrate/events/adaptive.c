@@ -115,15 +115,16 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
                                  int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
-  double most = e->mu_static * o->normal, part = STAGE_ERROR;
+  double most = e->friction.mu_static * o->normal, part = STAGE_ERROR;
   if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
     case STRUT_MODE_STICK: return fabs(o->friction) > most * (1.0 + part);
     case STRUT_MODE_BAND:
-      return e->mu_static != e->mu_kinetic && fabs(o->applied) > most * (1.0 + part);
+      return e->friction.mu_static != e->friction.mu_kinetic &&
+             fabs(o->applied) > most * (1.0 + part);
     case STRUT_MODE_PUSH: return fabs(o->applied) < most * (1.0 - part);
     case STRUT_MODE_CREEP:
-      return l->side[i] * o->friction < -e->mu_kinetic * o->normal * (1.0 + part);
+      return l->side[i] * o->friction < -e->friction.mu_kinetic * o->normal * (1.0 + part);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */
@@ -161,8 +162,8 @@ static double earliest_dip(const strut_model *model, const strut_event_stepper *
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
   for (int32_t i = 0; i < c->count; i++) {
     strut_touch from, to;
-    located_place(c, i, l->now->q, l->now->v, &from);
-    located_place(c, i, l->next->q, l->next->v, &to);
+    measure_contact(c, i, l->now->q, l->now->v, &from);
+    measure_contact(c, i, l->next->q, l->next->v, &to);
     bool open = l->mode[i] == STRUT_MODE_OPEN;
     double side = open ? 1.0 : -1.0;
     double at = 0.0;
@@ -170,7 +171,7 @@ static double earliest_dip(const strut_model *model, const strut_event_stepper *
       at = dip(side * from.gap, side * h * from.into, side * to.gap, side * h * to.into, faint[0]);
     if (l->mode[i] == STRUT_MODE_SLIP && at == 0.0) {
       const strut_contact_entry *e = &c->entry[i];
-      double s = l->side[i], edge = e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+      double s = l->side[i], edge = stick_band_edge(e);
       double end = s * to.slip - edge;
       if (end > 0.0)
         at = dip(s * from.slip - edge, s * h * l->now->touch[i].slip_rate, end,
@@ -201,12 +202,12 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
     stage_of(n, h, l->now, v, a, k, q);
     if (k == PAIR - 1) break;
-    located_acceleration(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
+    accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
       l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
   }
-  located_finish(model, state, l, t + h, l->next, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, ledger);
   l->error = error_of(model, l, h, v, a);
   if (!(l->error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, l, h) : 0.0;
@@ -239,6 +240,7 @@ const strut_integrator strut_integrator_adaptive = {
     .description = "Dormand-Prince 5(4) from event to event, step by error control",
     .order = 5,
     .evaluations = 6,
+    .role = STRUT_ROLE_REFERENCE,
     .events = true,
     .create = create,
     .restart = strut_event_stepper_restart,

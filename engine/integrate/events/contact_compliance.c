@@ -108,8 +108,8 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
   l->stuck_work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
   l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
-  l->slider = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->slider);
-  if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->slider) return STRUT_NO_MEMORY;
+  l->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->sliding);
+  if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->sliding) return STRUT_NO_MEMORY;
   return find_bodies(model, l);
 }
 
@@ -157,48 +157,50 @@ static void factor_stuck(const strut_model *model, strut_event_stepper *l) {
   if (!factor(n, l->stuck_factor)) l->stuck_count = -n; /* singular: by sweeps */
 }
 
-static bool is_slider(const strut_event_stepper *l, const strut_contact_entry *e, int32_t i) {
+static bool is_sliding(const strut_event_stepper *l, const strut_contact_entry *e, int32_t i) {
   if (e->dissipation > 0.0) return false;
   return l->mode[i] == STRUT_MODE_SLIP ||
-         (l->mode[i] == STRUT_MODE_SLIDE && e->law != STRUT_FRICTION_SMOOTH);
+         (l->mode[i] == STRUT_MODE_SLIDE &&
+          strut_friction_states(e->friction.law) != STRUT_FRICTION_CONTINUOUS);
 }
 
-static void list_sliders(const strut_model *model, strut_event_stepper *l) {
-  l->plain = l->apart;
-  for (int32_t k = 0; k < l->closed_count && l->plain; k++) {
+static void list_sliding_contacts(const strut_model *model, strut_event_stepper *l) {
+  l->all_sliding = l->contacts_decoupled;
+  for (int32_t k = 0; k < l->closed_count && l->all_sliding; k++) {
     int32_t i = l->closed[k];
     const strut_contact_entry *e = &model->contacts.entry[i];
     const strut_contact_compliance *r = &l->response[i];
     bool slips = l->mode[i] == STRUT_MODE_SLIP;
-    l->plain = is_slider(l, e, i);
-    l->slider[k] = (strut_sliding_contact){.at = model->contacts.at[i],
-                                           .index = i,
-                                           .nodes = r->count,
-                                           .stiffness = e->stiffness,
-                                           .damping = e->damping,
-                                           .answer = r->normal,
-                                           .friction = slips ? -l->side[i] * e->mu_kinetic : 0.0,
-                                           .side = slips ? l->side[i] : 0.0,
-                                           .edge = slips ? located_edge(e) : 0.0,
-                                           .place = r->at,
-                                           .xy = r->xy};
+    l->all_sliding = is_sliding(l, e, i);
+    l->sliding[k] =
+        (strut_sliding_contact){.at = model->contacts.at[i],
+                                .index = i,
+                                .nodes = r->count,
+                                .stiffness = e->stiffness,
+                                .damping = e->damping,
+                                .answer = r->normal,
+                                .friction = slips ? -l->side[i] * e->friction.mu_kinetic : 0.0,
+                                .side = slips ? l->side[i] : 0.0,
+                                .edge = slips ? stick_band_edge(e) : 0.0,
+                                .place = r->at,
+                                .xy = r->xy};
   }
 }
 
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   l->closed_count = l->stuck_count = 0;
-  l->apart = model->contacts.normal[0] == 0.0;
+  l->contacts_decoupled = model->contacts.normal[0] == 0.0;
   for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
     if (l->mode[i] == STRUT_MODE_OPEN) continue;
-    if (l->body_seen[l->body[i]]) l->apart = false;
+    if (l->body_seen[l->body[i]]) l->contacts_decoupled = false;
     l->body_seen[l->body[i]] = true;
     l->closed[l->closed_count++] = i;
     if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
       if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
   }
-  list_sliders(model, l);
+  list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
   else if (l->stuck_count > 1)

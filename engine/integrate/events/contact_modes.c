@@ -8,16 +8,16 @@
 static const double TIE = 1e-12;
 
 STRUT_CLONES
-static void located_derive(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                           double t) {
+static void evaluate_now(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         double t) {
   strut_step_end *now = l->now;
   if (!l->fresh) {
-    located_finish(model, state, l, t, now, state->ledger);
+    evaluate_step_end(model, state, l, t, now, state->ledger);
   } else {
     for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
     for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
-    located_close(model, state, l, now->q, now->v, now->a, now, state->ledger);
-    located_rates(model, l, now->a, now->touch);
+    accelerate_closed(model, state, l, now->q, now->v, now->a, now, state->ledger);
+    measure_contact_rates(model, l, now->a, now->touch);
     for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];
   }
   l->fresh = true;
@@ -25,7 +25,7 @@ static void located_derive(const strut_model *model, strut_state *state, strut_e
 
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t) {
-  located_derive(model, state, l, t);
+  evaluate_now(model, state, l, t);
   strut_event_measure(model, state, l, l->now);
 }
 
@@ -33,7 +33,7 @@ void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
 static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
   strut_touch place;
-  located_place(c, i, l->now->q, l->now->v, &place);
+  measure_contact(c, i, l->now->q, l->now->v, &place);
   double more = slip - place.slip;
   double *v = l->now->v + c->at[i];
   if (c->normal[0] == 0.0) {
@@ -48,29 +48,34 @@ static void cable_mode(strut_state *state, strut_event_stepper *l, int32_t k, bo
   int32_t j = l->cable[k];
   l->pulling[k] = pulls;
   l->fresh = false;
-  state->taut_stretch[j] = pulls ? -HUGE_VAL : 0.0;
-  state->taut_tension[j] = pulls ? -HUGE_VAL : HUGE_VAL;
+  state->slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;
+  state->slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;
 }
 
 /* Mode of a contact that touches, from its speeds. */
 static void close_contact(const strut_model *model, strut_event_stepper *l, int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
-  located_place(&model->contacts, i, l->now->q, l->now->v, &o);
+  measure_contact(&model->contacts, i, l->now->q, l->now->v, &o);
   l->damper[i] = 0;
   if (l->stepper->exact && e->damping > 0.0) l->damper[i] = o.into < 0.0 ? 1 : -1;
   l->side[i] = o.slip < 0.0 ? -1 : 1;
-  if (!(l->response[i].tangent > 0.0) || e->law == STRUT_FRICTION_NONE ||
-      e->law == STRUT_FRICTION_SMOOTH) {
-    l->mode[i] = STRUT_MODE_SLIDE;
-  } else if (e->law == STRUT_FRICTION_KARNOPP) {
-    bool inside = fabs(o.slip) < e->stick_velocity * (1.0 + TIED); /* or at its edge, by rounding */
-    l->mode[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
-  } else if (fabs(o.slip) > TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) {
-    l->mode[i] = STRUT_MODE_SLIP;
-  } else {
-    l->mode[i] = STRUT_MODE_STICK;
-    snap(model, l, i, 0.0);
+  l->mode[i] = STRUT_MODE_SLIDE;
+  if (!(l->response[i].tangent > 0.0)) return; /* a support holds it along the ground */
+  switch (strut_friction_states(e->friction.law)) {
+    case STRUT_FRICTION_ABSENT:
+    case STRUT_FRICTION_CONTINUOUS: break;
+    case STRUT_FRICTION_STICK_BAND: { /* inside, or at the edge by rounding */
+      bool inside = fabs(o.slip) < e->friction.stick_velocity * (1.0 + TIED);
+      l->mode[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
+      break;
+    }
+    case STRUT_FRICTION_EXACT_STICK:
+      l->mode[i] = STRUT_MODE_SLIP;
+      if (fabs(o.slip) > TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) break;
+      l->mode[i] = STRUT_MODE_STICK;
+      snap(model, l, i, 0.0);
+      break;
   }
 }
 
@@ -82,7 +87,7 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
     int32_t i = l->closed[k];
     if (l->mode[i] != STRUT_MODE_STICK) continue;
     const strut_touch *o = &l->now->touch[i];
-    double most = model->contacts.entry[i].mu_static * o->normal;
+    double most = model->contacts.entry[i].friction.mu_static * o->normal;
     double over = fabs(o->friction) - most;
     /* Without any normal force yet nothing can be said: the end of the step will tell. */
     if (!(over > worst * fabs(o->friction)) || !(o->normal > 0.0)) continue;
@@ -130,7 +135,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
   l->fresh = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
-    located_place(&model->contacts, i, l->now->q, l->now->v, &o);
+    measure_contact(&model->contacts, i, l->now->q, l->now->v, &o);
     l->mode[i] = STRUT_MODE_OPEN;
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
   }
@@ -145,15 +150,16 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_e
                            int32_t i, bool from_inside, double t) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   double s = l->side[i];
-  snap(model, l, i, s * e->stick_velocity);
+  snap(model, l, i, s * e->friction.stick_velocity);
   l->mode[i] = STRUT_MODE_SLIP;
   strut_update_active_set(model, l);
   strut_evaluate_acceleration(model, state, l, t);
   const strut_touch *o = &l->now->touch[i];
   double outside = s * o->slip_rate;
-  double most = e->mu_static * o->normal;
+  double most = e->friction.mu_static * o->normal;
   bool pushed = fabs(o->applied) >= most;
-  l->mode[i] = pushed && e->mu_static != e->mu_kinetic ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  l->mode[i] =
+      pushed && e->friction.mu_static != e->friction.mu_kinetic ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
   strut_update_active_set(model, l);
   strut_evaluate_acceleration(model, state, l, t);
@@ -178,7 +184,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       break;
     case STRUT_EVENT_OPEN: l->mode[i] = STRUT_MODE_OPEN; break;
     case STRUT_EVENT_SLIP_ENDS:
-      if (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP) {
+      if (stick_band_edge(&model->contacts.entry[i]) > 0.0) {
         decide_at_edge(model, state, l, i, false, t);
       } else {
         snap(model, l, i, 0.0);
@@ -206,7 +212,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       break;
     case STRUT_EVENT_YIELDED: {
       const strut_touch *o = &l->now->touch[i];
-      bool over = fabs(o->applied) > model->contacts.entry[i].mu_static * o->normal;
+      bool over = fabs(o->applied) > model->contacts.entry[i].friction.mu_static * o->normal;
       l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
       l->side[i] = o->applied < 0.0 ? -1 : 1;
       break;

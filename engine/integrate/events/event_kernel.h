@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: forces and accelerations with the contacts' modes frozen. See located.h.
+ * Hot: forces and accelerations with the contacts' modes frozen. See event_stepping.h.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
@@ -10,10 +10,11 @@
 
 #include "engine/forces/forces_kernel.h"
 #include "engine/integrate/events/event_stepping.h"
+#include "engine/model/pose.h"
 
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
-STRUT_INLINE double located_normal(const strut_contact_entry *e, int8_t damper, double gap,
-                                   double into, bool damped) {
+STRUT_INLINE double contact_normal_force(const strut_contact_entry *e, int8_t damper, double gap,
+                                         double into, bool damped) {
   double normal = -e->stiffness * gap;
   if (e->dissipation > 0.0 && damped) {
     normal -= normal * e->dissipation * into;
@@ -27,78 +28,77 @@ STRUT_INLINE double located_normal(const strut_contact_entry *e, int8_t damper, 
 static const double STRUT_YIELD_LAYER = 1e-3;
 
 /* Friction between holding and pushing, by how far the applied force is through the layer. */
-STRUT_INLINE double located_yield(const strut_contact_entry *e, double normal, double applied) {
-  double threshold = e->mu_static * normal, half = STRUT_YIELD_LAYER * threshold;
+STRUT_INLINE double yield_friction(const strut_contact_entry *e, double normal, double applied) {
+  double threshold = e->friction.mu_static * normal, half = STRUT_YIELD_LAYER * threshold;
   double size = applied < 0.0 ? -applied : applied;
   double pushed = half > 0.0 ? 0.5 + 0.5 * (size - threshold) / half : 1.0;
   pushed = pushed < 0.0 ? 0.0 : pushed > 1.0 ? 1.0 : pushed;
-  double friction = (1.0 - pushed) * size + pushed * e->mu_kinetic * normal;
+  double friction = (1.0 - pushed) * size + pushed * e->friction.mu_kinetic * normal;
   return applied < 0.0 ? friction : -friction;
 }
 
 /* Friction by the mode; a multiplier, which comes later, is 0 here. */
-STRUT_INLINE double located_friction(const strut_contact_entry *e, uint8_t mode, int8_t side,
+STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode, int8_t side,
                                      double normal, double slip, double applied) {
   switch (mode) {
     case STRUT_MODE_SLIP:
-    case STRUT_MODE_PUSH: return -side * e->mu_kinetic * normal;
+    case STRUT_MODE_PUSH: return -side * e->friction.mu_kinetic * normal;
     case STRUT_MODE_SLIDE:
-      return e->law == STRUT_FRICTION_SMOOTH
-                 ? strut_friction_smooth(normal, slip, e->mu_kinetic, e->width)
+      return strut_friction_states(e->friction.law) == STRUT_FRICTION_CONTINUOUS
+                 ? strut_friction_force(&e->friction, normal, slip, applied)
                  : 0.0;
     case STRUT_MODE_BAND: {
-      double most = e->mu_static * normal;
+      double most = e->friction.mu_static * normal;
       return applied > most ? -most : applied < -most ? most : -applied;
     }
-    case STRUT_MODE_YIELD: return located_yield(e, normal, applied);
+    case STRUT_MODE_YIELD: return yield_friction(e, normal, applied);
     default: return 0.0;
   }
 }
 
 /* Kinematics of contact i at q, v. */
-STRUT_INLINE void located_place(const strut_contact_table *c, int32_t i, const double *restrict q,
-                                const double *restrict v, strut_touch *touch) {
-  uint32_t at = c->at[i];
-  double up = q[at + 1] - c->height;
-  touch->gap = q[at] * c->normal[0] + up * c->normal[1];
-  touch->into = v[at] * c->normal[0] + v[at + 1] * c->normal[1];
-  touch->slip = v[at] * c->tangent[0] + v[at + 1] * c->tangent[1] - c->belt_speed;
+STRUT_INLINE void measure_contact(const strut_contact_table *c, int32_t i, const double *restrict q,
+                                  const double *restrict v, strut_touch *touch) {
+  touch->gap = strut_contact_gap(c, i, q);
+  touch->into = strut_contact_along_normal(c, i, v);
+  touch->slip = strut_contact_slip(c, i, v);
 }
 
 /* Adds the forces of the closed contacts to `force` and notes them. */
-STRUT_INLINE void located_ground(const strut_model *model, const strut_event_stepper *l,
-                                 const double *restrict q, const double *restrict v,
-                                 double *restrict force, bool damped, strut_touch *restrict touch) {
+STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event_stepper *l,
+                                     const double *restrict q, const double *restrict v,
+                                     double *restrict force, bool damped,
+                                     strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     uint32_t at = c->at[i];
     strut_touch *o = &touch[i];
-    located_place(c, i, q, v, o);
-    o->applied = force[at] * c->tangent[0] + force[at + 1] * c->tangent[1];
-    o->normal = located_normal(&c->entry[i], l->damper[i], o->gap, o->into, damped);
+    measure_contact(c, i, q, v, o);
+    o->applied = strut_contact_along_ground(c, i, force);
+    o->normal = contact_normal_force(&c->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction =
-        located_friction(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
+        friction_in_mode(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
     force[at] += o->friction * c->tangent[0] + o->normal * c->normal[0];
     force[at + 1] += o->friction * c->tangent[1] + o->normal * c->normal[1];
   }
 }
 
 /* Rates of speed of the closed contacts from the acceleration. */
-STRUT_INLINE void located_rates(const strut_model *model, const strut_event_stepper *l,
-                                const double *restrict a, strut_touch *restrict touch) {
+STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_event_stepper *l,
+                                        const double *restrict a, strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
-    uint32_t at = c->at[i];
-    touch[i].into_rate = a[at] * c->normal[0] + a[at + 1] * c->normal[1];
-    touch[i].slip_rate = a[at] * c->tangent[0] + a[at + 1] * c->tangent[1];
+    touch[i].into_rate = strut_contact_along_normal(c, i, a);
+    touch[i].slip_rate = strut_contact_along_ground(c, i, a);
   }
 }
 
 /* The ground's powers, from forces and speeds noted in `touch`; the others are in state->power. */
-STRUT_INLINE void located_powers(const strut_model *model, strut_state *state,
-                                 const strut_event_stepper *l, const strut_touch *restrict touch) {
+STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *state,
+                                     const strut_event_stepper *l,
+                                     const strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
     const strut_touch *o = &touch[l->closed[k]];
@@ -113,8 +113,8 @@ STRUT_INLINE void located_powers(const strut_model *model, strut_state *state,
 }
 
 /* Notes the forces of the structure at an end of a step. */
-STRUT_INLINE void located_keep(const strut_model *model, const strut_state *state,
-                               strut_step_end *end, bool ledger) {
+STRUT_INLINE void keep_structure_forces(const strut_model *model, const strut_state *state,
+                                        strut_step_end *end, bool ledger) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES)
     strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->force + i));
   for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
@@ -122,23 +122,23 @@ STRUT_INLINE void located_keep(const strut_model *model, const strut_state *stat
 }
 
 /* From the forces of the structure in state->force to the acceleration. */
-STRUT_INLINE void located_close(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, const double *restrict q,
-                                const double *restrict v, double *restrict a, strut_step_end *end,
-                                bool ledger) {
-  if (l->closed_count) located_ground(model, l, q, v, state->force, true, end->touch);
+STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state,
+                                    strut_event_stepper *l, const double *restrict q,
+                                    const double *restrict v, double *restrict a,
+                                    strut_step_end *end, bool ledger) {
+  if (l->closed_count) add_contact_forces(model, l, q, v, state->force, true, end->touch);
   mass_kernel(model, state->force, a, state->scratch);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
-  if (ledger && l->closed_count) located_powers(model, state, l, end->touch);
+  if (ledger && l->closed_count) add_contact_powers(model, state, l, end->touch);
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
-STRUT_INLINE void located_acceleration(const strut_model *model, strut_state *state,
-                                       strut_event_stepper *l, double t, const double *restrict q,
-                                       const double *restrict v, double *restrict a,
-                                       strut_step_end *end, bool ledger) {
+STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *state,
+                                      strut_event_stepper *l, double t, const double *restrict q,
+                                      const double *restrict v, double *restrict a,
+                                      strut_step_end *end, bool ledger) {
   forces_of_structure(model, state, t, q, v, ledger);
-  located_close(model, state, l, q, v, a, end, ledger);
+  accelerate_closed(model, state, l, q, v, a, end, ledger);
 }
 
 /* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
@@ -148,12 +148,12 @@ static const double TIED = 1e-8;
  * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
  * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
  */
-STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_event_stepper *l) {
+STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     const strut_contact_entry *e = &model->contacts.entry[i];
     strut_touch *o = &l->next->touch[i];
-    double faint = TIED * o->normal, edge = e->stick_velocity;
+    double faint = TIED * o->normal, edge = e->friction.stick_velocity;
     if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
       o->friction = -o->applied + l->side[i] * faint; /* creep ends */
     if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge)
@@ -162,65 +162,66 @@ STRUT_INLINE void located_settle_ties(const strut_model *model, const strut_even
 }
 
 /* The same at the end of a step, with all that belongs to that end. */
-STRUT_INLINE void located_finish(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, double t, strut_step_end *end,
-                                 bool ledger) {
+STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state,
+                                    strut_event_stepper *l, double t, strut_step_end *end,
+                                    bool ledger) {
   forces_of_structure(model, state, t, end->q, end->v, ledger);
-  located_keep(model, state, end, ledger);
-  located_close(model, state, l, end->q, end->v, end->a, end, ledger);
-  located_rates(model, l, end->a, end->touch);
-  if (end == l->next && !l->plain) located_settle_ties(model, l);
+  keep_structure_forces(model, state, end, ledger);
+  accelerate_closed(model, state, l, end->q, end->v, end->a, end, ledger);
+  measure_contact_rates(model, l, end->a, end->touch);
+  if (end == l->next && !l->all_sliding) settle_band_ties(model, l);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
 }
 
 /* Edge of the band, or 0 where sticking is exact. */
-STRUT_INLINE double located_edge(const strut_contact_entry *e) {
-  return e->law == STRUT_FRICTION_KARNOPP ? e->stick_velocity : 0.0;
+STRUT_INLINE double stick_band_edge(const strut_contact_entry *e) {
+  bool band = strut_friction_states(e->friction.law) == STRUT_FRICTION_STICK_BAND;
+  return band ? e->friction.stick_velocity : 0.0;
 }
 
-STRUT_INLINE double located_band_force(const strut_contact_entry *e, const strut_touch *o) {
-  double most = e->mu_static * o->normal;
+STRUT_INLINE double stick_band_force(const strut_contact_entry *e, const strut_touch *o) {
+  double most = e->friction.mu_static * o->normal;
   if (fabs(o->applied) < most) return -o->applied;
-  return -e->mu_kinetic * o->normal * strut_sign(o->applied);
+  return -e->friction.mu_kinetic * o->normal * strut_sign(o->applied);
 }
 
 /* How far the applied force is from either end of where a contact goes on yielding [N]. */
-STRUT_INLINE double located_yield_room(const strut_contact_entry *e, const strut_touch *o) {
-  double threshold = e->mu_static * o->normal;
+STRUT_INLINE double yield_margin(const strut_contact_entry *e, const strut_touch *o) {
+  double threshold = e->friction.mu_static * o->normal;
   return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
 }
 
 /* What a closed contact's state at the end of a step contradicts of its mode. */
-STRUT_INLINE strut_event_kind located_contradiction(const strut_contact_entry *e,
-                                                    const strut_touch *o, uint8_t mode, double s) {
+STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
+                                                  const strut_touch *o, uint8_t mode, double s) {
   switch (mode) {
     case STRUT_MODE_SLIP:
-      return s * o->slip < located_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
+      return s * o->slip < stick_band_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
       /* also where the gap is open by then: what holds a node lets go before that */
-      return fabs(o->friction) > e->mu_static * o->normal ? STRUT_EVENT_STICK_BREAKS
-                                                          : STRUT_EVENT_NONE;
+      return fabs(o->friction) > e->friction.mu_static * o->normal ? STRUT_EVENT_STICK_BREAKS
+                                                                   : STRUT_EVENT_NONE;
     case STRUT_MODE_CREEP:
-      if (s * o->friction < -e->mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
-      return s * (located_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
-                                                                : STRUT_EVENT_NONE;
+      if (s * o->friction < -e->friction.mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
+      return s * (stick_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
+                                                              : STRUT_EVENT_NONE;
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
-      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
-      if (e->mu_static == e->mu_kinetic) return STRUT_EVENT_NONE;
-      return (fabs(o->applied) > e->mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
+      if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
+      if (e->friction.mu_static == e->friction.mu_kinetic) return STRUT_EVENT_NONE;
+      return (fabs(o->applied) > e->friction.mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
     case STRUT_MODE_YIELD:
-      if (fabs(o->slip) > located_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
-      return located_yield_room(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
+      if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
+      return yield_margin(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
     default: return STRUT_EVENT_NONE;
   }
 }
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
-STRUT_INLINE void located_accept(const strut_model *model, strut_state *state,
-                                 strut_event_stepper *l, bool ledger) {
+STRUT_INLINE void accept_step(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              bool ledger) {
   strut_step_end *now = l->next, *next = l->now;
   double *restrict q = now->q, *restrict v = now->v;
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
@@ -243,14 +244,14 @@ static const double STRUT_AT_BREAK = 1e-9;
  * Signals are evaluated a moment before the time: a step that ends where a drive jumps so sees the
  * value from before the jump, and the one that begins there that from after it.
  */
-STRUT_INLINE double located_moment(double t, double dt) {
+STRUT_INLINE double moment_before(double t, double dt) {
   double least = 4.0 * DBL_EPSILON * t, part = 1e-12 * dt;
   return least > part ? least : part;
 }
 
 /* Size of the next step within what is left to the grid point. */
-STRUT_INLINE double located_step_size(const strut_state *state, const strut_event_stepper *l,
-                                      double dt) {
+STRUT_INLINE double next_step_size(const strut_state *state, const strut_event_stepper *l,
+                                   double dt) {
   double rest = dt - l->done, h = rest;
   if (l->stepper->adaptive) {
     h = l->h > 0.0 ? l->h : dt * 1e-3;
@@ -265,14 +266,14 @@ STRUT_INLINE double located_step_size(const strut_state *state, const strut_even
   return h > rest * (1.0 - 1e-9) ? rest : h;
 }
 
-/* The time at which a step from t is evaluated; see located_moment. */
-STRUT_INLINE double located_time(const strut_event_stepper *l, double t, double dt) {
-  return l->next_break < HUGE_VAL ? t - located_moment(t, dt) : t;
+/* The time at which a step from t is evaluated; see moment_before. */
+STRUT_INLINE double evaluation_time(const strut_event_stepper *l, double t, double dt) {
+  return l->next_break < HUGE_VAL ? t - moment_before(t, dt) : t;
 }
 
 /* After a step of `gone`: on to the next grid point when this one is reached. */
-STRUT_INLINE void located_go_on(strut_state *state, strut_event_stepper *l, double gone,
-                                double dt) {
+STRUT_INLINE void advance_within_grid(strut_state *state, strut_event_stepper *l, double gone,
+                                      double dt) {
   double rest = dt - l->done;
   l->done = gone == rest ? dt : l->done + gone;
   if (dt - l->done > 1e-12 * dt) return;

@@ -110,7 +110,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   l->pushed = -1;
   l->tried = false;
   l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
-  if (l->next_break < HUGE_VAL) t += located_moment(t, dt);
+  if (l->next_break < HUGE_VAL) t += moment_before(t, dt);
   strut_modes_start(model, state, l, t);
   show_contacts(model, state, l);
   l->started = true;
@@ -124,7 +124,7 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
                        double dt) {
   double t = (double)state->step * dt + l->done;
   if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
-  double moment = located_moment(t, dt), before = 0.0;
+  double moment = moment_before(t, dt), before = 0.0;
   if (state->ledger) before = strut_energy_evaluate(model, state, t - moment).elastic;
   l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (state->ledger) {
@@ -169,7 +169,7 @@ static const double BALANCED = 1e-5;
    here, though the value does not change. */
 static bool tied_at_edge(const strut_model *model, const strut_event *event, double value) {
   return event->kind == STRUT_EVENT_LEAVES_STICK_BAND &&
-         value > 0.5 * TIED * located_edge(&model->contacts.entry[event->index]);
+         value > 0.5 * TIED * stick_band_edge(&model->contacts.entry[event->index]);
 }
 
 /*
@@ -254,7 +254,7 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
     h = 0.0;
   }
   if (h > 0.0) {
-    located_accept(model, state, l, state->ledger);
+    accept_step(model, state, l, state->ledger);
     l->at_once = 0;
   } else {
     l->at_once++;
@@ -296,8 +296,8 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
 void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace,
                               double dt) {
   strut_event_stepper *l = workspace;
-  double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
-  located_go_on(state, l, step(model, state, l, located_time(l, t, dt), h, dt), dt);
+  double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
+  advance_within_grid(state, l, step(model, state, l, evaluation_time(l, t, dt), h, dt), dt);
   if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
 }
 
@@ -306,7 +306,8 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
   strut_event_stepper *l = workspace;
   if (!l->started) strut_event_stepper_restart(model, state, workspace, dt);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
-    if (l->stepper->quiet && l->at_once == 0) l->stepper->quiet(model, state, l, dt, end);
+    if (l->stepper->advance_until_event && l->at_once == 0)
+      l->stepper->advance_until_event(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
     strut_event_stepper_step(model, state, l, dt);
   }

@@ -83,8 +83,8 @@ typedef struct strut_step_formula {
   bool adaptive;
   /** Takes steps up to grid point `end` while nothing happens, with the bits that trial gives; stops
       before the step in which something does, with l->tried if it has tried that one. May be NULL. */
-  void (*quiet)(const strut_model *model, strut_state *state, strut_event_stepper *l, double dt,
-                int64_t end);
+  void (*advance_until_event)(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              double dt, int64_t end);
 } strut_step_formula;
 
 /** Workspace of a method with events; in the state's arena. */
@@ -101,9 +101,9 @@ struct strut_event_stepper {
   double *outward; /* (contacts) the sign of gaps that keep the mode: 1 open, -1 closed */
   int32_t *body;   /* (contacts) equal where a force on one accelerates the other */
   bool *body_seen; /* (contacts) scratch */
-  strut_sliding_contact *slider;      /* (closed_count), where `plain` */
-  bool plain;                         /* apart, and all closed contacts are sliders */
-  bool apart;                         /* level ground, and no two closed contacts are of one body */
+  strut_sliding_contact *sliding;     /* (closed_count), where all_sliding */
+  bool all_sliding;                   /* decoupled, and all closed contacts are in the list above */
+  bool contacts_decoupled;            /* level ground, and no two closed contacts are of one body */
   double *damped;                     /* (contacts) damper force while it is being solved for [N] */
   strut_contact_compliance *response; /* (contacts) */
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
@@ -142,7 +142,7 @@ void strut_event_stepper_step(const strut_model *model, strut_state *state, void
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                                  double dt, int64_t count);
 
-/* ---- parts of it, in located_*.c ---- */
+/* ---- parts of it, in contact_compliance.c, contact_modes.c and event_location.c ---- */
 
 /** Responses, settling times, refinement. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
@@ -181,7 +181,7 @@ typedef struct strut_event {
   double fraction; /* of the step, by interpolation */
 } strut_event;
 
-/** The earliest event between now and next, h apart; kind NONE if every mode holds. */
+/** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h);
 /** The value that event ends at 0, at an end; positive while the mode holds. */

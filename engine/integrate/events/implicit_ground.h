@@ -63,7 +63,7 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *
     int32_t i = l->closed[k];
     strut_touch *o = &touch[i];
     o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
-    double friction = located_friction(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
+    double friction = friction_in_mode(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
                                        o->slip, o->applied);
     bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
@@ -88,10 +88,10 @@ STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
                                          strut_event_stepper *l, bool ledger) {
   for (int32_t k = 0; k < l->closed_count; k++)
-    located_place(&model->contacts, l->closed[k], l->next->q, l->next->v,
-                  &l->next->touch[l->closed[k]]);
-  located_rates(model, l, l->next->a, l->next->touch);
-  if (ledger) located_powers(model, state, l, l->next->touch);
+    measure_contact(&model->contacts, l->closed[k], l->next->q, l->next->v,
+                    &l->next->touch[l->closed[k]]);
+  measure_contact_rates(model, l, l->next->a, l->next->touch);
+  if (ledger) add_contact_powers(model, state, l, l->next->touch);
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */
@@ -105,16 +105,16 @@ STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e,
   if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP)
     o->friction = -x / r->tangent;
   else
-    o->friction = located_friction(e, mode, side, o->normal, o->slip, o->applied);
+    o->friction = friction_in_mode(e, mode, side, o->normal, o->slip, o->applied);
 }
 
 /*
  * Level ground, and contacts that do not answer to each other: one pass. force, a: of the structure
  * alone; v: predicted velocity, which only the smooth law of friction asks.
  */
-STRUT_INLINE void implicit_ground_apart(const strut_model *model, const strut_event_stepper *l,
-                                        double h, const double *restrict v,
-                                        const double *restrict force, double *restrict a) {
+STRUT_INLINE void implicit_ground_decoupled(const strut_model *model, const strut_event_stepper *l,
+                                            double h, const double *restrict v,
+                                            const double *restrict force, double *restrict a) {
   const strut_contact_table *c = &model->contacts;
   const strut_touch *restrict before = l->now->touch;
   const double *restrict q = l->next->q;
@@ -145,7 +145,7 @@ STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_e
   const strut_touch *restrict before = l->now->touch;
   const double *restrict q = l->next->q, height = model->contacts.height;
   strut_touch *restrict touch = l->next->touch;
-  const strut_sliding_contact *s = l->slider;
+  const strut_sliding_contact *s = l->sliding;
   for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++) {
     const strut_touch *b = &before[s->index];
     strut_touch *o = &touch[s->index];
@@ -169,7 +169,7 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
                                         const strut_event_stepper *l, bool ledger) {
   const strut_contact_table *c = &model->contacts;
   const double *restrict v = l->next->v, *restrict a = l->next->a;
-  double contact = 0.0, friction = 0.0, belt = 0.0, moved = 0.0;
+  double contact = 0.0, friction = 0.0, belt = 0.0, exchanged = 0.0;
   for (int32_t k = 0, count = l->closed_count; k < count; k++) {
     int32_t i = l->closed[k];
     uint32_t at = c->at[i];
@@ -182,12 +182,13 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
     double damped = -(o->normal + c->entry[i].stiffness * o->gap) * o->into;
     double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
     contact += damped, friction += rubbed, belt += carried;
-    moved += fabs(damped) + fabs(rubbed) + fabs(carried);
+    exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
   if (!ledger) return;
   double *low = state->power + STRUT_POWER_DRIVE, *high = state->power + STRUT_POWER_CONTACT;
   strut_lanes_store(low, strut_lanes_load(low) + (strut_lanes){0.0, 0.0, belt, 0.0});
-  strut_lanes_store(high, strut_lanes_load(high) + (strut_lanes){contact, friction, moved, 0.0});
+  strut_lanes_store(high,
+                    strut_lanes_load(high) + (strut_lanes){contact, friction, exchanged, 0.0});
 }
 
 #endif

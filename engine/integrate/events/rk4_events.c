@@ -43,12 +43,12 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now->power[p];
   for (int k = 1; k < 4; k++) {
     stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
-    located_acceleration(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, ledger);
+    accelerate_in_modes(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, ledger);
     if (ledger) gain(state, l, weight[k] * h / 6.0);
   }
   combine(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
   combine(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
-  located_finish(model, state, l, t + h, l->next, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, ledger);
 }
 
 STRUT_CLONES
@@ -75,6 +75,7 @@ const strut_integrator strut_integrator_rk4_events = {
     .order = 4,
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
+    .role = STRUT_ROLE_EXACT_STICK,
     .events = true,
     .create = create,
     .restart = strut_event_stepper_restart,

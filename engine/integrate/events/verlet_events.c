@@ -31,26 +31,26 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
   forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
-  located_keep(model, state, l->next, ledger);
+  keep_structure_forces(model, state, l->next, ledger);
   if (!l->closed_count) {
     mass_kernel(model, state->force, a1, state->scratch);
-  } else if (l->plain) {
+  } else if (l->all_sliding) {
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_slides(model, l, h, a1);
-  } else if (l->apart) {
+  } else if (l->contacts_decoupled) {
     mass_kernel(model, state->force, a1, state->scratch);
-    implicit_ground_apart(model, l, h, predicted, state->force, a1);
+    implicit_ground_decoupled(model, l, h, predicted, state->force, a1);
   } else {
-    located_ground(model, l, l->next->q, predicted, state->force, false, l->next->touch);
+    add_contact_forces(model, l, l->next->q, predicted, state->force, false, l->next->touch);
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_together(model, l, h, a1, l->next->touch);
   }
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
-  if (l->closed_count && l->apart)
+  if (l->closed_count && l->contacts_decoupled)
     implicit_ground_leave(model, state, l, ledger);
   else if (l->closed_count)
     implicit_ground_finish(model, state, l, ledger);
-  if (!l->plain) located_settle_ties(model, l);
+  if (!l->all_sliding) settle_band_ties(model, l);
   for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
     strut_lanes power = strut_lanes_load(state->power + p);
     strut_lanes_store(l->next->power + p, power);
@@ -91,49 +91,48 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_steppe
 /* Does what l->next says contradict a mode? */
 STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h) {
-  if (l->plain) {
-    const strut_sliding_contact *s = l->slider;
+  if (l->all_sliding) {
+    const strut_sliding_contact *s = l->sliding;
     for (const strut_sliding_contact *end = s + l->closed_count; s < end; s++)
       if (s->side * l->next->touch[s->index].slip < s->edge) return true;
   }
-  for (int32_t k = 0; k < l->closed_count && !l->plain; k++) {
+  for (int32_t k = 0; k < l->closed_count && !l->all_sliding; k++) {
     int32_t i = l->closed[k];
-    if (located_contradiction(&model->contacts.entry[i], &l->next->touch[i], l->mode[i],
-                              l->side[i]))
+    if (contradicting_event(&model->contacts.entry[i], &l->next->touch[i], l->mode[i], l->side[i]))
       return true;
   }
   return l->cable_count && strut_event_first(model, state, l, h).kind;
 }
 
-STRUT_INLINE void go_quietly(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                             double dt, int64_t end, bool ledger) {
+STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,
+                                    strut_event_stepper *l, double dt, int64_t end, bool ledger) {
   while (state->step < end) {
-    double t = (double)state->step * dt + l->done, h = located_step_size(state, l, dt);
+    double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
     if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) return;
-    t = located_time(l, t, dt);
+    t = evaluation_time(l, t, dt);
     predict(model, l, h);
     if (crosses(&model->contacts, l, l->next->q)) return;
     take(model, state, l, t, h, ledger);
     l->tried = contradicts(model, state, l, h);
     if (l->tried) return;
-    located_accept(model, state, l, ledger);
-    located_go_on(state, l, h, dt);
+    accept_step(model, state, l, ledger);
+    advance_within_grid(state, l, h, dt);
   }
 }
 
 STRUT_CLONES
-static void verlet_events_quiet(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, double dt, int64_t end) {
+static void verlet_advance_until_event(const strut_model *model, strut_state *state,
+                                       strut_event_stepper *l, double dt, int64_t end) {
   if (state->ledger)
-    go_quietly(model, state, l, dt, end, true);
+    advance_predicted(model, state, l, dt, end, true);
   else
-    go_quietly(model, state, l, dt, end, false);
+    advance_predicted(model, state, l, dt, end, false);
 }
 
 static const strut_step_formula stepper = {.trial = verlet_events_trial,
                                            .stages = STAGES,
                                            .predict = predict,
-                                           .quiet = verlet_events_quiet};
+                                           .advance_until_event = verlet_advance_until_event};
 
 static void *create(const strut_model *model, strut_state *state) {
   return strut_event_stepper_create(model, state, &stepper);
@@ -147,6 +146,8 @@ const strut_integrator strut_integrator_verlet_events = {
     .order = 2,
     .evaluations = 1,
     .region = STRUT_REGION_VERLET,
+    .role = STRUT_ROLE_COARSE,
+    .lanes = STRUT_LANES_VERLET,
     .implicit_damper = true,
     .events = true,
     .create = create,

@@ -16,9 +16,7 @@ static bool has_four(void) { return false; }
 
 int32_t strut_batch_widest(void) { return has_four() ? 8 : 2; }
 
-bool strut_batch_knows(const strut_integrator *method) {
-  return method == &strut_integrator_rk4 || method == &strut_integrator_verlet_events;
-}
+bool strut_batch_knows(const strut_integrator *method) { return method->lanes != STRUT_LANES_NONE; }
 
 bool strut_batch_possible(const strut_model *model, const strut_integrator *method) {
   if (!strut_batch_knows(method) || !strut_lanes_possible(model)) return false;

@@ -68,7 +68,7 @@ typedef struct strut_batch_events {
   double *outward;                       /* (contacts, width) as strut_event_stepper has them */
   double *time, *h, *crossed, *accepted; /* (width) [s], [s]; the last two 0 or 1 */
   strut_state *state[STRUT_MOST_LANES];  /* of filled lanes, with its workspace */
-  struct strut_event_stepper *located[STRUT_MOST_LANES];
+  struct strut_event_stepper *stepper[STRUT_MOST_LANES];
   bool joined[STRUT_MOST_LANES]; /* in step with others; else its state says where it is */
   bool jumped[STRUT_MOST_LANES]; /* something happens in the step that is due */
   /* from now over h to next, without the ground; velocities; works of accepted steps */

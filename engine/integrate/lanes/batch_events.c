@@ -49,12 +49,13 @@ bool strut_batch_events_create(strut_batch *b) {
 
 /* Can the lane go in step with others as its modes are now? */
 static bool can_join(const strut_event_stepper *l) {
-  return l->at_once == 0 && !(l->next_break < HUGE_VAL) && (!l->closed_count || l->apart);
+  return l->at_once == 0 && !(l->next_break < HUGE_VAL) &&
+         (!l->closed_count || l->contacts_decoupled);
 }
 
 static void join(strut_batch *b, int32_t lane) {
   strut_batch_events *e = b->events;
-  const strut_event_stepper *l = e->located[lane];
+  const strut_event_stepper *l = e->stepper[lane];
   const strut_step_end *now = l->now;
   int32_t width = b->tables.width, rows = 2 * b->tables.first->node_count;
   put_column(e->now->q, rows, width, lane, now->q);
@@ -72,7 +73,7 @@ static void fetch(const strut_batch *b, int32_t lane) {
   const strut_batch_events *e = b->events;
   const strut_lane_tables *t = &b->tables;
   strut_state *state = e->state[lane];
-  strut_step_end *now = e->located[lane]->now;
+  strut_step_end *now = e->stepper[lane]->now;
   int32_t width = t->width, rows = 2 * t->first->node_count;
   get_column(e->now->q, rows, width, lane, now->q);
   get_column(e->now->v, rows, width, lane, now->v);
@@ -91,9 +92,9 @@ static void fetch(const strut_batch *b, int32_t lane) {
 void strut_batch_events_put(strut_batch *b, int32_t lane, strut_state *state, void *workspace) {
   strut_batch_events *e = b->events;
   e->state[lane] = state;
-  e->located[lane] = workspace;
+  e->stepper[lane] = workspace;
   e->joined[lane] = e->jumped[lane] = false;
-  if (!e->located[lane]->started)
+  if (!e->stepper[lane]->started)
     strut_event_stepper_restart(b->tables.model[lane], state, workspace, b->dt[lane]);
 }
 
@@ -108,7 +109,7 @@ void strut_batch_events_sample(const strut_batch *b, int32_t lane) {
 void strut_batch_events_get(strut_batch *b, int32_t lane) {
   strut_batch_events *e = b->events;
   if (e->joined[lane]) fetch(b, lane);
-  strut_event_stepper_advance(b->tables.model[lane], e->state[lane], e->located[lane], b->dt[lane],
+  strut_event_stepper_advance(b->tables.model[lane], e->state[lane], e->stepper[lane], b->dt[lane],
                               0);
 }
 
@@ -128,7 +129,7 @@ static column column_of(const strut_batch *b, int32_t lane) {
   const strut_batch_events *e = b->events;
   const strut_batch_end *next = e->next;
   return (column){.model = b->tables.model[lane],
-                  .l = e->located[lane],
+                  .l = e->stepper[lane],
                   .h = e->h[lane],
                   .width = (size_t)b->tables.width,
                   .q = next->q + lane,
@@ -151,7 +152,7 @@ static void answer(const column *c, int32_t nodes, const uint32_t *place, const 
 static void slide(const column *c) {
   const strut_event_stepper *l = c->l;
   const double h = c->h, height = c->model->contacts.height;
-  for (const strut_sliding_contact *s = l->slider, *end = s + l->closed_count; s < end; s++) {
+  for (const strut_sliding_contact *s = l->sliding, *end = s + l->closed_count; s < end; s++) {
     const strut_touch *b = &l->now->touch[s->index];
     strut_touch *o = &l->next->touch[s->index];
     size_t up = (s->at + 1) * c->width;
@@ -187,7 +188,7 @@ static void touch(const column *c) {
 
 static void leave_ground(const column *c, bool ledger) {
   const strut_contact_table *t = &c->model->contacts;
-  double contact = 0.0, friction = 0.0, belt = 0.0, moved = 0.0;
+  double contact = 0.0, friction = 0.0, belt = 0.0, exchanged = 0.0;
   for (int32_t k = 0; k < c->l->closed_count; k++) {
     int32_t i = c->l->closed[k];
     size_t x = t->at[i] * c->width, y = x + c->width;
@@ -200,27 +201,27 @@ static void leave_ground(const column *c, bool ledger) {
     double damped = -(o->normal + t->entry[i].stiffness * o->gap) * o->into;
     double rubbed = -o->friction * o->slip, carried = o->friction * t->belt_speed;
     contact += damped, friction += rubbed, belt += carried;
-    moved += fabs(damped) + fabs(rubbed) + fabs(carried);
+    exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
   if (!ledger || !c->l->closed_count) return;
   c->power[STRUT_POWER_BELT * c->width] += belt;
   c->power[STRUT_POWER_CONTACT * c->width] += contact;
   c->power[STRUT_POWER_FRICTION * c->width] += friction;
-  c->power[STRUT_POWER_EXCHANGED * c->width] += moved;
+  c->power[STRUT_POWER_EXCHANGED * c->width] += exchanged;
 }
 
 /* Does the end of the step contradict a mode? */
 static bool contradicts(const column *c) {
   const strut_event_stepper *l = c->l;
-  if (l->plain) {
-    for (const strut_sliding_contact *s = l->slider, *end = s + l->closed_count; s < end; s++)
+  if (l->all_sliding) {
+    for (const strut_sliding_contact *s = l->sliding, *end = s + l->closed_count; s < end; s++)
       if (s->side * l->next->touch[s->index].slip < s->edge) return true;
     return false;
   }
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
-    if (located_contradiction(&c->model->contacts.entry[i], &l->next->touch[i], l->mode[i],
-                              l->side[i]))
+    if (contradicting_event(&c->model->contacts.entry[i], &l->next->touch[i], l->mode[i],
+                            l->side[i]))
       return true;
   }
   return false;
@@ -238,9 +239,9 @@ static void add_works(const strut_batch *b, int32_t lane) {
   }
 }
 
-/* The step has been taken, as located_accept has it. */
+/* The step has been taken, as accept_step has it. */
 static void accept(const strut_batch *b, int32_t lane) {
-  strut_event_stepper *l = b->events->located[lane];
+  strut_event_stepper *l = b->events->stepper[lane];
   strut_state *state = b->events->state[lane];
   strut_touch *touches = l->now->touch;
   l->now->touch = l->next->touch;
@@ -248,7 +249,7 @@ static void accept(const strut_batch *b, int32_t lane) {
   l->fresh = true;
   state->evaluations++;
   if (b->ledger) add_works(b, lane);
-  located_go_on(state, l, b->events->h[lane], b->dt[lane]);
+  advance_within_grid(state, l, b->events->h[lane], b->dt[lane]);
 }
 
 /* Tries a step in all lanes that are in step with each other. */
@@ -260,7 +261,7 @@ static void step_together(strut_batch *b) {
     if (!e->joined[l]) continue;
     goes[l] = e->crossed[l] == 0.0;
     column c = column_of(b, l);
-    if (goes[l] && c.l->plain)
+    if (goes[l] && c.l->all_sliding)
       slide(&c);
     else if (goes[l])
       touch(&c);
@@ -270,7 +271,7 @@ static void step_together(strut_batch *b) {
     if (goes[l]) {
       column c = column_of(b, l);
       leave_ground(&c, b->ledger);
-      if (!c.l->plain) located_settle_ties(c.model, c.l);
+      if (!c.l->all_sliding) settle_band_ties(c.model, c.l);
       goes[l] = !contradicts(&c);
     }
     if (goes[l]) {
@@ -291,7 +292,7 @@ static void step_alone(strut_batch *b, int32_t lane, int64_t end) {
   strut_batch_events *e = b->events;
   const strut_model *model = b->tables.model[lane];
   strut_state *state = e->state[lane];
-  strut_event_stepper *l = e->located[lane];
+  strut_event_stepper *l = e->stepper[lane];
   while (e->jumped[lane] && state->step < end) {
     strut_event_stepper_step(model, state, l, b->dt[lane]);
     e->jumped[lane] = l->at_once > 0;
@@ -322,8 +323,8 @@ void strut_batch_events_advance(strut_batch *b, const int64_t *left) {
       if (state->trouble || state->step >= end[l]) done = true;
       if (!e->joined[l]) continue;
       any = true;
-      e->time[l] = (double)state->step * b->dt[l] + e->located[l]->done;
-      e->h[l] = located_step_size(state, e->located[l], b->dt[l]);
+      e->time[l] = (double)state->step * b->dt[l] + e->stepper[l]->done;
+      e->h[l] = next_step_size(state, e->stepper[l], b->dt[l]);
     }
     if (done || !any) continue;
     step_together(b);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/limit/stability.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -88,6 +89,21 @@ double strut_region_limit(strut_region region, double re, double im, double k, d
     case STRUT_REGION_RK4: return strut_rk4_limit(re, im);
     case STRUT_REGION_VERLET: return strut_verlet_limit(k, fmax(d, 0.0));
     case STRUT_REGION_EULER: return strut_euler_limit(k, fmax(d, 0.0));
-    default: return HUGE_VAL;
+    case STRUT_REGION_ALL:
+    case STRUT_REGIONS: break;
   }
+  return HUGE_VAL;
+}
+
+const strut_region_data *strut_region_at(strut_region region) {
+  /* RK4 bears every complex eigenvalue below 2.6 / h, and every real one below 2.785 / h */
+  static const strut_region_data data[STRUT_REGIONS] = {
+      [STRUT_REGION_RK4] = {.sets = 2,
+                            .set = {{1.0 / (2.6 * 2.6), 0.0}, {0.0, 1.0 / 2.7852935634}},
+                            .growth = 4.0,
+                            .by_eigenvalue = true},
+      [STRUT_REGION_VERLET] = {.sets = 1, .set = {{0.25, 1.0}}, .growth = 1.0},
+      [STRUT_REGION_EULER] = {.sets = 1, .set = {{0.25, 0.5}}, .growth = 1.0}};
+  assert(region >= 0 && region < STRUT_REGIONS);
+  return &data[region];
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/forces/rigid.h"
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "engine/integrate/limit/tangent_bound.h"
 #include "engine/integrate/limit/tangent_limits.h"
 #include "engine/model/memory_estimate.h"
@@ -212,11 +212,11 @@ strut_status strut_step_limit_with_bound(const strut_model *model, const strut_i
   strut_step_limit found;
   *limit = HUGE_VAL;
   *bound = false;
-  if (method->region == STRUT_REGION_ALL) return STRUT_OK;
+  if (strut_region_at(method->region)->sets == 0) return STRUT_OK;
   bool undamped = method->implicit_damper && ground_damps(model);
   strut_status status = limits(model, model->start, model->members.rest,
                                undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
-                               method->region == STRUT_REGION_RK4, &arena, &found);
+                               strut_region_at(method->region)->by_eigenvalue, &arena, &found);
   *limit = found.of[method->region];
   *bound = found.bound;
   strut_arena_free(&arena);
@@ -282,13 +282,8 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   digest(key, m->scene->gravity, sizeof m->scene->gravity);
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
-    bool smooth = e->law == STRUT_FRICTION_SMOOTH; /* the other laws have no slope */
-    const double entry[] = {e->node,
-                            e->stiffness,
-                            e->damping,
-                            e->dissipation,
-                            smooth ? e->width : 0.0,
-                            smooth ? e->mu_kinetic : 0.0};
+    const double entry[] = {e->node, e->stiffness, e->damping, e->dissipation,
+                            strut_friction_slope(&e->friction, 1.0)};
     digest(key, entry, sizeof entry);
   }
   const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed};

@@ -1,37 +1,77 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a search for equilibria found, as tables of a screenful. */
 #include "engine/output/report/equilibria_report.h"
 
+#include <assert.h>
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
+#include "engine/base/c_locale.h"
+#include "engine/output/buffer.h"
 #include "engine/output/json.h"
 #include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+
+/* ---- JSON ---- */
 
 struct cJSON;
 
 const char *strut_outcome_name(strut_outcome fate) {
   static const char *const names[] = {"stands",   "tips",   "below ground",
                                       "unstable", "floppy", "no rest"};
+  assert((size_t)fate < sizeof names / sizeof names[0]);
   return names[fate];
 }
 
-static void add_names(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
+/* Twice the area of a, b, c: positive where they turn left. */
+static double turn(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static bool members_cross(const strut_model *model, const double *q, int32_t i, int32_t j) {
+  const strut_member_table *t = &model->members;
+  if (t->from[i] == t->from[j] || t->from[i] == t->to[j] || t->to[i] == t->from[j] ||
+      t->to[i] == t->to[j])
+    return false;
+  const double *a = q + t->from[i], *b = q + t->to[i], *c = q + t->from[j], *d = q + t->to[j];
+  double least = 1e-8 * model->size * model->size;
+  double c_side = turn(a, b, c), d_side = turn(a, b, d);
+  double a_side = turn(c, d, a), b_side = turn(c, d, b);
+  bool apart = fmin(fabs(c_side), fabs(d_side)) > least && fmin(fabs(a_side), fabs(b_side)) > least;
+  return apart && (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
+}
+
+strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double *q) {
+  const double least = 1e-4 * model->size;
+  strut_shape_flaws flaws = {0};
+  for (int32_t i = 0; i < model->node_count && !flaws.collapsed; i++)
+    for (int32_t j = 0; j < i && !flaws.collapsed; j++)
+      flaws.collapsed = hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]) < least;
+  for (int32_t i = 0; i < model->members.count; i++)
+    for (int32_t j = 0; j < i; j++) flaws.crossings += members_cross(model, q, i, j);
+  return flaws;
+}
+
+static void put_names(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                       const int32_t *node, size_t count) {
   struct cJSON *names = strut_json_array(json, to, key);
   for (size_t i = 0; i < count; i++) strut_json_text(json, names, NULL, scene->nodes[node[i]].name);
 }
 
-static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
+static void put_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
                       const double *q) {
   struct cJSON *nodes = strut_json_object(json, to, "nodes");
   for (size_t i = 0; i < scene->node_count; i++)
     strut_json_numbers(json, nodes, scene->nodes[i].name, q + 2 * i, 2);
 }
 
-static void add_supports(strut_json *json, struct cJSON *to, const strut_scene *scene,
+static void put_supports(strut_json *json, struct cJSON *to, const strut_scene *scene,
                          const strut_equilibrium *e) {
-  add_names(json, to, "contacts", scene, e->contacts, (size_t)e->contact_count);
+  put_names(json, to, "contacts", scene, e->contacts, (size_t)e->contact_count);
   if (e->supports)
-    add_names(json, to, "supports", scene, e->supports->node, e->supports->count);
+    put_names(json, to, "supports", scene, e->supports->node, e->supports->count);
   else
     strut_json_text(json, to, "supports", NULL);
 }
@@ -42,7 +82,7 @@ static bool is_support(const strut_scene *scene, const strut_equilibrium *e, siz
   return scene->nodes[node].fixed[0] || scene->nodes[node].fixed[1];
 }
 
-static void add_forces(strut_json *json, struct cJSON *to, const strut_scene *scene,
+static void put_forces(strut_json *json, struct cJSON *to, const strut_scene *scene,
                        const strut_equilibrium *e) {
   struct cJSON *forces = strut_json_object(json, to, "forces");
   for (size_t j = 0; j < scene->member_count; j++)
@@ -53,21 +93,21 @@ static void add_forces(strut_json *json, struct cJSON *to, const strut_scene *sc
       strut_json_numbers(json, reactions, scene->nodes[i].name, e->reaction[i], 2);
 }
 
-static void add_below(strut_json *json, struct cJSON *to, const strut_scene *scene,
+static void put_below(strut_json *json, struct cJSON *to, const strut_scene *scene,
                       const strut_equilibrium *e) {
   struct cJSON *below = strut_json_array(json, to, "below_ground");
   for (size_t i = 0; i < scene->node_count; i++)
     if (e->below[i]) strut_json_text(json, below, NULL, scene->nodes[i].name);
 }
 
-static void add_rest(strut_json *json, struct cJSON *to, const strut_scene *scene,
+static void put_rest(strut_json *json, struct cJSON *to, const strut_scene *scene,
                      const strut_equilibrium *e) {
   if (!e->rest) {
     strut_json_text(json, to, "rest", NULL);
     return;
   }
   struct cJSON *rest = strut_json_object(json, to, "rest");
-  add_nodes(json, rest, scene, e->rest);
+  put_nodes(json, rest, scene, e->rest);
   strut_json_number(json, rest, "energy", e->rest_energy);
   strut_json_number(json, rest, "residual", e->rest_residual);
   struct cJSON *contacts = strut_json_object(json, rest, "contacts");
@@ -75,7 +115,7 @@ static void add_rest(strut_json *json, struct cJSON *to, const strut_scene *scen
     strut_json_number(json, contacts, scene->nodes[e->contacts[i]].name, e->normal[i]);
 }
 
-static void add_down(strut_json *json, struct cJSON *to, const strut_equilibria *all,
+static void put_down(strut_json *json, struct cJSON *to, const strut_equilibria *all,
                      const strut_equilibrium *e) {
   if (e->point.label != STRUT_SADDLE || e->point.negative != 1) return;
   struct cJSON *down = strut_json_array(json, to, "down");
@@ -84,33 +124,37 @@ static void add_down(strut_json *json, struct cJSON *to, const strut_equilibria 
                     e->point.down[k] >= 0 ? all->list[e->point.down[k]].name : NULL);
 }
 
-static void add_equilibrium(strut_json *json, struct cJSON *to, const strut_equilibria *all,
-                            const strut_scene *scene, const strut_equilibrium *e) {
+static void put_equilibrium(strut_json *json, struct cJSON *to, const strut_equilibria *all,
+                            const strut_model *model, const strut_equilibrium *e) {
+  const strut_scene *scene = model->scene;
   const strut_critical_point *p = &e->point;
   strut_json_text(json, to, "name", e->name);
   strut_json_text(json, to, "label", strut_stability_name(p->label));
   strut_json_number(json, to, "energy", e->energy);
   strut_json_number(json, to, "potential", p->potential);
-  add_supports(json, to, scene, e);
-  strut_json_text(json, to, "fate", strut_outcome_name(e->fate));
+  put_supports(json, to, scene, e);
+  strut_json_text(json, to, "outcome", strut_outcome_name(e->fate));
   strut_json_text(json, to, "verdict", e->verdict);
   strut_json_text(json, to, "tips_over",
                   e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL);
   strut_json_text(json, to, "ends_as", e->ends_as >= 0 ? all->list[e->ends_as].name : NULL);
   strut_json_integer(json, to, "shape", p->shape);
-  strut_json_integer(json, to, "placements", p->placements);
+  strut_json_integer(json, to, "congruent_copies", p->placements);
   strut_json_integer(json, to, "found", p->found);
-  add_nodes(json, to, scene, p->q);
-  add_forces(json, to, scene, e);
-  add_below(json, to, scene, e);
+  strut_shape_flaws flaws = strut_find_shape_flaws(model, p->q);
+  strut_json_bool(json, to, "collapsed", flaws.collapsed);
+  strut_json_integer(json, to, "crossings", flaws.crossings);
+  put_nodes(json, to, scene, p->q);
+  put_forces(json, to, scene, e);
+  put_below(json, to, scene, e);
   strut_json_numbers(json, to, "eigenvalues", p->eigenvalues, (size_t)p->eigenvalue_count);
   strut_json_integer(json, to, "negative_eigenvalues", p->negative);
   strut_json_integer(json, to, "zero_eigenvalues", p->zero);
-  add_rest(json, to, scene, e);
-  add_down(json, to, all, e);
+  put_rest(json, to, scene, e);
+  put_down(json, to, all, e);
 }
 
-static void add_barriers(strut_json *json, const strut_equilibria *all) {
+static void put_barriers(strut_json *json, const strut_equilibria *all) {
   struct cJSON *barriers = strut_json_array(json, json->root, "barriers");
   for (size_t i = 0; i < all->barrier_count; i++) {
     const strut_barrier *b = &all->barriers[i];
@@ -136,10 +180,10 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_integer(&json, json.root, "seed", (int64_t)all->seed);
   strut_json_integer(&json, json.root, "starts", all->starts);
   struct cJSON *missed = strut_json_object(&json, json.root, "missed");
-  strut_json_number(&json, missed, "chance", all->missed);
-  strut_json_number(&json, missed, "chance_below", all->missed_below);
-  strut_json_integer(&json, missed, "unmet", all->unmet);
-  strut_json_number(&json, missed, "bound", all->missed_one);
+  strut_json_number(&json, missed, "probability", all->missed);
+  strut_json_number(&json, missed, "probability_bound", all->missed_below);
+  strut_json_integer(&json, missed, "unreached", all->unmet);
+  strut_json_number(&json, missed, "smallest_basin", all->missed_one);
   strut_json_bool(&json, missed, "cut_short", all->cut_short);
   strut_json_settle(&json, json.root, &all->settle);
   if (all->settle.evaluations > 0)
@@ -148,7 +192,201 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_text(&json, json.root, "remark", all->remark[0] ? all->remark : NULL);
   struct cJSON *list = strut_json_array(&json, json.root, "equilibria");
   for (size_t i = 0; i < all->count; i++)
-    add_equilibrium(&json, strut_json_object(&json, list, NULL), all, scene, &all->list[i]);
-  add_barriers(&json, all);
+    put_equilibrium(&json, strut_json_object(&json, list, NULL), all, model, &all->list[i]);
+  put_barriers(&json, all);
   return strut_json_end(&json);
+}
+
+/* ---- the table ---- */
+
+enum { MOST_ROWS = 80, MOST_BARRIERS = 24, MOST_NODES = 12, NAMES = 64, FLAWS = 11 };
+
+/* Rows of one table: those of one kind. */
+typedef enum section { STANDING, HELD, UNSTABLE } section;
+
+static section section_of(const strut_equilibrium *e) {
+  if (e->fate == STRUT_OUTCOME_STANDS) return STANDING;
+  return e->fate == STRUT_OUTCOME_UNSTABLE ? UNSTABLE : HELD;
+}
+
+static void list_names(const strut_scene *scene, const strut_equilibrium *e, char text[NAMES]) {
+  const int32_t *node = e->contacts;
+  size_t count = (size_t)e->contact_count, used = 0;
+  if (e->supports && e->fate != STRUT_OUTCOME_STANDS)
+    node = e->supports->node, count = e->supports->count;
+  snprintf(text, NAMES, "-");
+  for (size_t i = 0; i < count && used < NAMES; i++) {
+    int n = snprintf(text + used, NAMES - used, "%s%s", i ? "," : "", scene->nodes[node[i]].name);
+    if (n < 0) return;
+    used += (size_t)n;
+  }
+}
+
+/* "collapsed", "2 crossings" or "-". */
+static void describe_flaws(strut_shape_flaws flaws, char text[NAMES]) {
+  if (flaws.collapsed)
+    snprintf(text, NAMES, "collapsed");
+  else if (flaws.crossings)
+    snprintf(text, NAMES, "%" PRId32 " crossing%s", flaws.crossings,
+             flaws.crossings == 1 ? "" : "s");
+  else
+    snprintf(text, NAMES, "-");
+}
+
+/* Where a saddle leads down to, else what becomes of the equilibrium; nothing to say of standing. */
+static void add_end(strut_buffer *table, const strut_equilibria *all, const strut_equilibrium *e) {
+  const int32_t *down = e->point.down;
+  if (e->fate == STRUT_OUTCOME_STANDS) return;
+  if (e->point.negative == 1 && down[0] >= 0 && down[1] >= 0)
+    strut_buffer_add(table, "  between %s and %s", all->list[down[0]].name,
+                     all->list[down[1]].name);
+  else
+    strut_buffer_add(table, "  %s", e->verdict);
+}
+
+static void add_row(strut_buffer *table, const strut_equilibria *all, const strut_model *model,
+                    const strut_equilibrium *e) {
+  char names[NAMES], flaws[NAMES];
+  list_names(model->scene, e, names);
+  describe_flaws(strut_find_shape_flaws(model, e->point.q), flaws);
+  int32_t first = e->point.label == STRUT_STABLE ? e->point.zero : 0; /* free motions apart */
+  double lowest = first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
+  strut_buffer_add(table, "  %-18s %-12s %-8s %14s %13s %7" PRId64 "  %-*s", e->name, names,
+                   strut_stability_name(e->point.label), strut_quantity_of(e->energy, 8, "J").text,
+                   strut_quantity_of(lowest, 5, "N/m").text, e->point.found,
+                   e->fate == STRUT_OUTCOME_STANDS ? 0 : FLAWS, flaws);
+  add_end(table, all, e);
+  strut_buffer_add(table, "\n");
+}
+
+static void add_section(strut_buffer *table, const strut_equilibria *all, const strut_model *model,
+                        section wanted, const char *title, size_t most) {
+  size_t count = 0;
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    if (section_of(e) != wanted || count++ >= most) continue;
+    if (count == 1)
+      strut_buffer_add(table, "\n  %-18s %-12s %-8s %14s %13s %7s  %-*s%s\n", title,
+                       wanted == HELD ? "held" : "touching", "label", "energy", "stiffness",
+                       "found", wanted == STANDING ? 0 : FLAWS, "shape",
+                       wanted == STANDING ? "" : "  outcome");
+    add_row(table, all, model, e);
+  }
+  if (count > most)
+    strut_buffer_add(table, "  ... and %zu more; --all lists every row\n", count - most);
+}
+
+/* What the short table leaves out. */
+static void add_counts(strut_buffer *table, const strut_equilibria *all) {
+  size_t fates[STRUT_OUTCOME_NO_REST + 1] = {0}, any = 0;
+  static const char *const words[] = {
+      [STRUT_OUTCOME_TIPS] = "that tip over or move elsewhere once the contacts are released",
+      [STRUT_OUTCOME_BELOW_GROUND] = "with nodes below the ground",
+      [STRUT_OUTCOME_UNSTABLE] = "unstable (saddles and maxima)",
+      [STRUT_OUTCOME_FLOPPY] = "floppy",
+      [STRUT_OUTCOME_NO_REST] = "that come to no rest once released"};
+  for (size_t i = 0; i < all->count; i++) fates[all->list[i].fate]++;
+  for (int f = STRUT_OUTCOME_TIPS; f <= STRUT_OUTCOME_NO_REST; f++) {
+    if (!fates[f]) continue;
+    strut_buffer_add(table, any++ ? ",\n  " : "\n  not shown: ");
+    strut_buffer_add(table, "%zu %s", fates[f], words[f]);
+  }
+  if (any) strut_buffer_add(table, "; --all lists them\n");
+}
+
+/* Where it rests, and what presses there. */
+static void add_shape(strut_buffer *table, const strut_scene *scene, const strut_equilibrium *e) {
+  strut_buffer_add(table, "\n  %-12s %14s %14s", e->name, "x", "y");
+  strut_buffer_add(table, e->contact_count ? " %14s\n" : "\n", "presses with");
+  for (size_t i = 0; i < scene->node_count && i < MOST_NODES; i++) {
+    strut_buffer_add(table, "  %-12s %14s %14s", scene->nodes[i].name,
+                     strut_quantity_of(e->rest[2 * i], 7, "m").text,
+                     strut_quantity_of(e->rest[2 * i + 1], 7, "m").text);
+    for (int32_t k = 0; k < e->contact_count; k++)
+      if (e->contacts[k] == (int32_t)i)
+        strut_buffer_add(table, " %14s", strut_quantity_of(e->normal[k], 6, "N").text);
+    strut_buffer_add(table, "\n");
+  }
+  if (scene->node_count > MOST_NODES)
+    strut_buffer_add(table, "  ... and %zu more\n", scene->node_count - MOST_NODES);
+}
+
+static void add_shapes(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
+  for (size_t i = 0; i < all->count; i++)
+    if (all->list[i].fate == STRUT_OUTCOME_STANDS) add_shape(table, scene, &all->list[i]);
+}
+
+static void add_barriers(strut_buffer *table, const strut_equilibria *all, bool everything) {
+  bool names = false;
+  size_t shown = 0, left = 0, most = everything ? SIZE_MAX : MOST_BARRIERS;
+  if (all->barrier_count == 0) return;
+  for (size_t i = 0; i < all->count; i++) names = names || all->list[i].configured;
+  strut_buffer_add(table, "\n  %-18s %-18s %14s %14s  %s\n", "from", "to", "barrier", "direct",
+                   "over");
+  for (size_t i = 0; i < all->barrier_count; i++) {
+    const strut_barrier *b = &all->barriers[i];
+    bool both = all->list[b->from].configured && all->list[b->to].configured;
+    if ((names && !both && !everything) || shown == most) {
+      left++;
+      continue;
+    }
+    shown++;
+    strut_buffer_add(table, "  %-18s %-18s %14s %14s  %s", all->list[b->from].name,
+                     all->list[b->to].name, strut_quantity_of(b->height, 6, "J").text,
+                     isnan(b->direct) ? "-" : strut_quantity_of(b->direct, 6, "J").text,
+                     b->saddle >= 0 ? all->list[b->saddle].name : "-");
+    for (int32_t k = 0; k < b->via_count; k++)
+      strut_buffer_add(table, "%s%s", k ? ", " : ", via ",
+                       b->via[k] >= 0 ? all->list[b->via[k]].name : "-");
+    strut_buffer_add(table, "\n");
+  }
+  if (left) strut_buffer_add(table, "  ... and %zu more; --all lists them\n", left);
+}
+
+char *strut_equilibria_table(const strut_equilibria *all, const strut_model *model,
+                             bool everything) {
+  const strut_scene *scene = model->scene;
+  strut_buffer table = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(&table, "%s%s%zu equilibria from %" PRId64 " starts, seed %" PRIu64 "\n",
+                   scene->name, *scene->name ? ": " : "", all->count, all->starts, all->seed);
+  if (all->count)
+    strut_buffer_add(
+        &table,
+        "  probability that one more start finds a new stable one: about %.2g, at most "
+        "%.2g (95 %%);\n  a stable one that was missed attracts less than %.2g of the "
+        "starts (95 %%)\n",
+        all->missed, all->missed_below, all->missed_one);
+  if (all->unmet)
+    strut_buffer_add(&table,
+                     "  %" PRId64
+                     " stable %s reached by no random start, only from other shapes: more basins "
+                     "this small\n  may be missing\n",
+                     all->unmet, all->unmet == 1 ? "one was" : "ones were");
+  if (all->cut_short)
+    strut_buffer_add(&table,
+                     "  cut short: a structure of this size needs more starts and climbs; --starts "
+                     "N asks for more\n");
+  if (all->settle.evaluations > 0)
+    strut_buffer_add(
+        &table, "  the start settles in %s\n",
+        all->start >= 0 ? all->list[all->start].name : "an equilibrium that is not in this list");
+  if (all->start_trouble[0])
+    strut_buffer_add(&table, "  the start does not settle: %s\n", all->start_trouble);
+  char warning[300];
+  if (strut_settle_warning(&all->settle, warning, sizeof warning))
+    strut_buffer_add(&table, "  %s\n", warning);
+  if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
+  size_t most = everything ? SIZE_MAX : MOST_ROWS;
+  add_section(&table, all, model, STANDING, model->contacts.count ? "stands" : "at rest", most);
+  add_barriers(&table, all, everything);
+  if (everything) {
+    add_section(&table, all, model, HELD, "only while held", most);
+    add_section(&table, all, model, UNSTABLE, "unstable", most);
+    add_shapes(&table, all, scene);
+  } else {
+    add_counts(&table, all);
+  }
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
 }

@@ -49,7 +49,7 @@ static double shown_force(double value, double largest) {
   return fabs(value) > ROUNDING * largest ? value : 0.0;
 }
 
-/* Whether the node's coordinate has a reaction: supported, or held for being displaced. */
+/* Does the coordinate have a reaction, as it is supported or displaced? */
 static bool is_held(const strut_path *path, const strut_scene *scene, size_t node, int axis) {
   return scene->nodes[node].fixed[axis] || path->coordinate == (int32_t)(2 * node) + axis;
 }
@@ -159,7 +159,7 @@ static const char *value_text(const strut_path *path, double value,
   return text;
 }
 
-/* The column for what is displaced: nothing but its reaction says more than the displacement. */
+/* The column of a displaced coordinate shows its reaction. */
 static bool has_force(const strut_path *path) {
   return path->coordinate >= 0 || (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0);
 }
@@ -182,7 +182,7 @@ static void add_row(strut_buffer *table, const strut_path *path, const strut_sce
                    strut_quantity_text(q[1] - from[1], DIGITS, "m", y), what);
 }
 
-/* Bytes of at most so many characters of a text; how many they are into *count. */
+/* Bytes of the first characters of a text, at most `most`; their number into *count. */
 static int text_bytes(const char *text, int most, int *count) {
   int bytes = 0;
   for (*count = 0; text[bytes]; bytes++) {
@@ -193,7 +193,7 @@ static int text_bytes(const char *text, int most, int *count) {
   return bytes;
 }
 
-/* A text cut to so many characters, at the right end of a column of them, or at the left one. */
+/* Adds a text cut to the width of a column, aligned right or left. */
 static void add_cut(strut_buffer *table, const char *text, int columns, bool right) {
   int count, bytes = text_bytes(text, columns, &count);
   strut_buffer_add(table, "%*s%.*s%*s", right ? columns - count : 0, "", bytes, text,

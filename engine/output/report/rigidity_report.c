@@ -1,13 +1,92 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rigidity of a shape as a table that fits a screen. */
 #include "engine/output/report/rigidity_report.h"
 
 #include <math.h>
+#include <stdio.h>
 
+#include "engine/base/c_locale.h"
+#include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/report/rigidity_words.h"
+#include "engine/output/quantity_text.h"
+#include "engine/statics/rigidity/rigidity.h"
+
+enum { STRUT_RIGIDITY_WORDS = 240 };
+
+/* ---- words ---- */
+
+enum { FEW_DIGITS = 4 };
+
+static const char *member_kind_words(strut_member_kind kind) {
+  static const char *const names[] = {"bar", "spring", "cable"};
+  return names[kind];
+}
+
+static const char *stress_source_words(strut_stress_source source) {
+  static const char *const words[] = {
+      "no self-stress state", "the self-stress state", "the member forces",
+      "a combination of states that tensions all cables", "the first self-stress state"};
+  return words[source];
+}
+
+static const char *mechanism_words(const strut_mechanisms *all, const strut_mechanism *motion,
+                                   char words[STRUT_RIGIDITY_WORDS]) {
+  char moved[STRUT_QUANTITY_TEXT], stiff[STRUT_QUANTITY_TEXT];
+  bool followed = isfinite(motion->moved) && motion->kind == STRUT_MOTION_FINITE;
+  words[0] = '\0';
+  if (motion->kind == STRUT_MOTION_RIGID_BODY) {
+    snprintf(words, STRUT_RIGIDITY_WORDS, "not prevented by the supports");
+  } else if (motion->kind == STRUT_MOTION_INFINITESIMAL && all->by_forces) {
+    snprintf(words, STRUT_RIGIDITY_WORDS, "stiffened by the member forces: %s",
+             strut_quantity_text(motion->stiffness, FEW_DIGITS, "N/m", stiff));
+  } else if (motion->kind == STRUT_MOTION_INFINITESIMAL) {
+    snprintf(
+        words, STRUT_RIGIDITY_WORDS, "stiffened by a self-stress state%s",
+        all->stiffener_pulls ? "" : ", but none is known that does so without compressing a cable");
+  } else if (followed) {
+    snprintf(words, STRUT_RIGIDITY_WORDS, "member lengths constant within %.0e over %s",
+             motion->strain, strut_quantity_text(motion->moved, FEW_DIGITS, "m", moved));
+  } else if (motion->kind == STRUT_MOTION_FINITE) {
+    snprintf(words, STRUT_RIGIDITY_WORDS,
+             "finite: without self-stress the member lengths are independent");
+  } else {
+    snprintf(words, STRUT_RIGIDITY_WORDS,
+             "undecided: no stiffening self-stress found, and it could not be followed");
+  }
+  return words;
+}
+
+static const char *why_not(const strut_rigidity *r) {
+  if (!r->stress.positive) return "the stress matrix has a negative eigenvalue";
+  if (r->stress.supported && r->stress.nullity > 0)
+    return "the stress matrix is not definite on the free coordinates";
+  if (!r->stress.supported && r->stress.nullity > 3)
+    return "the stress matrix vanishes on more than affine motions";
+  if (!r->stress.supported && r->stress.nullity < 3) return "the forces do not balance";
+  if (!r->stress.supported && r->stress.on_conic)
+    return "an affine motion keeps all lengths: the members have only two directions";
+  return "a cable is in compression";
+}
+
+static const char *super_stability_words(const strut_rigidity *r,
+                                         char words[STRUT_RIGIDITY_WORDS]) {
+  const char *source = stress_source_words(r->source);
+  if (r->states.count == 0)
+    snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);
+  else if (!r->stress.tested)
+    snprintf(words, STRUT_RIGIDITY_WORDS, "not tested: the structure is too large");
+  else if (r->stress.super_stable)
+    snprintf(words, STRUT_RIGIDITY_WORDS, "yes, by %s", source);
+  else
+    snprintf(words, STRUT_RIGIDITY_WORDS, "%s, by %s: %s",
+             r->states.count == 1 ? "no" : "not shown", source, why_not(r));
+  return words;
+}
+
+/* ---- JSON ---- */
 
 /* Forces by member, or force densities where lengths are given. */
-static void add_map(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
+static void put_map(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                     const double *force, const double *length) {
   struct cJSON *map = strut_json_object(json, to, key);
   for (size_t j = 0; j < scene->member_count; j++) {
@@ -16,7 +95,7 @@ static void add_map(strut_json *json, struct cJSON *to, const char *key, const s
   }
 }
 
-static void add_head(strut_json *json, const strut_rigidity *r, const strut_model *model,
+static void put_head(strut_json *json, const strut_rigidity *r, const strut_model *model,
                      const char *at) {
   const strut_scene *scene = model->scene;
   struct cJSON *root = json->root;
@@ -37,7 +116,7 @@ static void add_head(strut_json *json, const strut_rigidity *r, const strut_mode
   strut_json_integer(json, root, "without_length", r->without_length);
 }
 
-static void add_self_stress(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
+static void put_self_stress(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
   struct cJSON *stress = strut_json_object(json, json->root, "self_stress");
   size_t members = scene->member_count;
   strut_json_integer(json, stress, "count", r->states.count);
@@ -49,19 +128,19 @@ static void add_self_stress(strut_json *json, const strut_rigidity *r, const str
   for (int32_t i = 0; i < r->states.count; i++) {
     const double *force = r->states.force + (size_t)i * members;
     struct cJSON *state = strut_json_object(json, states, NULL);
-    add_map(json, state, "forces", scene, force, NULL);
-    add_map(json, state, "force_densities", scene, force, r->matrix.length);
+    put_map(json, state, "forces", scene, force, NULL);
+    put_map(json, state, "force_densities", scene, force, r->matrix.length);
     strut_json_bool(json, state, "feasible", r->states.cables_pull[i]);
   }
   if (r->states.count == 0) return;
   if (r->feasible)
-    add_map(json, stress, "feasible", scene, r->feasible, NULL);
+    put_map(json, stress, "feasible", scene, r->feasible, NULL);
   else
     strut_json_text(json, stress, "feasible", NULL);
 }
 
 /* Scaled so that the node that moves most moves by 1. */
-static void add_motion(strut_json *json, struct cJSON *to, const strut_rigidity *r,
+static void put_motion(strut_json *json, struct cJSON *to, const strut_rigidity *r,
                        const strut_scene *scene, const double *motion) {
   struct cJSON *nodes = strut_json_object(json, to, "nodes");
   double largest = 0.0;
@@ -80,7 +159,7 @@ static void add_motion(strut_json *json, struct cJSON *to, const strut_rigidity 
     }
 }
 
-static void add_mechanisms(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
+static void put_mechanisms(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
   const strut_mechanisms *m = &r->mechanisms;
   struct cJSON *to = strut_json_object(json, json->root, "mechanisms");
   strut_json_integer(json, to, "count", m->count);
@@ -102,13 +181,13 @@ static void add_mechanisms(strut_json *json, const strut_rigidity *r, const stru
     strut_json_number(json, row, "stress_form", mode->stress_form);
     strut_json_number(json, row, "moved", mode->moved);
     strut_json_number(json, row, "strain", mode->strain);
-    strut_json_text(json, row, "test", strut_mechanism_words(m, mode, words));
-    add_motion(json, row, r, scene, mode->motion);
+    strut_json_text(json, row, "test", mechanism_words(m, mode, words));
+    put_motion(json, row, r, scene, mode->motion);
   }
-  if (m->stiffener) add_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
+  if (m->stiffener) put_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
 }
 
-static void add_verdicts(strut_json *json, const strut_rigidity *r) {
+static void put_verdicts(strut_json *json, const strut_rigidity *r) {
   char words[STRUT_RIGIDITY_WORDS];
   struct cJSON *root = json->root;
   struct cJSON *count = strut_json_object(json, root, "maxwell_calladine");
@@ -123,19 +202,19 @@ static void add_verdicts(strut_json *json, const strut_rigidity *r) {
     strut_json_bool(json, root, "super_stable", r->stress.super_stable);
   else
     strut_json_text(json, root, "super_stable", NULL);
-  strut_json_text(json, root, "super_stability", strut_super_stability_words(r, words));
+  strut_json_text(json, root, "super_stability", super_stability_words(r, words));
   if (r->stress.tested) {
     struct cJSON *stress = strut_json_object(json, root, "stress_matrix");
     strut_json_numbers(json, stress, "eigenvalues", r->stress.eigenvalues, (size_t)r->stress.count);
     strut_json_integer(json, stress, "nullity", r->stress.nullity);
-    strut_json_text(json, stress, "of", strut_stress_source_words(r->source));
+    strut_json_text(json, stress, "of", stress_source_words(r->source));
     strut_json_text(json, stress, "on", r->stress.supported ? "free coordinates" : "nodes");
   } else {
     strut_json_text(json, root, "stress_matrix", NULL);
   }
 }
 
-static void add_tensegrity(strut_json *json, const strut_tensegrity *t) {
+static void put_tensegrity(strut_json *json, const strut_tensegrity *t) {
   struct cJSON *to = strut_json_object(json, json->root, "classification");
   strut_json_text(json, to, "label", t->label);
   strut_json_bool(json, to, "self_stress", t->self_stress);
@@ -146,14 +225,14 @@ static void add_tensegrity(strut_json *json, const strut_tensegrity *t) {
   strut_json_bool(json, to, "struts_inside", t->struts_inside);
 }
 
-static void add_members(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
+static void put_members(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
   strut_json_bool(json, json->root, "equilibrium", r->equilibrium);
   strut_json_number(json, json->root, "residual", r->residual);
   strut_json_bool(json, json->root, "self_equilibrium", r->self_equilibrium);
   struct cJSON *members = strut_json_object(json, json->root, "members_at");
   for (size_t j = 0; j < scene->member_count; j++) {
     struct cJSON *row = strut_json_object(json, members, scene->members[j].name);
-    strut_json_text(json, row, "kind", strut_member_kind_words(scene->members[j].kind));
+    strut_json_text(json, row, "kind", member_kind_words(scene->members[j].kind));
     strut_json_number(json, row, "length", r->matrix.length[j]);
     strut_json_number(json, row, "force", r->force[j]);
     strut_json_number(json, row, "force_density",
@@ -164,11 +243,129 @@ static void add_members(strut_json *json, const strut_rigidity *r, const strut_s
 char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *model,
                           const char *at) {
   strut_json json = strut_json_begin();
-  add_head(&json, rigidity, model, at);
-  add_self_stress(&json, rigidity, model->scene);
-  add_mechanisms(&json, rigidity, model->scene);
-  add_verdicts(&json, rigidity);
-  add_tensegrity(&json, &rigidity->tensegrity);
-  add_members(&json, rigidity, model->scene);
+  put_head(&json, rigidity, model, at);
+  put_self_stress(&json, rigidity, model->scene);
+  put_mechanisms(&json, rigidity, model->scene);
+  put_verdicts(&json, rigidity);
+  put_tensegrity(&json, &rigidity->tensegrity);
+  put_members(&json, rigidity, model->scene);
   return strut_json_end(&json);
+}
+
+/* ---- the table ---- */
+
+enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
+
+static strut_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
+}
+
+static void add_rank(strut_buffer *table, const strut_rigidity *r) {
+  const strut_null_spaces *s = &r->spaces;
+  strut_buffer_add(table, "  rank               %d of %d x %d; %s kept down to %.4g, ", s->rank,
+                   r->matrix.rows, r->matrix.columns,
+                   s->dense ? "singular values" : "diagonal of R", s->kept);
+  if (s->dense && s->dropped > 0)
+    strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
+  else
+    strut_buffer_add(table, "%s\n", s->dense ? "the rest are zero" : "by sparse QR");
+  if (s->weak > 0)
+    strut_buffer_add(
+        table,
+        "                     %d of them below a millionth of the largest: as small a\n"
+        "                     displacement of nodes may change s and f\n",
+        s->weak);
+}
+
+static void add_counts(strut_buffer *table, const strut_rigidity *r) {
+  const strut_mechanisms *m = &r->mechanisms;
+  strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
+  strut_buffer_add(table, "  mechanisms         f = %d", m->count);
+  const char *before = ": ";
+  const int32_t count[] = {m->rigid_body, m->infinitesimal, m->finite, m->undecided};
+  for (int i = 0; i < 4; i++) {
+    if (count[i] == 0) continue;
+    strut_buffer_add(table, "%s%d %s", before, count[i],
+                     strut_motion_kind_name((strut_motion_kind)i));
+    before = ", ";
+  }
+  strut_buffer_add(table, "\n  Maxwell-Calladine  %d members - %d free coordinates = %d = s - f\n",
+                   r->matrix.columns, r->matrix.rows, r->matrix.columns - r->matrix.rows);
+}
+
+static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
+  char words[STRUT_RIGIDITY_WORDS];
+  const strut_tensegrity *t = &r->tensegrity;
+  if (r->bars_at_node > 0)
+    strut_buffer_add(
+        table, "  class              %d: %s\n", r->bars_at_node,
+        r->bars_at_node == 1 ? "no two bars meet" : "at most so many bars meet at a node");
+  strut_buffer_add(table, "  super stable       %s\n", super_stability_words(r, words));
+  if (r->has_cables && r->states.force && r->states.count > 0)
+    strut_buffer_add(table, "  cables             %s\n",
+                     r->cables_can_pull
+                         ? "one self-stress state tensions every cable that any state loads"
+                         : "no self-stress state tensions every cable that some state loads");
+  strut_buffer_add(table, "  kind               %s", t->label);
+  if (t->judged)
+    strut_buffer_add(table, " (%s%s%s%s%s)", t->self_stress ? "S" : "", t->cables ? "C" : "",
+                     t->mechanism ? "M" : "", t->struts_apart ? "D" : "",
+                     t->struts_inside ? "I" : "");
+  strut_buffer_add(table, "\n  equilibrium        %s: net force on a free coordinate up to %s\n",
+                   r->equilibrium ? "yes" : "no", in(r->residual, "N").text);
+  if (r->without_length)
+    strut_buffer_add(table, "  without length     %d members, which have no direction here\n",
+                     r->without_length);
+}
+
+static void add_members(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
+  size_t members = scene->member_count;
+  int32_t states = r->states.force ? r->states.count : 0;
+  if (states > MOST_STATES) states = MOST_STATES;
+  strut_buffer_add(table, "\n  %-12s %-6s %12s %12s %13s", "member", "kind", "length", "force",
+                   "force density");
+  for (int32_t i = 0; i < states; i++) strut_buffer_add(table, "   state %-2d", i + 1);
+  strut_buffer_add(table, "\n");
+  for (size_t j = 0; j < members && j < MOST_ROWS; j++) {
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->members[j].name,
+                     member_kind_words(scene->members[j].kind), in(r->matrix.length[j], "m").text,
+                     in(r->force[j], "N").text, in(r->density[j], "N/m").text);
+    for (int32_t i = 0; i < states; i++)
+      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)i * members + j]);
+    strut_buffer_add(table, "\n");
+  }
+  if (members > MOST_ROWS)
+    strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
+  if (r->states.count > states)
+    strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
+                     r->states.force ? "; --json lists all" : ": too many to list");
+}
+
+static void add_modes(strut_buffer *table, const strut_mechanisms *m) {
+  char words[STRUT_RIGIDITY_WORDS];
+  if (m->count == 0) return;
+  if (!m->list) {
+    strut_buffer_add(table, "\n  too many mechanisms to list\n");
+    return;
+  }
+  strut_buffer_add(table, "\n  mechanism\n");
+  for (int32_t i = 0; i < m->count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-3d %-14s %s\n", i + 1, strut_motion_kind_name(m->list[i].kind),
+                     mechanism_words(m, &m->list[i], words));
+  if (m->count > MOST_ROWS)
+    strut_buffer_add(table, "  ... and %d more; --json lists all\n", m->count - MOST_ROWS);
+}
+
+char *strut_rigidity_table(const strut_rigidity *r, const strut_model *model, const char *at) {
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer table = {0};
+  const char *name = model->scene->name;
+  strut_buffer_add(&table, "%s%srigidity at: %s\n", name, *name ? ": " : "", at);
+  add_rank(&table, r);
+  add_counts(&table, r);
+  add_verdicts(&table, r);
+  add_members(&table, r, model->scene);
+  add_modes(&table, &r->mechanisms);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
 }

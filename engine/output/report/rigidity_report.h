@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What strut rigidity says, as JSON and as a table.
+ * The report of strut rigidity, as JSON and as a table.
  */
 #ifndef STRUT_ENGINE_OUTPUT_REPORT_RIGIDITY_REPORT_H
 #define STRUT_ENGINE_OUTPUT_REPORT_RIGIDITY_REPORT_H

@@ -46,12 +46,13 @@ strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *exper
 
 /* Rigid bars and exact friction have no method in common. */
 static strut_status refuse_exact_friction(const strut_accuracy *a, const strut_model *model) {
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    if (model->contacts.entry[i].law == STRUT_FRICTION_COULOMB)
-      return strut_fail(a->error, STRUT_USAGE,
-                        "no method keeps both rigid bars and the friction law coulomb, which node "
-                        "'%s' has; use bars: elastic, or the law karnopp",
-                        a->scene->nodes[model->contacts.entry[i].node].name);
+  int32_t exact = strut_first_exact_contact(model);
+  if (exact >= 0)
+    return strut_fail(a->error, STRUT_USAGE,
+                      "no method keeps both rigid bars and the friction law %s, which node "
+                      "'%s' has; use bars: elastic, or the law karnopp",
+                      strut_friction_law_at(model->contacts.entry[exact].friction.law)->word,
+                      a->scene->nodes[model->contacts.entry[exact].node].name);
   return STRUT_OK;
 }
 
@@ -70,7 +71,7 @@ static strut_status choose_cheap(strut_accuracy *a) {
     *e = a->scene->experiment;
     e->accuracy = 0.0;
     a->halving = model->plan & STRUT_TERM_RIGID; /* which one method keeps */
-    e->integrator = a->halving ? "rk4" : "verlet-events";
+    e->integrator = strut_integrator_for(a->halving ? STRUT_ROLE_PLAIN : STRUT_ROLE_COARSE)->name;
     status =
         strut_step_limit_for_method(model, strut_integrator_find(e->integrator), &limit, a->error);
     e->step = fmin(OF_LIMIT * limit, unit / LEAST_STEPS);

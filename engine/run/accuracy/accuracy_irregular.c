@@ -69,7 +69,7 @@ strut_status strut_orbit_solve_irregular(strut_orbit_solve *w, bool *periodic) {
 bool strut_orbit_solve_is_stuck(const strut_orbit_solve *w) {
   const strut_contact_table *c = &w->cheap.model->contacts;
   double band = 0.0;
-  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].stick_velocity);
+  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].friction.stick_velocity);
   return w->cheap.applied > 0 && w->cheap.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
 }
 

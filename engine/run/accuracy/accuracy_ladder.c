@@ -89,7 +89,7 @@ static strut_experiment experiment_of(const ladder *l, int k) {
   e.step = divide(l->moment, e.step);
   if (a->halving) e.step = ldexp(e.step, -k);
   if (!a->halving && k > 0) {
-    e.integrator = "adaptive";
+    e.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
     e.step = l->moment / STEPS_OF_MOMENT * pow(FINER_STEP, k - 1);
     e.tolerance = fmin(1e-4, 1e-2 * a->wanted) * pow(FINER_TOLERANCE, k - 1);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance);
@@ -176,6 +176,9 @@ static const double SAME_MOTION = 0.03;
 /* Of what is wanted, what may be expected: of runs by two methods, of which one is coarse and nothing is known of
    how fast it converges; and of others. */
 static const double ENOUGH_OF_TWO = 0.2, ENOUGH = 0.3;
+/* The same of the first two runs by error control: their steps may still be the longest allowed, so that their
+   tolerances changed nothing, and no third shows how fast they approach the answer. */
+static const double ENOUGH_OF_FIRST_PAIR = 0.15;
 /* The same of a method that only has itself to be compared with. */
 static const double ENOUGH_ALONE = 0.05;
 /* Least runs by which a mean is known, and standard deviations within which it is said to be. */
@@ -183,7 +186,7 @@ enum { LEAST_MEANS = 5 };
 /* Part of what is wanted within which the means of motions that differ are believed. */
 static const double ENOUGH_OF_MEANS = 0.1;
 /* What is told over what is expected. */
-static const double MARGIN = 2.0;
+static const double MARGIN = 2.0, MARGIN_OF_FIRST_PAIR = 4.0;
 static const double DEVIATIONS = 4.0;
 
 /*
@@ -216,6 +219,7 @@ static double expect_of_means(const ladder *l) {
 /* Whether the latest run does, and how well. */
 static void judge(ladder *l) {
   double wanted = l->a->wanted, enough = l->runs == 2 ? ENOUGH_OF_TWO : ENOUGH;
+  if (l->runs == 3) enough = ENOUGH_OF_FIRST_PAIR;
   if (l->a->halving) enough = ENOUGH_ALONE;
   l->expected = expect_of_motion(l);
   l->same_motion = l->distance <= SAME_MOTION;
@@ -272,7 +276,7 @@ static void explain(const ladder *l, char *why, size_t size) {
   const strut_experiment *e = &l->now->e;
   char how[80], apart[120];
   name_difference(l, apart, sizeof apart);
-  if (strcmp(e->integrator, "adaptive") == 0)
+  if (strut_integrator_find(e->integrator)->role == STRUT_ROLE_REFERENCE)
     snprintf(how, sizeof how, "adaptive with a tolerance of %.1g and steps up to %.2g s",
              e->tolerance, e->step);
   else
@@ -287,7 +291,9 @@ static void explain(const ladder *l, char *why, size_t size) {
              apart, l->means);
   else if (l->kept)
     snprintf(why, size, "%s: %s gives the same motion, and %s", how,
-             l->runs == 2 && !a->halving ? "verlet-events" : "a coarser run", apart);
+             l->runs == 2 && !a->halving ? strut_integrator_for(STRUT_ROLE_COARSE)->name
+                                         : "a coarser run",
+             apart);
   else if (l->same_motion)
     snprintf(why, size, "%s; a coarser run gives the same motion, but %s%s", how, apart,
              l->spent ? ", and the work allowed is used up; give a larger budget" : "");
@@ -298,13 +304,17 @@ static void explain(const ladder *l, char *why, size_t size) {
              how, apart, l->spent ? "; a larger budget may help" : "");
 }
 
+static double margin_of(const ladder *l) {
+  return l->runs == 3 && !l->a->halving ? MARGIN_OF_FIRST_PAIR : MARGIN;
+}
+
 /* The error to expect of each quantity, and whether it is within what is wanted of that. */
 static void tell_quantities(const ladder *l) {
   strut_summary *s = l->a->summary;
   double factor = l->apart > 0.0 && isfinite(l->expected) ? l->expected / l->apart : 1.0;
   for (size_t i = 0; i < s->measured_count; i++) {
     strut_measured *m = &s->measured[i];
-    m->expected = l->runs > 1 ? MARGIN * factor * l->difference[i] : (double)NAN;
+    m->expected = l->runs > 1 ? margin_of(l) * factor * l->difference[i] : (double)NAN;
     m->kept = l->kept || (l->same_motion && m->expected <= allowed_of(l, m, i));
   }
 }
@@ -312,7 +322,7 @@ static void tell_quantities(const ladder *l) {
 static void tell(ladder *l) {
   strut_accuracy *a = l->a;
   strut_summary *s = a->summary;
-  double expected = l->same_motion ? MARGIN * l->expected : l->expected;
+  double expected = l->same_motion ? margin_of(l) * l->expected : l->expected;
   if (!isfinite(expected)) expected = (double)NAN; /* too few runs to tell */
   s->accuracy = (strut_accuracy_summary){.wanted = a->wanted,
                                          .expected = expected,
@@ -350,7 +360,7 @@ strut_status strut_accuracy_by_repetition(strut_accuracy *a) {
     if (!status && !l.spent && l.runs > 1) judge(&l);
   }
   /* a series of three runs or more that could go no further may do all the same */
-  if (!l.kept && l.same_motion && l.runs > 2) l.kept = MARGIN * l.expected <= a->wanted;
+  if (!l.kept && l.same_motion && l.runs > 2) l.kept = margin_of(&l) * l.expected <= a->wanted;
   if (!status) status = answer(&l);
   if (!status) tell(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);

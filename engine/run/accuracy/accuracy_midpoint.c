@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
 
 /* Steps at first: in the whole run, in a period of the drive, and in any time that a signal has. */
@@ -228,7 +229,7 @@ strut_status strut_accuracy_by_midpoint(strut_accuracy *a, bool *done) {
   halving h = {.a = a, .e = a->cheap, .change = HUGE_VAL, .moved = HUGE_VAL};
   strut_model *model = NULL;
   *done = false;
-  h.e.integrator = "midpoint";
+  h.e.integrator = strut_integrator_for(STRUT_ROLE_STIFF)->name;
   h.e.step = first_step(scene, a->cheap.step);
   bool fits = scene->contact_count == 0 && !a->halving && !scene->settle.wanted &&
               !scene->experiment.steady.wanted && !jumps(scene) && h.e.step > 0.0;

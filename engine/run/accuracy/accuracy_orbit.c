@@ -86,7 +86,7 @@ static strut_status make_maps(strut_orbit_solve *w, int32_t repeats) {
   strut_period_map_free(&w->cheap);
   strut_period_map_free(&w->fine);
   w->accurate = a->cheap;
-  w->accurate.integrator = "adaptive";
+  w->accurate.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
   w->accurate.tolerance = fmin(2.5e-6, fmax(1e-12, a->wanted * STRUT_TOLERANCE_PER_ERROR));
   w->accurate.step = strut_scene_span(a->scene).period / 50.0;
   strut_status status = strut_period_map_create(a->scene, &a->cheap, repeats, &w->cheap, a->error);

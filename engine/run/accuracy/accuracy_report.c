@@ -94,8 +94,8 @@ void strut_orbit_solve_report(strut_orbit_solve *w, const strut_summary *orbit) 
   s->step_limit = w->run.step_limit;
   s->wall_time = w->run.wall_time;
   bool adaptive = w->found == STRUT_WAY_CORRECTED || w->found == STRUT_WAY_ACCURATE;
-  snprintf(s->method, sizeof s->method, "%s",
-           adaptive ? "verlet-events+adaptive" : "verlet-events");
+  snprintf(s->method, sizeof s->method, "%s%s%s", strut_integrator_for(STRUT_ROLE_COARSE)->name,
+           adaptive ? "+" : "", adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
   s->accuracy = (strut_accuracy_summary){
       .wanted = a->wanted,
       .expected = error / strut_accuracy_scale(a, s->velocity),

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/model/pose.h"
+
 /* Accelerations are asked for at every so many looks. */
 enum { EVERY = 4, LEAST = 4 };
 /*
@@ -16,8 +18,12 @@ static const double SURE = 0.5, ACCIDENT = 0.01;
 /* Part of the static friction of a node that creeping may use up before it matters. */
 static const double STRAINED = 0.1;
 
+static bool has_band(const strut_contact_entry *e) {
+  return strut_friction_states(e->friction.law) == STRUT_FRICTION_STICK_BAND;
+}
+
 static bool is_stronger_at_rest(const strut_contact_entry *e) {
-  return e->law == STRUT_FRICTION_KARNOPP && e->mu_static > e->mu_kinetic;
+  return has_band(e) && e->friction.mu_static > e->friction.mu_kinetic;
 }
 
 /* Contact of a node's x coordinate, or -1; contacts stand in the order of their nodes. */
@@ -52,26 +58,24 @@ static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
 static bool is_stuck(const strut_model *model, const strut_state *state, int32_t i,
                      double *normal) {
   const strut_contact_table *c = &model->contacts;
-  const double *q = state->q + c->at[i], *v = state->v + c->at[i];
-  double gap = q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1];
-  double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
+  double gap = strut_contact_gap(c, i, state->q), slip = strut_contact_slip(c, i, state->v);
   *normal = -gap * c->entry[i].stiffness;
-  return gap < 0.0 && fabs(slip) < c->entry[i].stick_velocity;
+  return gap < 0.0 && fabs(slip) < c->entry[i].friction.stick_velocity;
 }
 
 static void look_at_tie(const strut_model *model, const strut_state *state, double time,
                         strut_band_tie *tie) {
   const strut_member_table *t = &model->members;
   const strut_contact_entry *e = model->contacts.entry;
-  const double *a = state->q + t->from[tie->member], *b = state->q + t->to[tie->member];
-  double length = hypot(b[0] - a[0], b[1] - a[1]), change = length - tie->length, normal[2];
+  double length = strut_member_length(t, tie->member, state->q), change = length - tie->length,
+         normal[2];
   double creep = 0.0, holds = HUGE_VAL;
   bool held = true;
   for (int k = 0; k < 2; k++) {
     const strut_contact_entry *one = &e[tie->contact[k]];
     held = is_stuck(model, state, tie->contact[k], &normal[k]) && held;
-    creep += one->stick_velocity * time;
-    holds = fmin(holds, one->mu_static * normal[k]);
+    creep += one->friction.stick_velocity * time;
+    holds = fmin(holds, one->friction.mu_static * normal[k]);
   }
   /* more than they can creep: one of them has slid in between */
   if (held && tie->held && fabs(change) <= creep)
@@ -87,9 +91,9 @@ double strut_stick_band_needed(const strut_model *model, const strut_integrator 
   const strut_contact_table *c = &model->contacts;
   const strut_contact_entry *e = &c->entry[contact];
   const double *g = model->scene->gravity;
-  if (method->events || e->law != STRUT_FRICTION_KARNOPP || !(e->mu_kinetic > 0.0)) return 0.0;
+  if (method->events || !has_band(e) || !(e->friction.mu_kinetic > 0.0)) return 0.0;
   double down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
-  return down > 0.0 && step > 0.0 ? e->mu_kinetic * down * step : 0.0;
+  return down > 0.0 && step > 0.0 ? e->friction.mu_kinetic * down * step : 0.0;
 }
 
 bool strut_stick_band_create(const strut_model *model, strut_state *state,
@@ -97,8 +101,8 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
   bool any = false;
   *band = (strut_stick_band){.step = step};
   for (int32_t i = 0; i < model->contacts.count; i++)
-    any = any || (model->contacts.entry[i].law == STRUT_FRICTION_KARNOPP &&
-                  model->contacts.entry[i].mu_kinetic > 0.0);
+    any = any || (has_band(&model->contacts.entry[i]) &&
+                  model->contacts.entry[i].friction.mu_kinetic > 0.0);
   if (!any || method->events) return true;
   size_t length = (size_t)model->length, contacts = (size_t)model->contacts.count;
   band->a = strut_arena_allocate(&state->arena, length, sizeof(double));
@@ -120,24 +124,23 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   bool ask = band->looks++ % EVERY == 0 && state->evaluations > 0;
   if (ask) strut_mass_solve(model, state->force, band->a, band->scratch);
   for (int32_t i = 0; i < c->count; i++) {
-    const double *q = state->q + c->at[i], *v = state->v + c->at[i], *a = band->a + c->at[i];
     strut_stick_band_monitor *w = &band->watch[i];
-    if (!(q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1] < 0.0)) continue;
-    double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
-    if (!ask || fabs(slip) < c->entry[i].stick_velocity) continue;
+    if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;
+    if (!ask || fabs(strut_contact_slip(c, i, state->v)) < c->entry[i].friction.stick_velocity)
+      continue;
     w->sliding++;
-    w->change += band->step * fabs(a[0] * c->tangent[0] + a[1] * c->tangent[1]);
+    w->change += band->step * fabs(strut_contact_along_ground(c, i, band->a));
   }
 }
 
 double strut_stick_band_missed(const strut_model *model, const strut_stick_band *band,
                                int32_t contact) {
   const strut_contact_entry *e = &model->contacts.entry[contact];
-  if (!band->watch || e->law != STRUT_FRICTION_KARNOPP) return 0.0;
+  if (!band->watch || !has_band(e)) return 0.0;
   const strut_stick_band_monitor *w = &band->watch[contact];
   double needed = w->sliding >= LEAST ? w->change / w->sliding : 0.0;
-  double least = e->mu_static > e->mu_kinetic ? SURE : ACCIDENT;
-  return e->stick_velocity < least * needed ? needed : 0.0;
+  double least = e->friction.mu_static > e->friction.mu_kinetic ? SURE : ACCIDENT;
+  return e->friction.stick_velocity < least * needed ? needed : 0.0;
 }
 
 const strut_band_tie *strut_stick_band_strained(const strut_stick_band *band) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a structure consists of, and how it is driven. */
 #include "engine/study/compare/compare.h"
 
 #include <math.h>
@@ -8,6 +9,85 @@
 #include "engine/run/plan.h"
 #include "engine/study/compare/compare_parts.h"
 
+/* ---- structure and drive ---- */
+
+static double total_mass(const strut_scene *scene) {
+  double mass = 0.0;
+  for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
+  for (size_t j = 0; j < scene->member_count; j++) mass += scene->members[j].mass;
+  return mass;
+}
+
+static double free_coordinates(const strut_scene *scene) {
+  double count = 0.0;
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (int d = 0; d < 2; d++) count += !scene->nodes[i].fixed[d];
+  return count;
+}
+
+/* The coefficient of sliding friction, if all contacts agree. */
+static void put_friction(strut_compare_work *work, const strut_scene *scene) {
+  const strut_compare_quantity at = STRUT_COMPARE_FRICTION;
+  if (scene->contact_count == 0) {
+    strut_compare_leave(work, at, at, "no contact nodes");
+    return;
+  }
+  double mu[2] = {HUGE_VAL, 0.0};
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_friction *f = &scene->contacts[i].friction;
+    double here = f->law == STRUT_FRICTION_NONE ? 0.0 : f->mu_kinetic;
+    mu[0] = fmin(mu[0], here);
+    mu[1] = fmax(mu[1], here);
+  }
+  if (mu[0] < mu[1])
+    strut_compare_leave(work, at, at, "friction differs between contacts");
+  else
+    strut_compare_put(work, at, mu[0]);
+}
+
+/* The drive: the signal that defines the period, else that of the only actuator. */
+static void put_drive(strut_compare_work *work, const strut_scene *scene) {
+  int32_t signal = scene->experiment.period_signal;
+  if (signal < 0 && scene->actuator_count == 1) signal = scene->actuators[0].signal;
+  if (signal < 0) {
+    strut_compare_leave(work, STRUT_COMPARE_DRIVE_FREQUENCY, STRUT_COMPARE_DRIVE_AMPLITUDE,
+                        scene->actuator_count ? "more than one drive" : "no drive");
+    return;
+  }
+  double period = strut_signal_period(scene->signals, signal);
+  const strut_signal *s = &scene->signals[signal];
+  if (period > 0.0)
+    strut_compare_put(work, STRUT_COMPARE_DRIVE_FREQUENCY, 1.0 / period);
+  else
+    strut_compare_leave(work, STRUT_COMPARE_DRIVE_FREQUENCY, STRUT_COMPARE_DRIVE_FREQUENCY,
+                        "the drive is not periodic");
+  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE)
+    strut_compare_put(work, STRUT_COMPARE_DRIVE_AMPLITUDE, s->amplitude);
+  else
+    strut_compare_leave(work, STRUT_COMPARE_DRIVE_AMPLITUDE, STRUT_COMPARE_DRIVE_AMPLITUDE,
+                        "the drive has no single amplitude");
+}
+
+strut_status strut_compare_structure(strut_compare_work *work, const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  double kinds[3] = {0, 0, 0};
+  for (size_t j = 0; j < scene->member_count; j++) kinds[scene->members[j].kind]++;
+  strut_compare_put(work, STRUT_COMPARE_NODES, (double)scene->node_count);
+  strut_compare_put(work, STRUT_COMPARE_MEMBERS, (double)scene->member_count);
+  strut_compare_put(work, STRUT_COMPARE_BARS, kinds[STRUT_BAR]);
+  strut_compare_put(work, STRUT_COMPARE_SPRINGS, kinds[STRUT_SPRING]);
+  strut_compare_put(work, STRUT_COMPARE_CABLES, kinds[STRUT_CABLE]);
+  strut_compare_put(work, STRUT_COMPARE_CONTACTS, (double)scene->contact_count);
+  strut_compare_put(work, STRUT_COMPARE_ACTUATORS, (double)scene->actuator_count);
+  strut_compare_put(work, STRUT_COMPARE_MASS, total_mass(scene));
+  strut_compare_put(work, STRUT_COMPARE_FREEDOMS, free_coordinates(scene));
+  put_friction(work, scene);
+  put_drive(work, scene);
+  return STRUT_OK;
+}
+
+/* ---- columns ---- */
+
 static const double USUAL_ACCURACY = 0.005;
 
 static const strut_compare_row rows[STRUT_COMPARE_QUANTITIES] = {
@@ -16,19 +96,19 @@ static const strut_compare_row rows[STRUT_COMPARE_QUANTITIES] = {
     [STRUT_COMPARE_BARS] = {"structure", "bars", "bars", ""},
     [STRUT_COMPARE_SPRINGS] = {"structure", "springs", "springs", ""},
     [STRUT_COMPARE_CABLES] = {"structure", "cables", "cables", ""},
-    [STRUT_COMPARE_CONTACTS] = {"structure", "contacts", "nodes that may touch", ""},
+    [STRUT_COMPARE_CONTACTS] = {"structure", "contacts", "contact nodes", ""},
     [STRUT_COMPARE_ACTUATORS] = {"structure", "actuators", "actuators", ""},
     [STRUT_COMPARE_MASS] = {"structure", "mass", "mass", "kg"},
     [STRUT_COMPARE_FREEDOMS] = {"structure", "degrees_of_freedom", "degrees of freedom", ""},
     [STRUT_COMPARE_SELF_STRESSES] = {"as drawn", "self_stress_states", "self-stress states", ""},
     [STRUT_COMPARE_MECHANISMS] = {"as drawn", "mechanisms", "mechanisms", ""},
-    [STRUT_COMPARE_FINITE] = {"as drawn", "finite_mechanisms", "finite ones of them", ""},
+    [STRUT_COMPARE_FINITE] = {"as drawn", "finite_mechanisms", "of which finite", ""},
     [STRUT_COMPARE_RIGID_MOTIONS] = {"as drawn", "rigid_body_motions", "rigid-body motions", ""},
     [STRUT_COMPARE_STATES] = {"states", "stable_states", "stable states", ""},
     [STRUT_COMPARE_LOWEST_ENERGY] = {"states", "lowest_energy", "lowest energy", "J"},
-    [STRUT_COMPARE_ENERGY_SPAN] = {"states", "energy_span", "up to the highest", "J"},
-    [STRUT_COMPARE_LOWEST_BARRIER] = {"states", "lowest_barrier", "lowest way out", "J"},
-    [STRUT_COMPARE_PRESTRESS] = {"at rest", "prestress", "prestress, mean", "N"},
+    [STRUT_COMPARE_ENERGY_SPAN] = {"states", "energy_span", "energy range", "J"},
+    [STRUT_COMPARE_LOWEST_BARRIER] = {"states", "lowest_barrier", "escape barrier", "J"},
+    [STRUT_COMPARE_PRESTRESS] = {"at rest", "prestress", "RMS member force", "N"},
     [STRUT_COMPARE_TENSION] = {"at rest", "largest_tension", "largest tension", "N"},
     [STRUT_COMPARE_COMPRESSION] = {"at rest", "largest_compression", "largest compression", "N"},
     [STRUT_COMPARE_FREQUENCY_1] = {"at rest", "frequency_1", "lowest frequency", "Hz"},
@@ -41,15 +121,15 @@ static const strut_compare_row rows[STRUT_COMPARE_QUANTITIES] = {
     [STRUT_COMPARE_DRIVE_FREQUENCY] = {"drive", "drive_frequency", "drive frequency", "Hz"},
     [STRUT_COMPARE_DRIVE_AMPLITUDE] = {"drive", "drive_amplitude", "drive amplitude", "m"},
     [STRUT_COMPARE_VELOCITY] = {"motion", "velocity", "velocity", "m/s"},
-    [STRUT_COMPARE_VELOCITY_ERROR] = {"motion", "velocity_error", "its relative error", "1"},
+    [STRUT_COMPARE_VELOCITY_ERROR] = {"motion", "velocity_error", "relative error", "1"},
     [STRUT_COMPARE_TRAVEL] = {"motion", "travel_per_period", "travel per period", "m"},
     [STRUT_COMPARE_DRIVE_ENERGY] = {"motion", "drive_energy_per_period", "energy per period", "J"},
     [STRUT_COMPARE_DRIVE_POWER] = {"motion", "drive_power", "drive power", "W"},
     [STRUT_COMPARE_TRANSPORT] = {"motion", "cost_of_transport", "cost of transport", "1"},
-    [STRUT_COMPARE_DUTY] = {"motion", "contact_duty", "contact duty", "1"},
-    [STRUT_COMPARE_EVALUATIONS] = {"cost of a second", "evaluations_per_second", "evaluations",
+    [STRUT_COMPARE_DUTY] = {"motion", "contact_duty", "duty factor", "1"},
+    [STRUT_COMPARE_EVALUATIONS] = {"cost per second", "evaluations_per_second", "evaluations",
                                    "1/s"},
-    [STRUT_COMPARE_CPU] = {"cost of a second", "cpu_per_second", "CPU time", "s/s"},
+    [STRUT_COMPARE_CPU] = {"cost per second", "cpu_per_second", "CPU time", "s/s"},
 };
 
 strut_compare_row strut_compare_row_of(strut_compare_quantity quantity) { return rows[quantity]; }
@@ -81,17 +161,17 @@ strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_
   return STRUT_OK;
 }
 
-/* Where it stands; without that the drawn shape is shown, and what is told at rest is left out. */
-static strut_status find_stand(strut_compare_work *work, const strut_model *model) {
+/* Finds the rest state; without one, the drawn shape is shown and the values at rest stay empty. */
+static strut_status find_rest(strut_compare_work *work, const strut_model *model) {
   strut_error error = {0};
   strut_compare_column *column = work->column;
-  strut_status status = strut_rest_state_find(model, NULL, work->arena, &work->stand, &error);
+  strut_status status = strut_rest_state_find(model, NULL, work->arena, &work->rest, &error);
   if (status == STRUT_OK) {
-    column->shape = work->stand.name;
-    column->q = work->stand.q;
+    column->shape = work->rest.name;
+    column->q = work->rest.q;
     return STRUT_OK;
   }
-  work->stand = (strut_rest_state){0};
+  work->rest = (strut_rest_state){0};
   status = strut_compare_leave_failed(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_STIFFNESS_Y,
                                       &error, status, false);
   double *q = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *q);
@@ -112,27 +192,27 @@ static strut_status find_limit(strut_compare_work *work, const strut_model *mode
                                       &error, status, false);
   if (!plan.runnable)
     strut_compare_leave(work, STRUT_COMPARE_STEP_LIMIT, STRUT_COMPARE_STEP_LIMIT,
-                        "some node that can move has no mass");
+                        "a free node has no mass");
   else if (isinf(plan.step_limit))
     strut_compare_leave(work, STRUT_COMPARE_STEP_LIMIT, STRUT_COMPARE_STEP_LIMIT,
-                        "nothing limits the step");
+                        "the step is not limited");
   else
     strut_compare_put(work, STRUT_COMPARE_STEP_LIMIT, plan.step_limit);
   return STRUT_OK;
 }
 
-static strut_status look_at_rest(strut_compare_work *work, const strut_model *model) {
+static strut_status evaluate_rest(strut_compare_work *work, const strut_model *model) {
   strut_status status = strut_compare_structure(work, model);
-  if (status == STRUT_OK) status = find_stand(work, model);
+  if (status == STRUT_OK) status = find_rest(work, model);
   if (status == STRUT_OK) status = strut_compare_rigidity(work, model);
   if (status == STRUT_OK) status = strut_compare_states(work, model);
-  if (status == STRUT_OK && work->stand.q) status = strut_compare_frequencies(work, model);
-  if (status == STRUT_OK && work->stand.q) status = strut_compare_stiffness(work, model);
+  if (status == STRUT_OK && work->rest.q) status = strut_compare_frequencies(work, model);
+  if (status == STRUT_OK && work->rest.q) status = strut_compare_stiffness(work, model);
   return status;
 }
 
-/* The motion starts at an equilibrium where the scene wishes one, which is found here. */
-static strut_status look_at_motion(strut_compare_work *work) {
+/* Resolves the equilibrium that the scene starts from, then evaluates the motion. */
+static strut_status evaluate_motion(strut_compare_work *work) {
   strut_scene *scene = work->column->input->scene;
   strut_error error = {0};
   strut_status status = strut_resolve_start_equilibrium(scene, &error);
@@ -146,16 +226,17 @@ static strut_status look_at_motion(strut_compare_work *work) {
   return status;
 }
 
-static strut_status fill(const strut_compare_input *input, const strut_compare_options *options,
-                         strut_compare_column *column, strut_arena *arena, strut_error *error) {
+static strut_status fill_column(const strut_compare_input *input,
+                                const strut_compare_options *options, strut_compare_column *column,
+                                strut_arena *arena, strut_error *error) {
   strut_compare_work work = {.options = options, .column = column, .arena = arena};
   strut_model *model = NULL;
   *column = (strut_compare_column){.input = input, .softest = {-1, -1}};
   strut_compare_leave(&work, 0, STRUT_COMPARE_QUANTITIES - 1, "not computed");
   strut_status status = strut_model_compile(input->scene, &model, error);
-  if (status == STRUT_OK) status = look_at_rest(&work, model);
+  if (status == STRUT_OK) status = evaluate_rest(&work, model);
   strut_model_free(model);
-  if (status == STRUT_OK) status = look_at_motion(&work);
+  if (status == STRUT_OK) status = evaluate_motion(&work);
   return status;
 }
 
@@ -171,7 +252,7 @@ strut_status strut_compare_make(const strut_compare_input *inputs, size_t count,
   result->columns = strut_arena_allocate(&result->arena, count, sizeof *result->columns);
   strut_status status = result->columns ? STRUT_OK : STRUT_NO_MEMORY;
   for (size_t i = 0; i < count && status == STRUT_OK; i++) {
-    status = fill(&inputs[i], &wanted, &result->columns[i], &result->arena, error);
+    status = fill_column(&inputs[i], &wanted, &result->columns[i], &result->arena, error);
     if (wanted.interrupt && *wanted.interrupt) status = STRUT_INTERRUPTED;
     if (wanted.progress) wanted.progress(wanted.progress_context, (double)(i + 1) / (double)count);
   }

@@ -2,8 +2,8 @@
 /**
  * Structures side by side: what each consists of, how it stands, and how it moves.
  *
- * Every number is what the command for it alone would say: `strut check`, `rigidity`, `equilibria`,
- * `modes`, `run --accuracy --steady`. What a structure does not have is an empty cell with a reason.
+ * Every number equals that of the single command: `strut check`, `rigidity`, `equilibria`, `modes`,
+ * `run --accuracy --steady`. Missing values are empty cells with a reason.
  */
 #ifndef STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
 #define STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
@@ -17,7 +17,7 @@
 
 enum { STRUT_COMPARE_MOST = 100, STRUT_COMPARE_FREQUENCIES = 3 };
 
-/** The rows, in the order in which they are told. */
+/** The rows in their order. */
 typedef enum strut_compare_quantity {
   STRUT_COMPARE_NODES,
   STRUT_COMPARE_MEMBERS,
@@ -60,18 +60,18 @@ typedef enum strut_compare_quantity {
   STRUT_COMPARE_QUANTITIES
 } strut_compare_quantity;
 
-/** What a row is. */
+/** Description of a row. */
 typedef struct strut_compare_row {
   const char *group; /* such as "at rest" */
   const char *key;   /* in JSON and CSV: "self_stress_states" */
-  const char *label; /* for people */
+  const char *label; /* in the table */
   const char *unit;  /* "kg", "Hz"; "" for counts and "1" for ratios */
 } strut_compare_row;
 STRUT_API strut_compare_row strut_compare_row_of(strut_compare_quantity quantity);
 
 typedef struct strut_compare_cell {
-  double value;       /* [unit of its row]; NAN where there is none */
-  const char *reason; /* why there is none; NULL where there is a value */
+  double value;       /* [unit of its row]; NAN if missing */
+  const char *reason; /* why the value is missing, or NULL */
 } strut_compare_cell;
 
 /** A state in which a structure stands. */
@@ -86,7 +86,7 @@ typedef struct strut_compare_barrier {
   double height; /* [J] above `from` */
 } strut_compare_barrier;
 
-/** What is compared. Scenes are checked for any purpose; a start equilibrium may remain a wish. */
+/** What is compared. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
 typedef struct strut_compare_input {
   const char *label;                   /* unique */
   strut_scene *scene;                  /* its start is resolved here, and its accuracy is set */
@@ -101,7 +101,7 @@ typedef struct strut_compare_column {
   const strut_compare_input *input;
   strut_compare_cell cell[STRUT_COMPARE_QUANTITIES];
   strut_model *model; /* as run; owned */
-  const char *shape;  /* name of the equilibrium that is told and drawn, or "drawn" */
+  const char *shape;  /* name of the equilibrium evaluated and drawn, or "drawn" */
   const double *q;    /* (length) its positions [m] */
   size_t state_count, barrier_count, contact_count;
   strut_compare_state *states;     /* by energy */
@@ -136,13 +136,33 @@ typedef struct strut_compare {
 } strut_compare;
 
 /**
- * Fills a column for each of 1 to STRUT_COMPARE_MOST inputs. What cannot be computed for one of them is
- * told in its column, and the others go on. STRUT_OK, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
+ * Fills a column for each of 1 to STRUT_COMPARE_MOST inputs. A failure is reported in the column of
+ * its model, and the others continue. STRUT_OK, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_compare_make(const strut_compare_input *inputs, size_t count,
                                           const strut_compare_options *options,
                                           strut_compare *result, strut_error *error);
 /** A zeroed struct is allowed. */
 STRUT_API void strut_compare_free(strut_compare *result);
+
+/**
+ * Texts in blocks of strut_allocate; NULL: memory was out. The CPU time in them is a measurement and
+ * differs from run to run; nothing else does.
+ */
+STRUT_API char *strut_compare_table(const strut_compare *result, int columns);
+/** Units in the header; empty where there is no value. */
+STRUT_API char *strut_compare_csv(const strut_compare *result);
+/** With the reasons of what is empty, all states, barriers, contacts, nodes and differences. */
+STRUT_API char *strut_compare_json(const strut_compare *result);
+
+/**
+ * Draws the structures [first, first + count) of a comparison into the file `path`, `width` [pt] wide:
+ * each in the shape in which it stands, members by kind, driven ones marked, its name and a few of its
+ * numbers above. All to one scale unless some are more than four times as large as others; a rod tells
+ * it. Fails as strut_canvas_open and strut_canvas_commit; STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_compare_figure(const char *path, double width,
+                                            const strut_compare *result, size_t first, size_t count,
+                                            strut_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/compare/compare_figure.h"
+#include "engine/study/compare/compare.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,8 +11,8 @@
 #include "engine/output/draw/structure.h"
 
 static const double EDGE = 5, GAP = 12, TITLE = 13, LINE = 11, MARGIN = 16, NARROWEST = 150;
-static const double FOOT = 0.08; /* room for the rod, of the extent */
-static const double DOT = 4.0;   /* about a node [pt] */
+static const double FOOT = 0.08; /* space for the scale bar, relative to the extent */
+static const double DOT = 4.0;   /* radius around a node [pt] */
 static const double UNLIKE = 4.0, FLATTEST = 0.35, TALLEST = 1.2;
 enum { COLUMNS = 3, NAMED = 40, WORDS = 200, KEYS = 5, DRIVEN = 2, LINES = 3 };
 
@@ -73,7 +73,7 @@ static void mark_driven(const sheet *s, const strut_window *window, const strut_
     strut_window_point(window, c->q + 2 * m->node[0], from);
     strut_window_point(window, c->q + 2 * m->node[1], to);
     double length = hypot(to[0] - from[0], to[1] - from[1]);
-    for (int d = 0; d < 2 && length > 3 * DOT; d++) { /* nodes stay on top */
+    for (int d = 0; d < 2 && length > 3 * DOT; d++) { /* keep nodes visible */
       double step = DOT * (to[d] - from[d]) / length;
       from[d] += step;
       to[d] -= step;
@@ -85,7 +85,7 @@ static void mark_driven(const sheet *s, const strut_window *window, const strut_
   }
 }
 
-/* What people ask first, in three lines. */
+/* The most important results, in three lines. */
 static void words_of(const strut_compare_column *c, char words[LINES][WORDS]) {
   const strut_compare_cell *v = c->cell;
   double states = v[STRUT_COMPARE_STATES].value, lowest = v[STRUT_COMPARE_FREQUENCY_1].value;

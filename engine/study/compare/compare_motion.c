@@ -11,7 +11,7 @@
 #include "engine/study/compare/compare_parts.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
-enum { LONG_WINDOW = 20 }; /* periods of a motion that does not repeat itself */
+enum { LONG_WINDOW = 20 }; /* periods of a motion that is not periodic */
 static const double WINDOW_TOLERANCE = 1e-6, STEPS = 50.0;
 
 static const char *word_of(strut_motion kind) {
@@ -28,10 +28,10 @@ static strut_status run_window(const strut_compare_work *work, const strut_summa
   strut_model *model = NULL;
   double period = strut_scene_span(&scene).period;
   bool periodic = run->steady.kind == STRUT_MOTION_PERIODIC;
-  if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not keep */
+  if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not support */
     e->step = run->step;
   } else {
-    e->integrator = "adaptive";
+    e->integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
     e->tolerance = WINDOW_TOLERANCE;
     e->step = period / STEPS;
   }
@@ -66,7 +66,7 @@ static strut_status put_contacts(strut_compare_work *work, const strut_summary *
   return STRUT_OK;
 }
 
-/* What the drives do, and what that is for the way. */
+/* Drive energy and cost of transport. */
 static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period) {
   const strut_compare_cell *cell = work->column->cell;
   const strut_scene *scene = work->column->input->scene;
@@ -110,8 +110,8 @@ static void put_cost(strut_compare_work *work, const strut_summary *s, double cp
   strut_compare_put(work, STRUT_COMPARE_CPU, cpu / s->duration);
 }
 
-static strut_status tell(strut_compare_work *work, const strut_summary *run,
-                         const strut_snapshot *end, double cpu) {
+static strut_status put_motion(strut_compare_work *work, const strut_summary *run,
+                               const strut_snapshot *end, double cpu) {
   strut_compare_column *c = work->column;
   strut_error error = {0};
   double period = strut_scene_span(c->input->scene).period, seconds = run->duration;
@@ -130,9 +130,9 @@ static strut_status tell(strut_compare_work *work, const strut_summary *run,
     status = strut_compare_leave_failed(work, STRUT_COMPARE_DRIVE_ENERGY, STRUT_COMPARE_DUTY,
                                         &error, status, true);
   } else {
-    const strut_summary *told = period > 0.0 ? &window : run;
-    put_energy(work, told->energy.drive_work, seconds, period);
-    status = put_contacts(work, told);
+    const strut_summary *source = period > 0.0 ? &window : run;
+    put_energy(work, source->energy.drive_work, seconds, period);
+    status = put_contacts(work, source);
   }
   strut_summary_free(&window);
   return status;
@@ -157,11 +157,11 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
   e->accuracy = work->options->accuracy;
   e->steady.wanted = e->periods > 0.0;
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};
-  double began = strut_study_clock();
+  double began = strut_tradeoff_cpu_clock();
   strut_status status = strut_simulate_accurately(scene, &wanted, &summary, &error);
-  double cpu = strut_study_clock() - began;
+  double cpu = strut_tradeoff_cpu_clock() - began;
   if (status == STRUT_OK)
-    status = tell(work, &summary, &end, cpu);
+    status = put_motion(work, &summary, &end, cpu);
   else
     status = strut_compare_leave_failed(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, &error,
                                         status, true);

@@ -12,8 +12,8 @@
 typedef struct strut_compare_work {
   const strut_compare_options *options;
   strut_compare_column *column;
-  strut_arena *arena;     /* of the result */
-  strut_rest_state stand; /* where it stands; q is NULL where it does not */
+  strut_arena *arena;    /* of the result */
+  strut_rest_state rest; /* q is NULL if there is none */
 } strut_compare_work;
 
 void strut_compare_put(strut_compare_work *work, strut_compare_quantity quantity, double value);
@@ -21,8 +21,8 @@ void strut_compare_put(strut_compare_work *work, strut_compare_quantity quantity
 void strut_compare_leave(strut_compare_work *work, strut_compare_quantity first,
                          strut_compare_quantity last, const char *reason);
 /**
- * The same for what failed; returns STRUT_OK unless memory is out or the user interrupts. `failed`:
- * it ought to have worked, and the column says so.
+ * The same after a failure; returns STRUT_OK unless memory is out or the user interrupts. `failed`:
+ * the column reports an error, as this should have worked.
  */
 strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_quantity first,
                                         strut_compare_quantity last, const strut_error *error,

@@ -19,7 +19,7 @@ typedef struct strut_shard {
   int64_t index, count;
 } strut_shard;
 
-/** What Slurm tells a task of a job array: SLURM_ARRAY_TASK_ID, ... NULL where it is not set. */
+/** Environment of a task of a Slurm job array: SLURM_ARRAY_TASK_ID, ... NULL if not set. */
 typedef struct strut_array_task {
   const char *id, *min, *max, *step, *count;
 } strut_array_task;
@@ -42,16 +42,29 @@ STRUT_API char *strut_shard_path(const char *directory, strut_shard shard, strut
 STRUT_API strut_status strut_shard_begin(const char *directory, strut_shard shard,
                                          strut_error *error);
 
-/** What files of slots are in a directory. */
+/** The files of slots in a directory. */
 typedef struct strut_shards_found {
-  bool whole;     /* DIR/points.slots is there */
-  int64_t count;  /* the study has that many shards; 0: none is there */
-  int64_t other;  /* another such number that was found, or 0 */
-  uint8_t *there; /* (count) 1 where the file is there; owned by the arena */
+  bool whole;     /* DIR/points.slots exists */
+  int64_t count;  /* number of shards of the study; 0: no shard exists */
+  int64_t other;  /* a conflicting number of shards, or 0 */
+  uint8_t *there; /* (count) 1 if the file exists; owned by the arena */
 } strut_shards_found;
 
-/** Looks what there is; a directory that is not there holds nothing. */
+/** Lists the files; a missing directory has none. */
 STRUT_API strut_status strut_shards_find(const char *directory, strut_shards_found *found,
                                          strut_arena *arena, strut_error *error);
+
+/** Report of a merge. */
+typedef struct strut_merged {
+  int64_t shards; /* 0: the study was in one piece */
+  int64_t points, failed;
+} strut_merged;
+
+/**
+ * Writes directory/table.csv from all shards in directory/shards, or from directory/points.slots.
+ * STRUT_FILE_TROUBLE, saying which, where shards or points of them are missing; STRUT_USAGE where the
+ * files are not of one study, or cover points twice. Nothing is written then.
+ */
+STRUT_API strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error);
 
 #endif

@@ -17,14 +17,14 @@ enum { BLOCK_BYTES = 1 << 14, BITS = 64 };
 struct strut_slots {
   int descriptor;
   bool writes;
-  atomic_bool unsynced; /* something was put since the last sync */
+  atomic_bool unsynced; /* rows were written since the last sync */
   char *path;
   strut_slots_plan plan;
   strut_slots_layout layout;
-  uint64_t seed; /* of the checksums: a slot of another study is none of this one */
+  uint64_t seed; /* of the checksums, so that slots of another study are not valid here */
   atomic_uint_fast64_t *done;
   atomic_int_fast64_t missing, failed;
-  unsigned char *block; /* (block_slots * slot_bytes) slots as read last */
+  unsigned char *block; /* (block_slots * slot_bytes) most recently read slots */
   int64_t block_slots, block_first, block_count;
   double *numbers;
   char (*words)[STRUT_SLOT_WORD];
@@ -32,9 +32,9 @@ struct strut_slots {
   strut_arena arena;
 };
 
-/* What a slot begins with. */
+/* The first bytes of a slot. */
 typedef struct slot_head {
-  uint64_t checksum; /* of all behind it; never 0, so that a hole in the file is no slot */
+  uint64_t checksum; /* of the bytes after it; never 0, so that a hole in the file is not a slot */
   int64_t point;
   uint32_t status, reserved;
 } slot_head;
@@ -64,7 +64,7 @@ static uint64_t checksum_of(const strut_slots *s, const unsigned char *slot) {
   return sum ? sum : 1;
 }
 
-/* Whether these bytes are the whole slot i. */
+/* Are these bytes a complete slot i? */
 static bool is_whole(const strut_slots *s, int64_t i, const unsigned char *slot) {
   slot_head head;
   memcpy(&head, slot, sizeof head);
@@ -78,7 +78,7 @@ static void mark(strut_slots *s, int64_t i, uint32_t status) {
   if (status != STRUT_OK) atomic_fetch_add_explicit(&s->failed, 1, memory_order_relaxed);
 }
 
-/* Reads the block of slots from i on; slots behind the end of the file are none. */
+/* Reads the block of slots that starts at i, up to the end of the file. */
 static strut_status load(strut_slots *s, int64_t i, strut_error *error) {
   int64_t count = s->plan.count - i < s->block_slots ? s->plan.count - i : s->block_slots;
   s->block_count = 0;
@@ -90,7 +90,7 @@ static strut_status load(strut_slots *s, int64_t i, strut_error *error) {
   return STRUT_OK;
 }
 
-/* Finds out which slots are there. */
+/* Determines which slots exist. */
 static strut_status scan(strut_slots *s, strut_error *error) {
   strut_status status = STRUT_OK;
   for (int64_t at = 0; at < s->plan.count && status == STRUT_OK; at += s->block_count) {
@@ -106,7 +106,7 @@ static strut_status scan(strut_slots *s, strut_error *error) {
   return status;
 }
 
-/* All memory that the slots of a plan need. */
+/* Allocates everything that the slots of a plan need. */
 static strut_status prepare(strut_slots *s, strut_error *error) {
   size_t words = (size_t)(s->plan.count / BITS + 1);
   s->block_slots = BLOCK_BYTES / (int64_t)s->layout.slot_bytes;
@@ -120,7 +120,7 @@ static strut_status prepare(strut_slots *s, strut_error *error) {
   return STRUT_OK;
 }
 
-/* Keeps others from writing. Where the file system knows no locks, both would write the same. */
+/* Locks the file against other writers. Without file locks both would write the same bytes. */
 static strut_status lock(const strut_slots *s, strut_error *error) {
   struct flock wanted = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
   if (fcntl(s->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN))
@@ -147,7 +147,7 @@ static strut_status begin(strut_slots *s, const strut_slots_plan *plan, strut_er
   return STRUT_OK;
 }
 
-/* The header that is there, which must be of this plan. */
+/* Reads the existing header, which must belong to this plan. */
 static strut_status resume(strut_slots *s, const strut_slots_plan *plan, strut_error *error) {
   bool torn = false;
   strut_slots_plan own = *plan;
@@ -162,12 +162,12 @@ static strut_status resume(strut_slots *s, const strut_slots_plan *plan, strut_e
 }
 
 static strut_status look(strut_slots *s, strut_error *error) {
-  bool torn = false; /* never: of an unfinished header nothing can be read */
+  bool torn = false; /* unused: an unfinished header cannot be read */
   return strut_slots_read_header(s->descriptor, s->path, 0, &s->plan, &s->layout, &s->arena, &torn,
                                  error);
 }
 
-/* Opens for writing where there is a plan, and for reading only otherwise. */
+/* Opens for writing if there is a plan, otherwise read-only. */
 static strut_status open_file(const char *path, const strut_slots_plan *plan, strut_slots **slots,
                               strut_error *error) {
   *slots = NULL;
@@ -198,7 +198,7 @@ strut_status strut_slots_open(const char *path, const strut_slots_plan *plan, st
   strut_slots_plan wanted = *plan;
   strut_slots_layout layout;
   *slots = NULL;
-  strut_status status = strut_slots_lay_out(&wanted, &layout, error); /* before a file is made */
+  strut_status status = strut_slots_lay_out(&wanted, &layout, error); /* before creating a file */
   return status == STRUT_OK ? open_file(path, &wanted, slots, error) : status;
 }
 
@@ -256,7 +256,7 @@ static void fill_text(unsigned char *field, size_t room, const char *text) {
   memset(field + length, 0, room - length);
 }
 
-/* The bytes of a slot; all NANs are the same one. */
+/* Encodes a slot; all NANs become the same one. */
 static void fill_slot(const strut_slots *s, int64_t point, const strut_slot *row,
                       unsigned char *slot) {
   slot_head head = {.point = point, .status = (uint32_t)row->status};
@@ -297,7 +297,7 @@ strut_status strut_slots_sync(strut_slots *slots, strut_error *error) {
   return strut_slots_trouble(error, "write", slots->path, errno);
 }
 
-/* The bytes of slot i, from the block read last or the file; NULL where it is missing. */
+/* The bytes of slot i, from the block in memory or from the file; NULL if it is missing. */
 static const unsigned char *find(strut_slots *s, int64_t i) {
   for (int pass = 0; pass < 2; pass++) { /* it may have been written since the block was read */
     int64_t at = i - s->block_first;

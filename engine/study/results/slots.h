@@ -34,7 +34,7 @@ typedef struct strut_slot_column {
   bool word;               /* STRUT_SLOT_WORD bytes in place of a number */
 } strut_slot_column;
 
-/** What must agree before results may stand beside each other. */
+/** Everything that must agree before results may be combined. */
 typedef struct strut_slots_plan {
   uint8_t hash[STRUT_STUDY_HASH]; /* of the study */
   const char *version;            /* of the program */
@@ -49,7 +49,7 @@ typedef struct strut_slots_plan {
 /** A row: numbers and words in the order of their columns. */
 typedef struct strut_slot {
   strut_status status;                  /* STRUT_OK, or why the point failed */
-  const double *numbers;                /* (columns that are numbers); NAN: nothing to tell */
+  const double *numbers;                /* (columns that are numbers); NAN: missing */
   const char (*words)[STRUT_SLOT_WORD]; /* (columns that are words) */
   const char *message;                  /* of a failed point, or NULL; cut at STRUT_SLOT_MESSAGE */
 } strut_slot;
@@ -73,18 +73,18 @@ STRUT_API strut_status strut_slots_open(const char *path, const strut_slots_plan
  */
 STRUT_API strut_status strut_slots_read(const char *path, strut_slots **slots,
                                         strut_slots_plan *plan, strut_error *error);
-/** Ends it. NULL is allowed. */
+/** Closes the file. NULL is allowed. */
 STRUT_API void strut_slots_close(strut_slots *slots);
 
 /** The header of an open file. */
 STRUT_API const strut_slots_plan *strut_slots_plan_of(const strut_slots *slots);
 /** The number of the file's i-th point, 0 <= i < count. */
 STRUT_API int64_t strut_slots_point(const strut_slots *slots, int64_t i);
-/** Whether a point is one of this file's. */
+/** Does the point belong to this file? */
 STRUT_API bool strut_slots_holds(const strut_slots *slots, int64_t point);
-/** Whether a point of this file has its result. Cheap; safe from several threads. */
+/** Does a point of this file have a result? Cheap; thread-safe. */
 STRUT_API bool strut_slots_done(const strut_slots *slots, int64_t point);
-/** How many of this file's points have no result, and how many have one that says they failed. */
+/** Number of points of this file without a result, and number of failed ones. */
 STRUT_API int64_t strut_slots_missing(const strut_slots *slots);
 STRUT_API int64_t strut_slots_failed(const strut_slots *slots);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The begin of a file of slots: what study it is of and which points it is for. */
+/* The header of a file of slots: its study and its points. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -14,11 +14,11 @@ static const uint32_t BYTE_ORDER_MARK = 0x01020304, FOREIGN_MARK = 0x04030201, F
 static const char MAGIC[8] = {'\x89', 's', 't', 'r', 'u', 't', '\r', '\n'};
 enum { ALIGNMENT = 64, MOST_HEADER = 1 << 20 };
 
-/* As it stands in the file; texts follow: version, name, and kind, name, unit of each column. */
+/* Layout in the file; the texts follow: version, name, then kind, name and unit of each column. */
 typedef struct fixed_part {
   char magic[8];
   uint32_t byte_order, format;
-  uint64_t checksum; /* of the whole header, itself 0 */
+  uint64_t checksum; /* of the whole header with this field 0 */
   uint64_t header_bytes, slot_bytes;
   int64_t points, first, stride, count;
   uint8_t hash[STRUT_STUDY_HASH];
@@ -150,7 +150,7 @@ static const char *take_text(const char **at, const char *end) {
   return text;
 }
 
-/* The texts of a header whose checksum is right: they are as they were written. */
+/* Reads the texts of a header with a valid checksum. */
 static bool take_texts(strut_slots_plan *plan, const char *at, const char *end,
                        strut_arena *arena) {
   strut_slot_column *columns = strut_arena_allocate(arena, plan->column_count + 1, sizeof *columns);
@@ -169,7 +169,7 @@ static bool take_texts(strut_slots_plan *plan, const char *at, const char *end,
   return good;
 }
 
-/* Whether the file is no more than the begin of a header, or a place kept for one. */
+/* Is the file only an incomplete header, or space reserved for one? */
 static bool is_torn(int descriptor, const unsigned char *begin, int64_t got, size_t most) {
   struct stat found;
   if (fstat(descriptor, &found) != 0 || found.st_size > (off_t)most) return false;

@@ -10,13 +10,13 @@
 
 enum { STRUT_SLOT_HEAD = 24 }; /* bytes: checksum, point, status */
 
-/** Where things are in a file. */
+/** Offsets in a file. */
 typedef struct strut_slots_layout {
   size_t header_bytes, slot_bytes;
   size_t number_count, word_count;
 } strut_slots_layout;
 
-/** STRUT_USAGE where the plan's points or columns make no sense. Sets its stride to 1 where it is 0. */
+/** STRUT_USAGE if the plan's points or columns are invalid. Replaces a stride of 0 by 1. */
 strut_status strut_slots_lay_out(strut_slots_plan *plan, strut_slots_layout *layout,
                                  strut_error *error);
 /** Copies all texts of a plan into the arena. False when memory is out. */
@@ -32,9 +32,9 @@ unsigned char *strut_slots_header(const strut_slots_plan *plan, const strut_slot
 strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
                                      strut_slots_plan *plan, strut_slots_layout *layout,
                                      strut_arena *arena, bool *torn, strut_error *error);
-/** What two plans of different studies differ in, such as "the columns"; NULL: nothing. */
+/** Names a difference between two plans, such as "the columns"; NULL: none. */
 const char *strut_slots_difference(const strut_slots_plan *a, const strut_slots_plan *b);
-/** STRUT_USAGE, saying what differs, unless both are of the same study and for the same points. */
+/** STRUT_USAGE with the difference, unless both have the same study and points. */
 strut_status strut_slots_compare(const char *path, const strut_slots_plan *there,
                                  const strut_slots_plan *wanted, strut_error *error);
 /** STRUT_FILE_TROUBLE with the reason in errno's value `code`. */

@@ -9,10 +9,10 @@
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"
 
-/* PART: what is written at a time. Behind it there is room for any one cell of a row. */
+/* PART: bytes written at once. The buffer holds one more cell of any length. */
 enum { PART = 1 << 16, MOST_CELL = 2 * STRUT_SLOT_MESSAGE + 2 };
 
-/* Text on its way into the file. */
+/* Buffered text of the file. */
 typedef struct writer {
   strut_file file;
   size_t used;
@@ -57,7 +57,7 @@ static strut_status finish(writer *w, strut_error *error) {
   return status;
 }
 
-/* A name with its unit; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
+/* A name with its unit; RFC 4180 requires quotes around one with a comma, a quote or a break. */
 static void put_name(writer *w, const char *text, const char *unit) {
   bool quoted = strpbrk(text, ",\"\r\n") || strpbrk(unit, ",\"\r\n");
   if (quoted) put(w, "\"", 1);
@@ -90,7 +90,7 @@ static void put_number(writer *w, double value) {
   end_cell(w, ',');
 }
 
-/* A short text: copied as it stands, and then once more if it needs quotes. */
+/* A short text: copied, then copied again with quotes if it needs them. */
 static void put_text(writer *w, const char *text, size_t room, char mark) {
   char *at = w->buffer + w->used;
   size_t length = 0;

@@ -8,7 +8,7 @@
 #include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/search/critical.h"
 
-/* Structures kept at once; beyond that each point looks for itself. */
+/* Maximum number of cached structures; beyond that each point searches for itself. */
 enum { MOST_KEPT = 256 };
 static const double NEAR = 0.1; /* of the structure's size */
 
@@ -20,10 +20,10 @@ typedef struct found {
   double *q; /* (2 node_count) of strut_allocate */
 } found;
 
-/* One structure, by all numbers that decide where it stands. */
+/* One structure, identified by all numbers that determine its equilibria. */
 typedef struct structure {
   double *key; /* of strut_allocate */
-  size_t length, room;
+  size_t length, capacity;
   bool failed; /* memory was out */
   size_t count;
   found *configurations; /* (count) */
@@ -37,12 +37,12 @@ struct strut_equilibrium_cache {
 };
 
 static void add(structure *s, double value) {
-  if (s->length == s->room && !s->failed) {
-    size_t room = s->room ? 2 * s->room : 256;
-    double *key = strut_reallocate(s->key, room, sizeof *key);
+  if (s->length == s->capacity && !s->failed) {
+    size_t capacity = s->capacity ? 2 * s->capacity : 256;
+    double *key = strut_reallocate(s->key, capacity, sizeof *key);
     if (key) {
       s->key = key;
-      s->room = room;
+      s->capacity = capacity;
     }
     s->failed = !key;
   }
@@ -170,7 +170,7 @@ static structure *structure_of(strut_equilibrium_cache *standing, const strut_sc
   return same ? same : s;
 }
 
-static void look(const strut_scene *scene, size_t configuration, found *f) {
+static void find_equilibrium(const strut_scene *scene, size_t configuration, found *f) {
   strut_model *model = NULL;
   strut_arena arena = {0};
   strut_rest_state stand;
@@ -183,16 +183,16 @@ static void look(const strut_scene *scene, size_t configuration, found *f) {
   if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
     f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
   if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
-  if (f->status == STRUT_NO_MEMORY) f->known = false; /* not for ever */
+  if (f->status == STRUT_NO_MEMORY) f->known = false; /* retry later */
   strut_arena_free(&arena);
   strut_model_free(model);
 }
 
-/* The equilibrium of a configuration; what it says is good as long as the structure. */
+/* The equilibrium of a configuration, valid as long as the structure. */
 static const found *find(structure *s, const strut_scene *scene, size_t configuration) {
   found *f = &s->configurations[configuration];
   pthread_mutex_lock(&s->lock);
-  if (!f->known) look(scene, configuration, f);
+  if (!f->known) find_equilibrium(scene, configuration, f);
   pthread_mutex_unlock(&s->lock);
   return f;
 }
@@ -239,7 +239,7 @@ static double extent(const double *q, size_t nodes) {
 
 static int32_t nearest(structure *s, const strut_scene *scene, const double *positions) {
   const strut_model shape = {.node_count =
-                                 (int32_t)scene->node_count}; /* all that is asked of it */
+                                 (int32_t)scene->node_count}; /* all fields that are read */
   double least = HUGE_VAL;
   int32_t index = -1;
   for (size_t i = 0; i < scene->configuration_count; i++) {
@@ -254,7 +254,7 @@ static int32_t nearest(structure *s, const strut_scene *scene, const double *pos
   return index;
 }
 
-/* What the nearest configuration is must not depend on where the run began. */
+/* The nearest configuration must not depend on the start of the run. */
 strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
                                              const strut_scene *scene, const double *positions,
                                              int32_t *index, strut_error *error) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/grid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,12 +25,13 @@ size_t strut_grid_columns(const strut_study *study) {
 const strut_study_column *strut_grid_column(const strut_study *study, size_t k, size_t *axis) {
   size_t i = 0;
   while (k >= study->axes[i].column_count) k -= study->axes[i++].column_count;
+  assert(i < study->axis_count);
   if (axis) *axis = i;
   return &study->axes[i].columns[k];
 }
 
-/* The 15 digits that a double holds of any number, counted from the first one of `scale`: what lies
- * behind them is rounding, so that 0.1 + 0.2 is 0.3. */
+/* Rounds to the 15 digits that a double can represent, counted from the first digit of `scale`, so that
+ * 0.1 + 0.2 is 0.3. */
 static double rounded(double value, double scale) {
   static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -40,9 +42,9 @@ static double rounded(double value, double scale) {
   int k = 14 - (int)floor(log10(scale));
   double power = abs(k) < EXACT ? tens[abs(k)] : pow(10.0, abs(k));
   double digits = rint(k > 0 ? value * power : value / power);
-  if (digits == 0.0) return 0.0;                                      /* and not -0 */
+  if (digits == 0.0) return 0.0;                                      /* not -0 */
   if (abs(k) < EXACT) return k > 0 ? digits / power : digits * power; /* rounded once */
-  snprintf(text, sizeof text, "%.0fe%d", digits, -k); /* without a mark: the same in every locale */
+  snprintf(text, sizeof text, "%.0fe%d", digits, -k); /* no decimal point: locale-independent */
   return strtod(text, NULL);
 }
 
@@ -67,6 +69,7 @@ double strut_grid_value(const strut_study_column *column, int64_t i, int64_t cou
 
 void strut_grid_values(const strut_study *study, int64_t point, strut_study_value *values) {
   size_t k = strut_grid_columns(study);
+  assert(point >= 0);
   for (size_t a = study->axis_count; a-- > 0;) {
     const strut_study_axis *axis = &study->axes[a];
     int64_t i = point % axis->count;
@@ -81,4 +84,5 @@ void strut_grid_values(const strut_study *study, int64_t point, strut_study_valu
         value->number = strut_grid_value(column, i, axis->count);
     }
   }
+  assert(k == 0 && point == 0);
 }

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs of a study opened again, and their motion as one table. See study_runs.h. */
+/* The recorded runs of a study: their motion as one table, and figures of single runs. */
 #include "engine/study/sweep/study_runs.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "engine/base/number_text.h"
+#include "engine/output/figures/run_figure.h"
 #include "engine/study/sweep/grid.h"
+
+/* ---- the recorded runs of a study ---- */
 
 static const struct {
   const char *name, *unit;
@@ -30,7 +34,7 @@ bool strut_study_shows(const strut_study_figure *figure, const char *column, con
   return strcmp(figure->only + length + 1, text) == 0;
 }
 
-/* What the axes say at a point. */
+/* Values of the axes at a point. */
 static strut_status read_values(const strut_sweep_plan *plan, const strut_study_figure *figure,
                                 int64_t point, strut_study_opened *o, bool *shown,
                                 strut_error *error) {
@@ -62,7 +66,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   const char *folder = strut_arena_format(&o->arena, "%s/runs/%09lld", directory, (long long)point);
   const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
   if (!file) return no_memory(error);
-  if (stat(file, &found) != 0) return STRUT_OK; /* it failed before it moved */
+  if (stat(file, &found) != 0) return STRUT_OK; /* it failed before recording anything */
   status = plan->scenes.scene(plan->scenes.context, o->values, &o->scene, error);
   if (!status)
     status = strut_trajectory_read(folder, &o->scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
@@ -87,7 +91,7 @@ void strut_study_run_close(strut_study_opened *o) {
   *o = (strut_study_opened){.motion = {0}};
 }
 
-/* The table while it grows. */
+/* The table being built. */
 typedef struct builder {
   const strut_sweep_plan *plan;
   const strut_study_figure *figure;
@@ -95,29 +99,29 @@ typedef struct builder {
   const char **texts[64]; /* (axis columns and node) in blocks of strut_allocate */
   double *axes[64];       /* (axis columns) of numbers */
   double *numbers[NUMBERS];
-  size_t rows, room;
+  size_t rows, capacity;
 } builder;
 
-static bool grow_texts(const char ***column, size_t room) {
-  const char **more = strut_reallocate(*column, room, sizeof *more);
+static bool grow_texts(const char ***column, size_t capacity) {
+  const char **more = strut_reallocate(*column, capacity, sizeof *more);
   if (more) *column = more;
   return more != NULL;
 }
 
-static bool grow_numbers(double **column, size_t room) {
-  double *more = strut_reallocate(*column, room, sizeof *more);
+static bool grow_numbers(double **column, size_t capacity) {
+  double *more = strut_reallocate(*column, capacity, sizeof *more);
   if (more) *column = more;
   return more != NULL;
 }
 
 static bool reserve(builder *b, size_t rows) {
-  if (rows <= b->room) return true;
-  size_t room = rows + rows / 2, axes = b->plan->axis_columns;
+  if (rows <= b->capacity) return true;
+  size_t capacity = rows + rows / 2, axes = b->plan->axis_columns;
   bool fine = true;
-  for (size_t i = 0; i <= axes && fine; i++) fine = grow_texts(&b->texts[i], room);
-  for (size_t i = 0; i < axes && fine; i++) fine = grow_numbers(&b->axes[i], room);
-  for (size_t i = 0; i < NUMBERS && fine; i++) fine = grow_numbers(&b->numbers[i], room);
-  if (fine) b->room = room;
+  for (size_t i = 0; i <= axes && fine; i++) fine = grow_texts(&b->texts[i], capacity);
+  for (size_t i = 0; i < axes && fine; i++) fine = grow_numbers(&b->axes[i], capacity);
+  for (size_t i = 0; i < NUMBERS && fine; i++) fine = grow_numbers(&b->numbers[i], capacity);
+  if (fine) b->capacity = capacity;
   return fine;
 }
 
@@ -166,7 +170,7 @@ static strut_status add_run(builder *b, const strut_study_run *run, strut_error 
 /* Copies into the table's arena, which owns all of it. */
 static const void *owned(builder *b, const void *block, size_t size) {
   void *copy = strut_arena_allocate(&b->table->arena, b->rows, size);
-  if (copy) memcpy(copy, block, b->rows * size);
+  if (copy && b->rows) memcpy(copy, block, b->rows * size); /* no rows: block may be NULL */
   return copy;
 }
 
@@ -213,4 +217,108 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
   for (size_t i = 0; i < NUMBERS; i++) strut_release(b.numbers[i]);
   if (status) strut_arena_free(&table->arena);
   return status;
+}
+
+/* ---- figures of single runs ---- */
+
+/* The axis that `difference` names, or axis_count. */
+static strut_status find_axis(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                              size_t *axis, strut_error *error) {
+  const strut_study *study = plan->study;
+  *axis = study->axis_count;
+  for (size_t i = 0; figure->difference && i < plan->axis_columns; i++)
+    if (strcmp(plan->columns[i].name, figure->difference) == 0) strut_grid_column(study, i, axis);
+  if (*axis == study->axis_count || study->axes[*axis].count == 2) return STRUT_OK;
+  return strut_fail(
+      error, STRUT_USAGE,
+      "figure '%.60s' of the study: 'difference' needs an axis of two values; '%.60s' "
+      "has %lld",
+      figure->name, figure->difference, (long long)study->axes[*axis].count);
+}
+
+/* The point with the first value along that axis. */
+static int64_t partner(const strut_study *study, size_t axis, int64_t point) {
+  int64_t stride = 1;
+  for (size_t i = study->axis_count; --i > axis;) stride *= study->axes[i].count;
+  return point / stride % 2 ? point - stride : point;
+}
+
+/* NAME-TEXT-TEXT.svg, with texts made valid as file names. */
+static const char *file_of(const strut_sweep_plan *plan, const char *directory,
+                           const strut_study_figure *figure, strut_study_opened *o) {
+  char *name = strut_arena_format(&o->arena, "%s", figure->name);
+  for (size_t i = 0; name && i < plan->axis_columns; i++) {
+    const char *column = plan->columns[i].name;
+    size_t axis, before = SIZE_MAX, length = figure->only ? strcspn(figure->only, "=") : 0;
+    strut_grid_column(plan->study, i, &axis);
+    if (i > 0) strut_grid_column(plan->study, i - 1, &before);
+    bool told =
+        plan->study->axes[axis].count > 1 && axis != before; /* zipped axes by their first column */
+    if (figure->difference && strcmp(column, figure->difference) == 0) told = false;
+    if (figure->only && strlen(column) == length && memcmp(column, figure->only, length) == 0)
+      told = false;
+    if (told) name = strut_arena_format(&o->arena, "%s-%s", name, o->texts[i]);
+  }
+  for (char *c = name; c && *c; c++)
+    if (*c == '/') *c = '_';
+  return name ? strut_arena_format(&o->arena, "%s/%s.svg", directory, name) : NULL;
+}
+
+static strut_status draw(const strut_sweep_plan *plan, const char *directory,
+                         const strut_study_figure *figure, double width, strut_study_opened *o,
+                         const strut_study_opened *other, const char *other_name,
+                         strut_error *error) {
+  strut_model *model = NULL;
+  const strut_run_figure picture = {
+      .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
+      .width = width,
+      .scale = {figure->scale[0], figure->scale[1]},
+      .time_count = figure->time_count,
+      .times = figure->times,
+      .other = other ? &other->motion : NULL,
+      .other_name = other_name};
+  const char *path = file_of(plan, directory, figure, o);
+  if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = strut_model_compile(&o->scene, &model, error);
+  if (!status) status = strut_run_figure_draw(path, &picture, model, &o->motion, NULL, error);
+  strut_model_free(model);
+  return status;
+}
+
+/* Draws the figure of one point, if it has one. */
+static strut_status draw_point(const strut_sweep_plan *plan, const char *directory,
+                               const strut_study_figure *figure, double width, size_t axis,
+                               int64_t point, bool *drawn, strut_error *error) {
+  strut_study_opened o, other;
+  bool there = false, beside = false, pairs = axis < plan->study->axis_count;
+  int64_t with = pairs ? partner(plan->study, axis, point) : point;
+  if (pairs && with == point) return STRUT_OK; /* drawn over its partner */
+  strut_status status = strut_study_run_open(plan, directory, figure, point, &o, &there, error);
+  if (!status && there && pairs) {
+    status = strut_study_run_open(plan, directory, figure, with, &other, &beside, error);
+    const char *name = NULL;
+    for (size_t i = 0; i < plan->axis_columns && !status; i++)
+      if (strcmp(plan->columns[i].name, figure->difference) == 0) name = other.texts[i];
+    if (!status)
+      status = draw(plan, directory, figure, width, &o, beside ? &other : NULL, name, error);
+    strut_study_run_close(&other);
+  } else if (!status && there) {
+    status = draw(plan, directory, figure, width, &o, NULL, NULL, error);
+  }
+  *drawn = *drawn || there;
+  strut_study_run_close(&o);
+  return status;
+}
+
+strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
+                                  const strut_study_figure *figure, double width,
+                                  strut_error *error) {
+  size_t axis;
+  bool drawn = false;
+  strut_status status = find_axis(plan, figure, &axis, error);
+  for (int64_t point = 0; point < plan->points && !status; point++)
+    status = draw_point(plan, directory, figure, width, axis, point, &drawn, error);
+  if (status || drawn) return status;
+  return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of it",
+                    figure->name);
 }

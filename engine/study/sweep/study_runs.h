@@ -9,7 +9,7 @@
 #include "engine/output/trajectory.h"
 #include "engine/study/sweep/sweep.h"
 
-/** A run being looked at. */
+/** An opened run. */
 typedef struct strut_study_run {
   int64_t point;
   const strut_study_value *values; /* (axis columns of the plan) */
@@ -48,7 +48,7 @@ typedef struct strut_study_opened {
   strut_trajectory motion;
   strut_arena arena;
 } strut_study_opened;
-/** Whether the figure's `only` leaves this text of a column in. */
+/** Does the figure's `only` select this text of a column? */
 STRUT_API bool strut_study_shows(const strut_study_figure *figure, const char *column,
                                  const char *text);
 /**

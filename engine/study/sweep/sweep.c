@@ -1,7 +1,122 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One thread's points of a sweep: alone, or side by side in the lanes of a batch. */
 #include "engine/study/sweep/sweep.h"
 
+#include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "engine/integrate/lanes/batch.h"
+#include "engine/run/simulate_batch.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/* ---- points in lockstep ---- */
+
+/* A new batch starts after this many consecutive points that do not fit the current one. */
+enum { MOST_UNLIKE = 4 };
+/* Steps below which setting up a batch costs more than its lanes save. */
+static const double FEWEST_STEPS = 200.0;
+
+typedef struct desk {
+  const strut_sweep_worker *worker;
+  const strut_sweep_queue *queue;
+  strut_sweep_job *jobs; /* (lanes) */
+  int32_t lanes;
+  strut_scene scene; /* of the example */
+  strut_model *example;
+  int unlike;
+} desk;
+
+/* A waiting job, started with the next point of the queue if necessary; NULL: none is left. */
+static strut_sweep_job *next_job(desk *d) {
+  strut_sweep_job *idle = NULL;
+  int64_t point;
+  for (int32_t i = 0; i < d->lanes; i++) {
+    if (d->jobs[i].stage == STRUT_SWEEP_WAITING) return &d->jobs[i];
+    if (d->jobs[i].stage == STRUT_SWEEP_IDLE) idle = &d->jobs[i];
+  }
+  while (idle && d->queue->next(d->queue->context, &point)) {
+    if (strut_sweep_job_begin(d->worker, point, idle)) return idle;
+    d->queue->over(d->queue->context, idle);
+  }
+  return NULL;
+}
+
+static void finish_alone(desk *d, strut_sweep_job *job) {
+  strut_sweep_job_finish(d->worker, job);
+  d->queue->over(d->queue->context, job);
+}
+
+/* Can its run be in lanes at all? Leaves it with a model then. */
+static bool suits_lanes(strut_sweep_job *job) {
+  const strut_experiment *e = &job->scene.experiment;
+  const strut_integrator *method = strut_integrator_find(e->integrator);
+  if (e->accuracy > 0.0 || !method || !strut_batch_knows(method)) return false;
+  if (strut_scene_span(&job->scene).duration < FEWEST_STEPS * e->step) return false;
+  return !strut_sweep_job_compile(job) && strut_batch_possible(job->model, method);
+}
+
+/* The next run for the batch. Points that no lane can take are run on the way. */
+static bool next_run(void *context, strut_batch_point *run) {
+  desk *d = context;
+  for (strut_sweep_job *job; (job = next_job(d));) {
+    if (!suits_lanes(job)) {
+      finish_alone(d, job);
+      continue;
+    }
+    bool alike = strut_lanes_alike(d->example, job->model);
+    d->unlike = alike ? 0 : d->unlike + 1;
+    if (d->unlike > MOST_UNLIKE) return false; /* it waits for the next batch */
+    job->stage = STRUT_SWEEP_RUNNING;
+    *run = (strut_batch_point){job->model, &job->options, job};
+    return true;
+  }
+  return false;
+}
+
+static void take_result(void *context, const strut_batch_point *run, strut_status status,
+                        strut_summary *summary, const strut_error *error) {
+  desk *d = context;
+  strut_sweep_job *job = run->context;
+  if (!strut_sweep_job_take(d->worker, job, status, summary, error))
+    d->queue->over(d->queue->context, job);
+}
+
+/* A model like the job's that stays. False: no memory for it. */
+static bool make_example(desk *d, const strut_sweep_job *job) {
+  const strut_sweep_scenes *scenes = &d->worker->plan->scenes;
+  d->unlike = 0;
+  if (scenes->scene(scenes->context, job->cells.values, &d->scene, NULL)) return false;
+  if (!strut_model_compile(&d->scene, &d->example, NULL)) return true;
+  strut_scene_free(&d->scene);
+  return false;
+}
+
+static void run_batch(desk *d) {
+  strut_simulate_batch(&(strut_batch_source){.context = d,
+                                             .next = next_run,
+                                             .result = take_result,
+                                             .example = d->example,
+                                             .width = d->lanes});
+  strut_model_free(d->example);
+  strut_scene_free(&d->scene);
+  d->example = NULL;
+}
+
+void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
+                      strut_sweep_job *jobs, int32_t lanes) {
+  desk d = {.worker = worker, .queue = queue, .jobs = jobs, .lanes = lanes};
+  for (strut_sweep_job *job; (job = next_job(&d));) {
+    if (lanes > 1 && suits_lanes(job) && make_example(&d, job))
+      run_batch(&d);
+    else
+      finish_alone(&d, job);
+  }
+}
+
+/* ---- threads ---- */
+
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -13,13 +128,13 @@
 /* Time between two reports [s]. */
 static const double OFTEN = 0.1;
 
-/* All that the threads of one sweep share. */
+/* State shared by the threads of a sweep. */
 typedef struct sweep {
   strut_sweep_worker worker;
   strut_slots *slots;
   strut_sweep_state *state;
-  double began, told;
-  int64_t next; /* of the file's points; read and written atomically, as the next one */
+  double began, reported; /* [s] */
+  int64_t next;           /* of the file's points; read and written atomically, as the next one */
   bool stopped;
   strut_status status; /* of what stopped it, and why */
   strut_error *error;
@@ -37,14 +152,15 @@ int strut_sweep_threads(void) {
 #endif
 }
 
-static bool make_room(const strut_sweep_plan *plan, strut_arena *arena, strut_row_buffer *room) {
-  room->values = strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *room->values);
-  room->numbers = strut_arena_allocate(arena, plan->column_count + 1, sizeof *room->numbers);
-  room->words = strut_arena_allocate(arena, plan->column_count + 1, sizeof *room->words);
-  return room->values && room->numbers && room->words;
+static bool allocate_cells(const strut_sweep_plan *plan, strut_arena *arena,
+                           strut_row_buffer *cells) {
+  cells->values = strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *cells->values);
+  cells->numbers = strut_arena_allocate(arena, plan->column_count + 1, sizeof *cells->numbers);
+  cells->words = strut_arena_allocate(arena, plan->column_count + 1, sizeof *cells->words);
+  return cells->values && cells->numbers && cells->words;
 }
 
-static bool going(sweep *s) {
+static bool is_running(sweep *s) {
   bool stopped;
 #ifdef _OPENMP
 #pragma omp atomic read
@@ -54,8 +170,8 @@ static bool going(sweep *s) {
   return !stopped && !(interrupt && *interrupt);
 }
 
-/* The first one says why. */
-static void stop(sweep *s, strut_status status, const strut_error *error) {
+/* Records the first error only. */
+static void stop_sweep(sweep *s, strut_status status, const strut_error *error) {
 #ifdef _OPENMP
 #pragma omp critical(strut_sweep_report_progress)
 #endif
@@ -69,7 +185,28 @@ static void stop(sweep *s, strut_status status, const strut_error *error) {
   }
 }
 
-static void count_point(sweep *s, int64_t point, const strut_slot *row) {
+/* Counts the warnings of a run by their code, and keeps the text of the first point. */
+static void count_warnings(strut_sweep_state *state, const strut_sweep_job *job) {
+  for (size_t i = 0; i < job->warning_count; i++) {
+    const strut_warning *warning = &job->warnings[i];
+    size_t at = 0;
+    while (at < state->warning_count && strcmp(state->warnings[at].code, warning->code) < 0) at++;
+    bool known = at < state->warning_count && strcmp(state->warnings[at].code, warning->code) == 0;
+    if (!known && state->warning_count == STRUT_SWEEP_MOST_WARNINGS) continue;
+    strut_sweep_warning *to = &state->warnings[at];
+    if (!known) {
+      memmove(to + 1, to, (state->warning_count++ - at) * sizeof *to);
+      *to = (strut_sweep_warning){.code = warning->code, .point = INT64_MAX};
+    }
+    to->runs++;
+    if (job->point >= to->point) continue;
+    to->point = job->point;
+    snprintf(to->text, sizeof to->text, "%s", warning->text);
+  }
+}
+
+static void count_point(sweep *s, const strut_sweep_job *job) {
+  const strut_slot *row = &job->cells.row;
 #ifdef _OPENMP
 #pragma omp critical(strut_sweep_report_progress)
 #endif
@@ -78,22 +215,24 @@ static void count_point(sweep *s, int64_t point, const strut_slot *row) {
     double now = strut_run_clock();
     state->done++;
     state->computed++;
+    assert(state->done <= state->points);
     state->failed += row->status != STRUT_OK;
-    state->last = point;
+    state->last = job->point;
+    count_warnings(state, job);
     state->row = row;
     state->seconds = now - s->began;
-    if (s->worker.options->progress && now - s->told > OFTEN) {
+    if (s->worker.options->progress && now - s->reported > OFTEN) {
       s->worker.options->progress(s->worker.options->progress_context, state);
-      s->told = now;
+      s->reported = now;
     }
   }
 }
 
-/* The next point without a result; false: there is none, or none is wanted. */
+/* The next point without a result; false: none is left, or the sweep is being stopped. */
 static bool next_point(void *context, int64_t *point) {
   sweep *s = context;
   int64_t count = strut_slots_plan_of(s->slots)->count, i = 0;
-  while (going(s)) {
+  while (is_running(s)) {
 #ifdef _OPENMP
 #pragma omp atomic capture
 #endif
@@ -105,19 +244,19 @@ static bool next_point(void *context, int64_t *point) {
   return false;
 }
 
-static void take_point(void *context, const strut_sweep_job *job) {
+static void store_point(void *context, const strut_sweep_job *job) {
   sweep *s = context;
   strut_error error = {0};
   strut_status status = job->status;
-  if (!status) status = strut_slots_put(s->slots, job->point, &job->room.row, &error);
+  if (!status) status = strut_slots_put(s->slots, job->point, &job->cells.row, &error);
   if (status)
-    stop(s, status, job->status ? &job->error : &error);
+    stop_sweep(s, status, job->status ? &job->error : &error);
   else
-    count_point(s, job->point, &job->room.row);
+    count_point(s, job);
 }
 
-static void work(sweep *s, int threads, int32_t lanes, strut_sweep_job *jobs) {
-  const strut_sweep_queue queue = {s, next_point, take_point};
+static void run_threads(sweep *s, int threads, int32_t lanes, strut_sweep_job *jobs) {
+  const strut_sweep_queue queue = {s, next_point, store_point};
   (void)threads;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
@@ -136,7 +275,7 @@ static int32_t lanes_for(int wanted, int threads, int64_t points) {
 static strut_sweep_job *make_jobs(const strut_sweep_plan *plan, strut_arena *arena, size_t count) {
   strut_sweep_job *jobs = strut_arena_allocate(arena, count, sizeof *jobs);
   for (size_t i = 0; i < count && jobs; i++)
-    if (!make_room(plan, arena, &jobs[i].room)) return NULL;
+    if (!allocate_cells(plan, arena, &jobs[i].cells)) return NULL;
   return jobs;
 }
 
@@ -160,7 +299,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
                                .last = -1};
   if (options->directory) strut_sweep_records_clear(options->directory);
   if (jobs && s.worker.standing)
-    work(&s, threads, lanes, jobs);
+    run_threads(&s, threads, lanes, jobs);
   else
     s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
   if (!s.status && options->interrupt && *options->interrupt && state->done < count)

@@ -31,8 +31,9 @@ typedef struct strut_sweep_plan {
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;       /* each point is run twice; and outcomes are compared */
+  bool start;              /* a column says whether the start settled on an unstable equilibrium */
   size_t axis_columns;     /* the first columns */
-  size_t column_count;
+  size_t column_count, column_capacity;
   strut_slot_column *columns; /* of the axes, of what is kept, of the check */
   strut_arena arena;
 } strut_sweep_plan;
@@ -46,18 +47,29 @@ STRUT_API strut_status strut_sweep_plan_make(const strut_study *study,
                                              strut_sweep_plan *plan, strut_error *error);
 STRUT_API void strut_sweep_plan_free(strut_sweep_plan *plan);
 
+/** A warning that runs of a sweep gave. */
+typedef struct strut_sweep_warning {
+  const char *code; /* as in strut_warning */
+  int64_t runs;     /* how many of the runs computed now gave it */
+  int64_t point;    /* the first of those points */
+  char text[600];   /* its text there */
+} strut_sweep_warning;
+enum { STRUT_SWEEP_MOST_WARNINGS = 16 };
+
 /** How far a sweep is. */
 typedef struct strut_sweep_state {
-  int64_t points, done, failed; /* of the file's; done: with those before, failed too */
-  int64_t computed;             /* now */
+  int64_t points, done, failed; /* of the file; done includes earlier and failed points */
+  int64_t computed;             /* by this call */
   double seconds;               /* since it began, or went on */
   int64_t last;                 /* the latest point */
   const strut_slot *row;        /* and its row */
+  size_t warning_count;
+  strut_sweep_warning warnings[STRUT_SWEEP_MOST_WARNINGS]; /* by code */
 } strut_sweep_state;
 
 typedef struct strut_sweep_options {
   int threads; /* 0: strut_sweep_threads */
-  int lanes;   /* points at a time on one processor, where they are alike; 0: as it is good for */
+  int lanes;   /* points per thread in lockstep, if their structures agree; 0: automatic */
   const volatile sig_atomic_t *interrupt; /* may be NULL */
   const char *directory;                  /* of runs, where trajectories are wanted */
   /** A few times a second, one thread at a time; may be NULL. */
@@ -66,7 +78,7 @@ typedef struct strut_sweep_options {
 } strut_sweep_options;
 
 /**
- * Runs every point of the file that has no result yet. A point that fails gets a row that says why.
+ * Runs every point of the file that has no result yet. A failed point gets a row with the reason.
  * STRUT_INTERRUPTED: what was under way is lost, the rest is kept. STRUT_NO_MEMORY, STRUT_FILE_TROUBLE:
  * the same. The bits of a row depend on its point alone. `state` is filled at the end.
  */

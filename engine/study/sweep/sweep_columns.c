@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The columns of a study's table, and a run's summary as their cells, in one order. */
+/* The columns of a study's table, and their cells from the summary of a run. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +12,7 @@
 static const unsigned USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
                               BIT(EVALUATIONS) | BIT(OUTCOME) | BIT(QUANTITIES);
 
-/* What one word of `keep` stands for: columns, in order. The last has no name. */
+/* The columns of each word of `keep`, in order. */
 typedef struct entry {
   strut_keep keep;
   const char *name, *unit;
@@ -53,20 +54,21 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
 
-/* Is one of the first `count` columns called so? An axis may bear the name of a column. */
+/* Does one of the first `count` columns have this name? An axis may share the name of a column. */
 static bool is_taken(const strut_sweep_plan *plan, size_t count, const char *name) {
   bool found = false;
   for (size_t i = 0; i < count && !found; i++) found = strcmp(plan->columns[i].name, name) == 0;
   return found;
 }
 
-/* Then the column, which is behind the axes, is that of the run. */
+/* Adds a column; one with the name of an axis gets the prefix "run_". */
 static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
                        const char *unit, bool word) {
   const char *text = strut_arena_format(&plan->arena, "%s%s", prefix, name);
   while (text && plan->column_count >= plan->axis_columns &&
          is_taken(plan, plan->axis_columns, text))
     text = strut_arena_format(&plan->arena, "run_%s", text);
+  assert(plan->column_count < plan->column_capacity);
   plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
   return text != NULL;
 }
@@ -90,7 +92,7 @@ static bool is_kept(const strut_study *study, const char *quantity) {
   return false;
 }
 
-/* The scene's quantities that are kept; where a column has the name of one, it gets another. */
+/* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
 static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
   const strut_experiment *e = &scene->experiment;
   for (size_t i = 0; i < e->quantity_count; i++) {
@@ -118,6 +120,7 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
       fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
   fine = fine && add_things(plan, scene) && add_quantities(plan, scene);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
+  if (fine && plan->start) fine = add_column(plan, "", "start_unstable", "1", false);
   if (fine && plan->check)
     fine = add_column(plan, "check_", "velocity", "m/s", false) &&
            add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
@@ -125,19 +128,22 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   return fine;
 }
 
-static strut_status make(strut_sweep_plan *plan, const strut_scene *scene, strut_error *error) {
+static strut_status choose_columns(strut_sweep_plan *plan, const strut_scene *scene,
+                                   strut_error *error) {
   const strut_study *study = plan->study;
   bool shapes = scene->configuration_count > 0;
   bool usual = !study->keep && !study->quantity_count;
   plan->keep = usual ? USUAL : study->keep;
   if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
+  plan->start = usual && scene->settle.wanted;
   plan->check = study->half_step || study->check_accuracy > 0.0;
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
   size_t quantities = scene->experiment.quantity_count;
-  size_t most = plan->axis_columns + ENTRIES + 4 + 2 * scene->contact_count +
+  size_t most = plan->axis_columns + ENTRIES + 5 + 2 * scene->contact_count +
                 2 * scene->node_count + quantities;
+  plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
   if (!plan->columns || !plan->quantities || !add_columns(plan, scene))
@@ -158,7 +164,7 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   strut_grid_values(study, 0, values);
   strut_status status = scenes->scene(scenes->context, values, &scene, error);
   if (status) return status;
-  status = make(plan, &scene, error);
+  status = choose_columns(plan, &scene, error);
   strut_scene_free(&scene);
   return status;
 }
@@ -168,17 +174,17 @@ void strut_sweep_plan_free(strut_sweep_plan *plan) {
   *plan = (strut_sweep_plan){0};
 }
 
-void strut_sweep_number(strut_row_buffer *room, double value) {
-  room->numbers[room->number_count++] = value;
+void strut_sweep_number(strut_row_buffer *cells, double value) {
+  cells->numbers[cells->number_count++] = value;
 }
 
-void strut_sweep_word(strut_row_buffer *room, const char *word) {
-  char *to = room->words[room->word_count++];
+void strut_sweep_word(strut_row_buffer *cells, const char *word) {
+  char *to = cells->words[cells->word_count++];
   memset(to, 0, STRUT_SLOT_WORD);
   for (size_t i = 0; i + 1 < STRUT_SLOT_WORD && word[i]; i++) to[i] = word[i];
 }
 
-/* The number of an entry; NAN where the summary has none. */
+/* The value of an entry; NAN if the summary has none. */
 static double number_of(const strut_summary *s, const strut_scene *scene, size_t index) {
   double period = strut_scene_span(scene).period;
   bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
@@ -222,34 +228,36 @@ static const char *word_of(const strut_summary *s, strut_keep keep) {
 }
 
 static void fill_things(const strut_sweep_plan *plan, const strut_scene *scene,
-                        const strut_summary *s, strut_row_buffer *room) {
+                        const strut_summary *s, strut_row_buffer *cells) {
   for (size_t i = 0; i < scene->contact_count && keeps(plan, STRUT_KEEP_CONTACTS); i++) {
     bool known = s && i < s->contact_count;
-    strut_sweep_number(room, known ? s->contacts[i].duty : (double)NAN);
-    strut_sweep_number(room, known ? s->contacts[i].max_height : (double)NAN);
+    strut_sweep_number(cells, known ? s->contacts[i].duty : (double)NAN);
+    strut_sweep_number(cells, known ? s->contacts[i].max_height : (double)NAN);
   }
   for (size_t i = 0; i < 2 * scene->node_count && keeps(plan, STRUT_KEEP_POSITIONS); i++)
-    strut_sweep_number(room, s && i < 2 * s->node_count ? s->positions[i] : (double)NAN);
+    strut_sweep_number(cells, s && i < 2 * s->node_count ? s->positions[i] : (double)NAN);
 }
 
-/* A variant may measure other quantities than the first point, whose names the table has. */
-static double measured(const strut_summary *s, const char *name) {
+/* A variant may lack a quantity of the first point, which names the columns. */
+static double measured_value(const strut_summary *s, const char *name) {
   for (size_t i = 0; i < s->measured_count; i++)
     if (strcmp(s->measured[i].name, name) == 0) return s->measured[i].value;
   return (double)NAN;
 }
 
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
-                      const strut_summary *summary, const char *outcome, strut_row_buffer *room) {
+                      const strut_summary *summary, const char *outcome, strut_row_buffer *cells) {
   for (size_t i = 0; i < ENTRIES; i++) {
     if (!keeps(plan, entries[i].keep)) continue;
     if (entries[i].word)
-      strut_sweep_word(room, summary ? word_of(summary, entries[i].keep) : "");
+      strut_sweep_word(cells, summary ? word_of(summary, entries[i].keep) : "");
     else
-      strut_sweep_number(room, summary ? number_of(summary, scene, i) : (double)NAN);
+      strut_sweep_number(cells, summary ? number_of(summary, scene, i) : (double)NAN);
   }
-  if (summary) fill_things(plan, scene, summary, room);
+  if (summary) fill_things(plan, scene, summary, cells);
   for (size_t i = 0; i < plan->quantity_count; i++)
-    strut_sweep_number(room, summary ? measured(summary, plan->quantities[i]) : (double)NAN);
-  if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(room, outcome);
+    strut_sweep_number(cells, summary ? measured_value(summary, plan->quantities[i]) : (double)NAN);
+  if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(cells, outcome);
+  if (plan->start)
+    strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
 }

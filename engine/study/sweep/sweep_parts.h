@@ -9,7 +9,7 @@
 #include "engine/study/sweep/equilibrium_cache.h"
 #include "engine/study/sweep/sweep.h"
 
-/** The room of one thread, taken once. */
+/** The cells of a row while its point is computed. */
 typedef struct strut_row_buffer {
   strut_study_value *values;       /* (axis columns) */
   double *numbers;                 /* (columns) */
@@ -21,11 +21,11 @@ typedef struct strut_row_buffer {
 
 /* sweep_columns.c */
 
-/** Appends what is kept of a run; summary NULL: nothing of it is known. outcome may be "". */
+/** Appends the kept values of a run; summary NULL: all missing. outcome may be "". */
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
-                      const strut_summary *summary, const char *outcome, strut_row_buffer *room);
-void strut_sweep_number(strut_row_buffer *room, double value);
-void strut_sweep_word(strut_row_buffer *room, const char *word);
+                      const strut_summary *summary, const char *outcome, strut_row_buffer *cells);
+void strut_sweep_number(strut_row_buffer *cells, double value);
+void strut_sweep_word(strut_row_buffer *cells, const char *word);
 
 /* sweep_point.c */
 
@@ -41,25 +41,28 @@ typedef enum strut_sweep_stage {
   STRUT_SWEEP_RUNNING
 } strut_sweep_stage;
 
-/** A point on its way. It stays where it is while it has one. */
+/** A point being computed. Must not move in memory meanwhile. */
 typedef struct strut_sweep_job {
   strut_sweep_stage stage;
   int64_t point;
-  strut_row_buffer room;
+  strut_row_buffer cells;
   strut_scene scene;
   strut_model *model; /* of the scene, where someone has compiled it */
   strut_run_options options;
   strut_sink *sinks[1];
   struct strut_sweep_record *files;
-  char first[STRUT_SLOT_WORD]; /* what the first run came to, while the second is made */
+  char first[STRUT_SLOT_WORD]; /* outcome of the first run, during the second */
   bool second;
-  strut_status status; /* at the end: STRUT_OK, and room.row is filled; else what stops the sweep */
+  size_t warning_count; /* of the first run */
+  strut_warning warnings[STRUT_MOST_WARNINGS];
+  strut_status
+      status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */
   strut_error error;
 } strut_sweep_job;
 
-/** An idle job gets a point. True: it waits for its run. False: it is over already. */
+/** Starts a point on an idle job. True: it waits for its run. False: it has ended already. */
 bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
-/** Takes what the run came to, and frees the summary. True: it waits for another run. */
+/** Stores the result of the run and frees the summary. True: the job waits for another run. */
 bool strut_sweep_job_take(const strut_sweep_worker *worker, strut_sweep_job *job,
                           strut_status status, strut_summary *summary, const strut_error *error);
 /** The model of a waiting job, if it has none yet. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One point of a sweep: its scene, its run, once more for the check, its row. Whoever runs it. */
+/* One point of a sweep: its scene, its run, a second run for the check, and its row. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,38 +15,39 @@ static bool stops(strut_status status) {
 }
 
 /* What is not known of a point that failed. */
-static void pad(const strut_sweep_plan *plan, strut_row_buffer *room) {
+static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   size_t words = 0;
   for (size_t i = 0; i < plan->column_count; i++) words += plan->columns[i].word;
-  while (room->word_count < words) strut_sweep_word(room, "");
-  while (room->number_count < plan->column_count - words) strut_sweep_number(room, (double)NAN);
+  while (cells->word_count < words) strut_sweep_word(cells, "");
+  while (cells->number_count < plan->column_count - words) strut_sweep_number(cells, (double)NAN);
 }
 
-/* The point is over: its row, or what stops the sweep. */
-static bool end(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
-  strut_row_buffer *room = &job->room;
+/* Ends the point with its row, or with an error that stops the sweep. */
+static bool finish_point(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
+  strut_row_buffer *cells = &job->cells;
   job->stage = STRUT_SWEEP_IDLE;
   job->status = stops(status) ? status : STRUT_OK;
   if (job->status) return false;
   if (status) {
-    pad(w->plan, room);
-    snprintf(room->message, sizeof room->message, "%.*s", (int)sizeof room->message - 1,
+    pad_cells(w->plan, cells);
+    snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
              job->error.message);
   }
-  room->row = (strut_slot){.status = status,
-                           .numbers = room->numbers,
-                           .words = (const char(*)[STRUT_SLOT_WORD])room->words,
-                           .message = room->message};
+  cells->row = (strut_slot){.status = status,
+                            .numbers = cells->numbers,
+                            .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
+                            .message = cells->message};
   return false;
 }
 
 /* The same where the point has a scene. */
-static bool end_scene(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
+static bool finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
+                              strut_status status) {
   strut_scene_free(&job->scene);
-  return end(w, job, status);
+  return finish_point(w, job, status);
 }
 
-/* As `strut run` writes it, into a folder of its own where that is wanted. */
+/* Records the run into its own folder, as `strut run -o` does, if the study asks for it. */
 static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *job) {
   job->options = (strut_run_options){.interrupt = w->options->interrupt};
   job->files = NULL;
@@ -64,26 +65,27 @@ static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *j
 
 bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
   const strut_sweep_plan *plan = w->plan;
-  strut_row_buffer *room = &job->room;
-  room->number_count = room->word_count = 0;
-  room->message[0] = '\0';
+  strut_row_buffer *cells = &job->cells;
+  cells->number_count = cells->word_count = 0;
+  cells->message[0] = '\0';
   job->point = point;
   job->model = NULL;
   job->second = false;
+  job->warning_count = 0;
   job->error = (strut_error){0};
-  strut_grid_values(plan->study, point, room->values);
+  strut_grid_values(plan->study, point, cells->values);
   for (size_t i = 0; i < plan->axis_columns; i++) {
     if (plan->columns[i].word)
-      strut_sweep_word(room, room->values[i].word);
+      strut_sweep_word(cells, cells->values[i].word);
     else
-      strut_sweep_number(room, room->values[i].number);
+      strut_sweep_number(cells, cells->values[i].number);
   }
   strut_status status =
-      plan->scenes.scene(plan->scenes.context, room->values, &job->scene, &job->error);
-  if (status) return end(w, job, status);
+      plan->scenes.scene(plan->scenes.context, cells->values, &job->scene, &job->error);
+  if (status) return finish_point(w, job, status);
   status = strut_equilibrium_cache_resolve(w->standing, &job->scene, &job->error);
   if (!status) status = begin_record(w, job);
-  if (status) return end_scene(w, job, status);
+  if (status) return finish_with_scene(w, job, status);
   job->stage = STRUT_SWEEP_WAITING;
   return true;
 }
@@ -100,8 +102,8 @@ static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *j
   return status;
 }
 
-/* The experiment of the check. */
-static void refine(const strut_study *study, strut_experiment *e) {
+/* Refines the experiment for the check. */
+static void refine_experiment(const strut_study *study, strut_experiment *e) {
   if (study->check_accuracy > 0.0) {
     e->accuracy = study->check_accuracy;
   } else if (e->accuracy > 0.0) {
@@ -112,14 +114,14 @@ static void refine(const strut_study *study, strut_experiment *e) {
   }
 }
 
-static const char *told(const strut_sweep_worker *w, const strut_summary *summary,
-                        const char *outcome) {
+static const char *outcome_word(const strut_sweep_worker *w, const strut_summary *summary,
+                                const char *outcome) {
   static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
   return w->plan->flips ? outcome : kinds[summary->steady.kind];
 }
 
-static bool take_first(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
-                       const strut_summary *summary) {
+static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
+                             const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
   bool began = status == STRUT_OK || status == STRUT_DIVERGED;
   if (job->files) {
@@ -128,11 +130,13 @@ static bool take_first(const strut_sweep_worker *w, strut_sweep_job *job, strut_
     if (written) status = strut_fail(&job->error, written, "%s", late.message);
   }
   if (!status) status = name_outcome(w, job, summary, outcome);
-  if (status) return end_scene(w, job, status);
-  strut_sweep_fill(w->plan, &job->scene, summary, outcome, &job->room);
-  if (!w->plan->check) return end_scene(w, job, STRUT_OK);
-  snprintf(job->first, sizeof job->first, "%s", told(w, summary, outcome));
-  refine(w->plan->study, &job->scene.experiment);
+  if (status) return finish_with_scene(w, job, status);
+  job->warning_count = summary->warning_count;
+  memcpy(job->warnings, summary->warnings, sizeof job->warnings);
+  strut_sweep_fill(w->plan, &job->scene, summary, outcome, &job->cells);
+  if (!w->plan->check) return finish_with_scene(w, job, STRUT_OK);
+  snprintf(job->first, sizeof job->first, "%s", outcome_word(w, summary, outcome));
+  refine_experiment(w->plan->study, &job->scene.experiment);
   job->options = (strut_run_options){.interrupt = w->options->interrupt};
   job->second = true;
   job->error = (strut_error){0};
@@ -140,19 +144,19 @@ static bool take_first(const strut_sweep_worker *w, strut_sweep_job *job, strut_
   return true;
 }
 
-/* A second run that fails has ended elsewhere. */
-static bool take_second(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
-                        const strut_summary *summary) {
+/* A second run that fails counts as another outcome. */
+static bool finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
+                              strut_status status, const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
-  strut_row_buffer *room = &job->room;
+  strut_row_buffer *cells = &job->cells;
   if (!status) status = name_outcome(w, job, summary, outcome);
-  const char *word = status ? "failed" : told(w, summary, outcome);
+  const char *word = status ? "failed" : outcome_word(w, summary, outcome);
   bool same = !status && strcmp(job->first, word) == 0;
-  strut_sweep_number(room, status ? (double)NAN : summary->velocity);
-  strut_sweep_word(room, word);
-  strut_sweep_number(room, same ? 0.0 : 1.0);
+  strut_sweep_number(cells, status ? (double)NAN : summary->velocity);
+  strut_sweep_word(cells, word);
+  strut_sweep_number(cells, same ? 0.0 : 1.0);
   if (stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
-  return end_scene(w, job, stops(status) ? status : STRUT_OK);
+  return finish_with_scene(w, job, stops(status) ? status : STRUT_OK);
 }
 
 bool strut_sweep_job_take(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
@@ -160,8 +164,8 @@ bool strut_sweep_job_take(const strut_sweep_worker *w, strut_sweep_job *job, str
   if (error != &job->error) job->error = *error;
   strut_model_free(job->model);
   job->model = NULL;
-  bool more =
-      job->second ? take_second(w, job, status, summary) : take_first(w, job, status, summary);
+  bool more = job->second ? finish_second_run(w, job, status, summary)
+                          : finish_first_run(w, job, status, summary);
   strut_summary_free(summary);
   return more;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The motion of one run of a sweep, as `strut run -o` writes it; the HDF5 library is one thread's. */
+/* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
 #include <dirent.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -52,7 +52,7 @@ static void discard(strut_sweep_record *record) {
 #pragma omp critical(strut_sweep_hdf5)
 #endif
   strut_hdf5_free(record->hdf5);
-  strut_results_abandon(&record->results); /* nothing where it is complete */
+  strut_results_abandon(&record->results); /* does nothing once it is complete */
   strut_release(record->scene_text);
   strut_release(record);
 }
@@ -91,7 +91,7 @@ void strut_sweep_records_clear(const char *directory) {
   for (struct dirent *entry = entries ? readdir(entries) : NULL; entry; entry = readdir(entries)) {
     if (entry->d_name[0] == '.') continue;
     char *path = strut_arena_format(&arena, "%s/%s", runs, entry->d_name);
-    if (path && strut_stage_sweep(path)) rmdir(path); /* which fails where anything else is in it */
+    if (path && strut_stage_sweep(path)) rmdir(path); /* fails unless it is empty */
   }
   if (entries) closedir(entries);
   strut_arena_free(&arena);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What an answer costs: methods, steps and models of one scene against converged references.
+ * Error against cost: methods, steps and model variants of one scene against converged references.
  *
  * Two errors are kept apart. The *step error* of a run is its distance from the converged answer of
- * the same model. The *model error* of a fidelity (lumped masses, another friction law, ...) is the
+ * the same model. The *model error* of a variant (lumped masses, another friction law, ...) is the
  * distance of its converged answer from that of the scene's own model. The *total error* is the
  * distance of a run from the latter.
  *
@@ -25,34 +25,34 @@ typedef enum strut_tradeoff_measure {
                                 0; else position */
   STRUT_TRADEOFF_VELOCITY,  /* summary.velocity, relative to it or to `scale` if that is larger */
   STRUT_TRADEOFF_POSITION,  /* of all nodes at the end: the farthest off, over the scene's size */
-  STRUT_TRADEOFF_ENERGY     /* |energy residual| over the energy moved; needs no reference */
+  STRUT_TRADEOFF_ENERGY     /* |energy residual| over the energy exchanged; needs no reference */
 } strut_tradeoff_measure;
 
 enum { STRUT_TRADEOFF_MOST_STEPS = 40 };
 
-/** Zero-initialised: as many steps, periods and repeats as are usual. */
+/** Zero-initialise for the defaults. */
 typedef struct strut_tradeoff_options {
   strut_tradeoff_measure measure;
-  int steps;      /* of each method, five in a decade from its limit down; 0: 8 */
-  double periods; /* of a run given in periods, at most; 0: 120 */
-  double budget;  /* CPU time [s] that may be spent about; 0: 120 */
+  int steps;      /* per method, five per decade from its limit down; 0: 8 */
+  double periods; /* maximum for a run given in periods; 0: 120 */
+  double budget;  /* approximate CPU time [s]; 0: 120 */
   int repeats;    /* of a short run, for its CPU time; 0: 5 */
   const strut_integrator *const *methods; /* (method_count) only these; 0: all */
   size_t method_count;
-  bool own_model;                                   /* leave out other fidelities */
+  bool own_model;                                   /* skip variants of the model */
   const volatile sig_atomic_t *interrupt;           /* may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
 } strut_tradeoff_options;
 
-/** Over the operating points. Infinite: diverged. */
+/** Statistics over the operating points. Infinite: diverged. */
 typedef struct strut_spread {
   double median; /* of an even number the mean of the middle two */
-  double ninety; /* 90th percentile: the smallest value that 90 % do not exceed */
+  double ninety; /* 90th percentile */
   double worst;
 } strut_spread;
 
-/** A model of the scene. The first is the scene's own. */
+/** A variant of the model. The first is the unchanged one. */
 typedef struct strut_model_variant {
   char name[120];   /* such as "lumped masses" */
   char remark[600]; /* why it could not be run, or what was assumed; may be empty */
@@ -66,8 +66,8 @@ typedef struct strut_model_variant {
 
 /** One setting, run at every operating point. */
 typedef struct strut_tradeoff_row {
-  int fidelity; /* index */
-  int group;    /* settings that differ by their step or tolerance alone */
+  int variant; /* index */
+  int group;   /* settings that differ by their step or tolerance alone */
   const strut_integrator *method;
   bool base;        /* the setting that costs are relative to */
   double step;      /* [s]; fitted to each point's periods. Of an adaptive method the largest */
@@ -80,14 +80,14 @@ typedef struct strut_tradeoff_row {
   double evaluations; /* of the forces over those of the base: median over the points */
   double cpu;         /* CPU time over that of the base, measured in turn; NAN: not measured */
   double seconds;     /* CPU time of a run, median [s]; NAN: not measured */
-  bool front;         /* no other of its model is as cheap and as good: `evaluations`, worst */
+  bool front; /* Pareto-optimal among the rows of its variant, by `evaluations` and worst error */
 } strut_tradeoff_row;
 
-/** All of it; strut_tradeoff_free. Names and methods outlive it. */
+/** A study; release with strut_tradeoff_free. Names and methods outlive it. */
 typedef struct strut_tradeoff {
   const char *name; /* of the scene */
   strut_tradeoff_measure measure;
-  size_t point_count, value_count, fidelity_count, row_count, group_count;
+  size_t point_count, value_count, variant_count, row_count, group_count;
   double scale;    /* velocities below it have errors relative to it [m/s]; of the first point */
   double periods;  /* run; 0 where the run is given in seconds */
   double duration; /* of the first point [s] */
@@ -96,7 +96,7 @@ typedef struct strut_tradeoff {
   size_t base;     /* row */
   size_t left_out; /* settings for which the budget did not suffice */
   double spent;    /* CPU time [s] */
-  strut_model_variant *fidelities;
+  strut_model_variant *variants;
   strut_tradeoff_row *rows;
   strut_arena arena;
 } strut_tradeoff;
@@ -115,16 +115,33 @@ STRUT_API void strut_tradeoff_free(strut_tradeoff *result);
 /** Median, 90th percentile and worst of (count) values; scratch holds as many. */
 STRUT_API strut_spread strut_spread_of(const double *values, size_t count, double *scratch);
 
-/** Errors for which strut_tradeoff_best is asked, in the order in which they are told. */
+/** Error levels of the recommendations. */
 enum { STRUT_TRADEOFF_LEVELS = 4 };
 STRUT_API double strut_tradeoff_level(int i);
 /** The largest worst total error of a row and of all finer ones of its group. */
 STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
 /**
- * The cheapest row of a fidelity whose worst total error stays within `level`, and that of all
+ * The cheapest row of a variant whose worst total error stays within `level`, and that of all
  * smaller steps or tolerances of its group too: a single small error at a large step is luck. -1:
  * none.
  */
-STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int fidelity, double level);
+STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int variant, double level);
+
+/**
+ * Texts in blocks of strut_allocate; NULL: memory was out. CPU times in them are measurements: they
+ * differ from run to run, everything else does not while the budget suffices.
+ */
+STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
+/** scenes: the operating points, whose parameters are listed. */
+STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_scene *const *scenes);
+/** One row per setting, the spreads over the operating points; diverged: "inf". */
+STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
+
+/**
+ * Draws it into the file `path`, `width` [pt] wide. Over several operating points a marker is the
+ * median and a bar leads to the worst. As strut_canvas_open and strut_canvas_commit.
+ */
+STRUT_API strut_status strut_tradeoff_figure(const char *path, double width,
+                                             const strut_tradeoff *result, strut_error *error);
 
 #endif

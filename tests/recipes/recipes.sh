@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The recipes for a friction law and a method of integration do what they promise: copies the sources,
+# applies the ```diff blocks of docs/recipes.md, compiles what recipes.c runs, and runs it.
+# Usage: recipes.sh ROOT SCRATCH CC INCLUDES LIBRARIES
+set -eu
+root=$1 scratch=$2 cc=$3 includes=$4 libraries=$5
+command -v patch >/dev/null || { echo "skipped: no patch here"; exit 77; }
+rm -rf "$scratch"
+mkdir -p "$scratch/tests"
+cp -R "$root/engine" "$root/parser" "$scratch/"
+cp -R "$root/tests/recipes" "$scratch/tests/"
+awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
+  END { exit blocks == 0 }' "$root/docs/recipes.md" >"$scratch/recipes.diff"
+cd "$scratch"
+patch -s -p1 <recipes.diff
+
+# Without kernels for several runs in lanes, which take long to compile.
+sources="tests/recipes/recipes.c $(ls engine/base/*.c engine/scene/*.c engine/model/*.c \
+  engine/forces/*.c engine/integrate/*.c engine/integrate/events/*.c engine/integrate/limit/*.c \
+  parser/*.c parser/yaml/*.c parser/expression/*.c parser/language/*.c parser/read/*.c \
+  parser/write/*.c)"
+# shellcheck disable=SC2086
+printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
+  for file; do
+    $cc -std=c17 -D_POSIX_C_SOURCE=200809L -DSTRUT_VERSION="\"recipes\"" -ffp-contract=off \
+      -fno-math-errno -Wno-psabi -O0 -I. $includes -c "$file" \
+      -o "$(echo "$file" | tr / _).o" || exit 255
+  done' sh "$cc" "$includes"
+# shellcheck disable=SC2086
+$cc ./*.o -o recipes $libraries -lm
+./recipes
