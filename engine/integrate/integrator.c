@@ -27,9 +27,10 @@ static int32_t sticking(const strut_model *model) {
   return -1;
 }
 
-strut_status strut_integrator_check(const strut_model *model, strut_error *error) {
+strut_status strut_integrator_check(const strut_model *model, const strut_experiment *experiment,
+                                    strut_error *error) {
   const strut_scene *scene = model->scene;
-  const char *name = scene->experiment.integrator;
+  const char *name = experiment->integrator;
   const strut_integrator *method = strut_integrator_find(name);
   if (!method) return strut_fail(error, STRUT_USAGE, "there is no integrator '%s'", name);
   int32_t exact = sticking(model);

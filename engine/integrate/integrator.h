@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
 
 #include "engine/forces/forces.h"
+#include "engine/scene/experiment.h"
 
 /** Which steps are stable, by the eigenvalues of small motions: see stability.h. */
 typedef enum strut_region {
@@ -15,6 +16,13 @@ typedef enum strut_region {
   STRUT_REGION_EULER,
   STRUT_REGIONS
 } strut_region;
+
+/** What a method is set up for, beside the model; see strut_experiment. */
+typedef struct strut_integrator_settings {
+  double step;      /* wanted [s]; a run may take slightly shorter ones, to divide a period */
+  double tolerance; /* of error control [1] */
+  double refine, refine_time, refine_rate, refine_memory;
+} strut_integrator_settings;
 
 /** A method. Its workspace belongs to one state, whose arena holds it: freeing the state frees it. */
 typedef struct strut_integrator {
@@ -28,7 +36,8 @@ typedef struct strut_integrator {
   bool rigid;           /* keeps the lengths of rigid bars */
   bool no_ground;       /* cannot step over contacts */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
-  void *(*create)(const strut_model *model, strut_state *state);
+  void *(*create)(const strut_model *model, strut_state *state,
+                  const strut_integrator_settings *settings);
   /** Must be called whenever someone else has changed q or v; NULL where nothing depends on it. */
   void (*restart)(const strut_model *model, strut_state *state, void *workspace, double dt);
   /**
@@ -43,13 +52,24 @@ typedef struct strut_integrator {
 STRUT_API const strut_integrator *strut_integrator_at(size_t i);
 /** The method of that name, or NULL. */
 STRUT_API const strut_integrator *strut_integrator_find(const char *name);
+/** The settings of an experiment's method. */
+static inline strut_integrator_settings strut_integrator_settings_of(const strut_experiment *e) {
+  return (strut_integrator_settings){.step = e->step,
+                                     .tolerance = e->tolerance,
+                                     .refine = e->refine,
+                                     .refine_time = e->refine_time,
+                                     .refine_rate = e->refine_rate,
+                                     .refine_memory = e->refine_memory};
+}
 /**
- * Can the scene's method run the model? STRUT_USAGE, with what to change, where there is no such
+ * Can the experiment's method run the model? STRUT_USAGE, with what to change, where there is no such
  * method, exact Coulomb friction has none with events, contacts have one that cannot step over them,
  * or rigid bars have none that keeps them;
  * STRUT_SINGULAR with the bar where rigid bars hold each other.
  */
-STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_error *error);
+STRUT_API strut_status strut_integrator_check(const strut_model *model,
+                                              const strut_experiment *experiment,
+                                              strut_error *error);
 
 /* The rows of the table. */
 extern const strut_integrator strut_integrator_rk4, strut_integrator_euler, strut_integrator_verlet,

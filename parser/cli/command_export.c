@@ -20,10 +20,11 @@ static const strut_option options[] = {
 };
 
 static strut_status write_matrices(const strut_arguments *arguments, const char *directory,
-                                   const strut_model *model, strut_error *error) {
+                                   const strut_model *model, const strut_experiment *experiment,
+                                   strut_error *error) {
   strut_arena arena = {0};
   strut_named_shape shape;
-  strut_status status = strut_named_shape_find(arguments, model, &arena, &shape, error);
+  strut_status status = strut_named_shape_find(arguments, model, experiment, &arena, &shape, error);
   if (status == STRUT_OK)
     status = strut_matrices_write(directory, model, shape.q, shape.name, error);
   strut_arena_free(&arena);
@@ -45,7 +46,7 @@ static strut_status export_format(const strut_arguments *arguments, const char *
 
 static strut_status run(const strut_arguments *arguments) {
   const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
   if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
@@ -55,13 +56,14 @@ static strut_status run(const strut_arguments *arguments) {
                               : "where to? give --matrices DIR, or --format vtk -o DIR");
     return STRUT_USAGE;
   }
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = write_matrices(arguments, directory, model, &error);
+  status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK)
+    status = write_matrices(arguments, directory, model, &setup.experiment, &error);
   if (status != STRUT_OK) strut_print_error(&error);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

@@ -67,12 +67,13 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
 }
 
 static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
-                           const strut_path_options *wanted, const strut_scene *scene) {
+                           const strut_path_options *wanted, const strut_setup *setup) {
   strut_path path = {0};
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_model_compile(scene, &model, &error);
-  if (status == STRUT_OK) status = strut_path_follow(model, wanted, &path, &error);
+  strut_status status = strut_model_compile(&setup->scene, &model, &error);
+  if (status == STRUT_OK)
+    status = strut_path_follow(model, &setup->experiment, wanted, &path, &error);
   if (status == STRUT_OK)
     status = report(arguments, plot, model, &path);
   else
@@ -83,7 +84,7 @@ static strut_status follow(const strut_arguments *arguments, const strut_plot *p
 }
 
 static strut_status run(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_path_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT)};
   strut_path_over_source source = {0};
   strut_plot plot;
@@ -95,12 +96,12 @@ static strut_status run(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_check_output_writable(arguments, file_names);
   if (status != STRUT_OK) return status;
-  status = strut_open_model_text(arguments, &source.text, &source.length, &scene);
+  status = strut_open_model_text(arguments, &source.text, &source.length, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_path_over_read(&strut_command_path, arguments, &scene, &source, &wanted);
-  if (status == STRUT_OK) status = follow(arguments, &plot, &wanted, &scene);
+  status = strut_path_over_read(&strut_command_path, arguments, &setup.scene, &source, &wanted);
+  if (status == STRUT_OK) status = follow(arguments, &plot, &wanted, &setup);
   strut_path_over_free(&source);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

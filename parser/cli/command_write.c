@@ -12,13 +12,13 @@ static const strut_option options[] = {
 };
 
 static strut_status run(const strut_arguments *arguments) {
-  strut_scene scene;
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
+  strut_setup setup;
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &setup);
   if (status != STRUT_OK) return status;
-  char *text = strut_scene_write(&scene);
+  char *text = strut_setup_write(&setup);
   status = text ? strut_print(text) : strut_print_out_of_memory();
   strut_release(text);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

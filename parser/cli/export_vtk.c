@@ -10,10 +10,12 @@
 #include "parser/cli/streams.h"
 
 /* A motion of one frame at rest, in the arena: the shape, its lengths and its elastic forces. */
-static strut_status still_of(const strut_arguments *arguments, const strut_model *model,
+static strut_status still_of(const strut_arguments *arguments, const strut_opened *opened,
                              strut_arena *arena, strut_trajectory *motion, strut_error *error) {
+  const strut_model *model = opened->model;
   strut_named_shape shape;
-  strut_status status = strut_named_shape_find(arguments, model, arena, &shape, error);
+  strut_status status =
+      strut_named_shape_find(arguments, model, &opened->setup.experiment, arena, &shape, error);
   if (status != STRUT_OK) return status;
   const strut_member_table *table = &model->members;
   size_t nodes = model->scene->node_count, members = model->scene->member_count;
@@ -58,7 +60,7 @@ strut_status strut_export_vtk(const strut_command *command, const strut_argument
   if (opened.run && strut_option_text(arguments, STRUT_OPTION_AT)) {
     status = strut_fail(&error, STRUT_USAGE, "--at is for models: a run has its own shapes");
   } else if (!opened.run) {
-    status = still_of(arguments, opened.model, &arena, &still, &error);
+    status = still_of(arguments, &opened, &arena, &still, &error);
   }
   const strut_trajectory *motion = opened.run ? &opened.motion : &still;
   if (status == STRUT_OK)

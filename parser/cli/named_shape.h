@@ -6,6 +6,7 @@
 #define STRUT_PARSER_CLI_NAMED_SHAPE_H
 
 #include "engine/model/model.h"
+#include "engine/scene/experiment.h"
 #include "parser/cli/options.h"
 
 typedef struct strut_named_shape {
@@ -15,7 +16,7 @@ typedef struct strut_named_shape {
 
 /** STRUT_OK, or what strut_rest_state_find fails with. */
 strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    strut_arena *arena, strut_named_shape *shape,
-                                    strut_error *error);
+                                    const strut_experiment *experiment, strut_arena *arena,
+                                    strut_named_shape *shape, strut_error *error);
 
 #endif

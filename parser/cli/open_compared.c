@@ -47,10 +47,10 @@ static const char *label_of(strut_compared *compared, size_t number, const char 
 
 /* ---- reading ---- */
 
-static strut_status read_scene(const source *from, const strut_override *overrides, size_t count,
-                               strut_scene *scene) {
+static strut_status read_setup(const source *from, const strut_override *overrides, size_t count,
+                               strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_scene_read(scene, from->shown, from->text, from->length, overrides,
+  strut_status status = strut_setup_read(setup, from->shown, from->text, from->length, overrides,
                                          count, STRUT_FOR_ANY, &diagnostics);
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
@@ -91,9 +91,9 @@ static strut_status open_one(const strut_arguments *arguments, strut_compared *c
   const char *path = arguments->models[number];
   source from = {.path = path, .shown = strcmp(path, "-") == 0 ? "<stdin>" : path};
   strut_compare_input *input = &compared->inputs[number];
-  strut_scene *scene = &compared->scenes[number];
+  strut_setup *setup = &compared->setups[number];
   strut_error error = {0};
-  input->scene = scene;
+  input->setup = setup;
   input->label = label_of(compared, number, path);
   if (!input->label) return strut_print_out_of_memory();
   strut_status status = strut_file_read(path, &from.text, &from.length, &error);
@@ -101,11 +101,11 @@ static strut_status open_one(const strut_arguments *arguments, strut_compared *c
     strut_print_error(&error);
     return status;
   }
-  status = read_scene(&from, NULL, 0, scene);
-  if (status == STRUT_OK) status = sort_settings(arguments, scene, compared, number, &from);
+  status = read_setup(&from, NULL, 0, setup);
+  if (status == STRUT_OK) status = sort_settings(arguments, &setup->scene, compared, number, &from);
   if (status == STRUT_OK && from.known_count > 0) {
-    strut_scene_free(scene);
-    status = read_scene(&from, from.known, from.known_count, scene);
+    strut_setup_free(setup);
+    status = read_setup(&from, from.known, from.known_count, setup);
   }
   strut_release(from.text);
   return status;
@@ -117,8 +117,9 @@ static strut_status open_one(const strut_arguments *arguments, strut_compared *c
 static const char *parameter_at(const void *context, size_t i) {
   const strut_compared *compared = context;
   for (size_t k = 0; k < compared->count; k++) {
-    if (i < compared->scenes[k].parameter_count) return compared->scenes[k].parameters[i].name;
-    i -= compared->scenes[k].parameter_count;
+    if (i < compared->setups[k].scene.parameter_count)
+      return compared->setups[k].scene.parameters[i].name;
+    i -= compared->setups[k].scene.parameter_count;
   }
   return NULL;
 }
@@ -129,7 +130,7 @@ static strut_status check_settings(const strut_command *command, const strut_arg
     const char *name = arguments->overrides[i].name;
     bool known = false;
     for (size_t k = 0; k < compared->count; k++)
-      known = known || has_parameter(&compared->scenes[k], name);
+      known = known || has_parameter(&compared->setups[k].scene, name);
     if (known) continue;
     const char *near = strut_did_you_mean(name, parameter_at, compared);
     fprintf(stderr, "strut %s: --set %s: no model has such a parameter", command->name, name);
@@ -143,12 +144,12 @@ static strut_status check_settings(const strut_command *command, const strut_arg
 /* Before starts are resolved, so that what was written is compared and not what follows from it. */
 static strut_status find_differences(strut_compared *compared) {
   strut_status status = STRUT_OK;
-  char *first = strut_scene_write(&compared->scenes[0]);
+  char *first = strut_setup_write(&compared->setups[0]);
   if (!first) return strut_print_out_of_memory();
   for (size_t i = 1; i < compared->count && status == STRUT_OK; i++) {
     strut_compare_input *input = &compared->inputs[i];
     strut_difference *list = NULL;
-    char *text = strut_scene_write(&compared->scenes[i]);
+    char *text = strut_setup_write(&compared->setups[i]);
     status = text ? strut_text_differences(first, text, &compared->arena, &list,
                                            &input->difference_count)
                   : STRUT_NO_MEMORY;
@@ -184,8 +185,8 @@ strut_status strut_compared_open(const strut_command *command, const strut_argum
   *compared = (strut_compared){.count = 0};
   if (status != STRUT_OK) return status;
   compared->inputs = strut_arena_allocate(&compared->arena, count, sizeof *compared->inputs);
-  compared->scenes = strut_arena_allocate(&compared->arena, count, sizeof *compared->scenes);
-  if (!compared->inputs || !compared->scenes) status = strut_print_out_of_memory();
+  compared->setups = strut_arena_allocate(&compared->arena, count, sizeof *compared->setups);
+  if (!compared->inputs || !compared->setups) status = strut_print_out_of_memory();
   for (size_t i = 0; i < count && status != STRUT_NO_MEMORY; i++) {
     strut_status here = open_one(arguments, compared, i);
     compared->count = i + 1;
@@ -198,7 +199,7 @@ strut_status strut_compared_open(const strut_command *command, const strut_argum
 }
 
 void strut_compared_free(strut_compared *compared) {
-  for (size_t i = 0; i < compared->count; i++) strut_scene_free(&compared->scenes[i]);
+  for (size_t i = 0; i < compared->count; i++) strut_setup_free(&compared->setups[i]);
   strut_arena_free(&compared->arena);
   *compared = (strut_compared){0};
 }

@@ -12,7 +12,7 @@
 typedef struct strut_compared {
   size_t count;
   strut_compare_input *inputs; /* (count) */
-  strut_scene *scenes;         /* (count) */
+  strut_setup *setups;         /* (count) */
   strut_arena arena;           /* of names and differences */
 } strut_compared;
 

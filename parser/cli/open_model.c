@@ -21,7 +21,7 @@ typedef struct source {
 } source;
 
 static strut_status read_source(const strut_arguments *arguments, const source *from,
-                                strut_purpose purpose, strut_scene *scene) {
+                                strut_purpose purpose, strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
   strut_error error = {0};
   strut_status status = strut_memory_check_document(from->name, from->text, from->length, &error);
@@ -29,7 +29,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
     strut_print_error(&error);
     return status;
   }
-  status = strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
+  status = strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
                             arguments->override_count, purpose, &diagnostics);
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
@@ -39,7 +39,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
   if (status == STRUT_OK && diagnostics.note_count) {
     const char *notes = strut_diagnostics_render_notes(&diagnostics);
     if (notes) fputs(notes, stderr);
-    if (!notes) strut_scene_free(scene);
+    if (!notes) strut_setup_free(setup);
     if (!notes) status = STRUT_NO_MEMORY;
   }
   if (status == STRUT_NO_MEMORY) {
@@ -51,7 +51,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
 }
 
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
-                              strut_scene *scene) {
+                              strut_setup *setup) {
   source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
   strut_error error = {0};
   strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
@@ -63,20 +63,20 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
               strut_option_text(arguments, STRUT_OPTION_STEP);
   strut_purpose run = told ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
   status =
-      read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, scene);
+      read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, setup);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
-  status = strut_resolve_start_equilibrium(scene, &error);
+  status = strut_resolve_start_equilibrium(setup, &error);
   if (status != STRUT_OK) {
     strut_print_error(&error);
-    strut_scene_free(scene);
+    strut_setup_free(setup);
   }
   return status;
 }
 
-strut_status strut_warn_of_scene(const strut_scene *scene) {
+strut_status strut_warn_of_scene(const strut_setup *setup) {
   strut_findings warnings = {0};
-  strut_status status = strut_scene_warn(scene, &warnings);
+  strut_status status = strut_setup_warn(setup, &warnings);
   for (size_t i = 0; i < warnings.count && !status; i++)
     fprintf(stderr, "strut: warning: %s\n", warnings.items[i].message);
   strut_findings_free(&warnings);
@@ -84,7 +84,7 @@ strut_status strut_warn_of_scene(const strut_scene *scene) {
 }
 
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
-                                   strut_scene *scene) {
+                                   strut_setup *setup) {
   source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
   strut_error error = {0};
   strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
@@ -93,7 +93,7 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
     strut_print_error(&error);
     return status;
   }
-  status = read_source(arguments, &from, STRUT_FOR_ANY, scene);
+  status = read_source(arguments, &from, STRUT_FOR_ANY, setup);
   if (status != STRUT_OK) {
     strut_release(from.text);
     return status;

@@ -40,7 +40,7 @@ static strut_status check_files(const char *directory, const char *scene, const 
 static strut_status read_motion(const char *directory, size_t room, strut_opened *opened,
                                 strut_error *error) {
   strut_status status =
-      strut_trajectory_read(directory, &opened->scene, room, &opened->motion, error);
+      strut_trajectory_read(directory, &opened->setup.scene, room, &opened->motion, error);
   if (status != STRUT_OK) return status;
   if (opened->motion.position && opened->motion.frames > 0) return STRUT_OK;
   return strut_fail(error, STRUT_FILE_TROUBLE,
@@ -63,9 +63,9 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;
   inner.model = scene;
-  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->scene);
+  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->setup);
   if (status != STRUT_OK) return status;
-  status = strut_model_compile(&opened->scene, &opened->model, error);
+  status = strut_model_compile(&opened->setup.scene, &opened->model, error);
   if (status == STRUT_OK) status = read_motion(directory, room, opened, error);
   size_t length = 0;
   struct stat found;
@@ -88,8 +88,9 @@ strut_status strut_open_run(const strut_command *command, const strut_arguments 
   if (opened->run) {
     status = open_directory(arguments, room, &arena, opened, &error);
   } else {
-    status = strut_open_model(arguments, purpose, &opened->scene);
-    if (status == STRUT_OK) status = strut_model_compile(&opened->scene, &opened->model, &error);
+    status = strut_open_model(arguments, purpose, &opened->setup);
+    if (status == STRUT_OK)
+      status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
   }
   if (status != STRUT_OK && error.status != STRUT_OK) strut_print_error(&error);
   if (status != STRUT_OK) strut_opened_free(opened);
@@ -101,6 +102,6 @@ void strut_opened_free(strut_opened *opened) {
   strut_release(opened->summary);
   strut_trajectory_free(&opened->motion);
   strut_model_free(opened->model);
-  strut_scene_free(&opened->scene);
+  strut_setup_free(&opened->setup);
   *opened = (strut_opened){0};
 }

@@ -12,7 +12,7 @@
 /** Stays where it is while in use: the model refers to the scene. Zero-initialise. */
 typedef struct strut_opened {
   bool run; /* the argument was a directory that `strut run -o` made */
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_trajectory motion; /* of a run: positions are there, in one frame or more */
   char *summary;           /* of a run: the text of its summary.json, or NULL where there is none */

@@ -57,7 +57,7 @@ static strut_status check(const strut_command *command, const strut_override *va
 }
 
 static strut_status open_one(const strut_command *command, const strut_arguments *arguments,
-                             uint64_t *seed, size_t number, strut_scene *scene) {
+                             uint64_t *seed, size_t number, strut_setup *setup) {
   size_t varied = arguments->varied_count, set = arguments->override_count;
   strut_override *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
   char(*texts)[MOST_TEXT] = strut_allocate(varied + 1, sizeof *texts);
@@ -71,7 +71,7 @@ static strut_status open_one(const strut_command *command, const strut_arguments
     strut_arguments here = *arguments;
     here.overrides = overrides;
     here.override_count = set + varied;
-    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, scene);
+    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup);
     if (status != STRUT_OK && varied > 0) {
       fprintf(stderr, "strut %s: that was operating point %zu:", command->name, number + 1);
       for (size_t i = 0; i < varied; i++)
@@ -97,12 +97,12 @@ strut_status strut_operating_points_open(const strut_command *command,
   }
   *points = (strut_operating_points){.count = 0};
   if (status != STRUT_OK) return status;
-  points->scenes = strut_allocate(count, sizeof *points->scenes);
+  points->setups = strut_allocate(count, sizeof *points->setups);
   points->list = strut_allocate(count, sizeof *points->list);
-  if (!points->scenes || !points->list) status = strut_print_out_of_memory();
+  if (!points->setups || !points->list) status = strut_print_out_of_memory();
   for (size_t p = 0; p < count && status == STRUT_OK; p++) {
-    status = open_one(command, arguments, &seed, p, &points->scenes[p]);
-    points->list[p] = &points->scenes[p];
+    status = open_one(command, arguments, &seed, p, &points->setups[p]);
+    points->list[p] = &points->setups[p];
     if (status == STRUT_OK) points->count++;
   }
   if (status != STRUT_OK) strut_operating_points_free(points);
@@ -110,8 +110,8 @@ strut_status strut_operating_points_open(const strut_command *command,
 }
 
 void strut_operating_points_free(strut_operating_points *points) {
-  for (size_t p = 0; p < points->count; p++) strut_scene_free(&points->scenes[p]);
-  strut_release(points->scenes);
+  for (size_t p = 0; p < points->count; p++) strut_setup_free(&points->setups[p]);
+  strut_release(points->setups);
   strut_release(points->list);
   *points = (strut_operating_points){.count = 0};
 }

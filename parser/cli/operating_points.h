@@ -11,8 +11,8 @@
 
 /** Scenes of one model. Zero-initialise. */
 typedef struct strut_operating_points {
-  strut_scene *scenes;      /* (count) */
-  const strut_scene **list; /* (count) them */
+  strut_setup *setups;      /* (count) */
+  const strut_setup **list; /* (count) them */
   size_t count;
 } strut_operating_points;
 

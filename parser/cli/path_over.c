@@ -27,7 +27,7 @@ static strut_status report_first(const strut_path_over_source *source,
                     first->place.column, message);
 }
 
-static strut_status make_scene(void *context, double value, strut_scene *scene,
+static strut_status make_setup(void *context, double value, strut_setup *setup,
                                strut_error *error) {
   strut_path_over_source *source = context;
   strut_diagnostics diagnostics = {0};
@@ -38,7 +38,7 @@ static strut_status make_scene(void *context, double value, strut_scene *scene,
   followed->value = value;
   strut_status status =
       strut_scene_source_read(source->source, source->settings, source->setting_count,
-                              STRUT_FOR_STATICS, &diagnostics, scene);
+                              STRUT_FOR_STATICS, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE)
     status = report_first(source, &diagnostics, error);
   else if (status != STRUT_OK)
@@ -162,7 +162,7 @@ static strut_status choose(const strut_arguments *arguments, const strut_scene *
     wanted->over = STRUT_PATH_OVER_SCENE;
     wanted->name = name;
     wanted->from = parameter->value;
-    wanted->scene_at = make_scene;
+    wanted->scene_at = make_setup;
     wanted->context = source;
     strut_status status = open_source(arguments, name, source, dimension);
     wanted->unit = unit_of(*dimension);

@@ -33,8 +33,10 @@ typedef struct strut_run_pictures {
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *pictures);
-/** Whether the run will have what is to be drawn; STRUT_USAGE. Before anything is computed. */
-strut_status strut_run_pictures_check(const strut_run_pictures *pictures, const strut_model *model,
+/** Whether the run will have what is to be drawn; STRUT_USAGE. Before anything is computed; the
+    experiment must outlive the pictures. */
+strut_status strut_run_pictures_check(strut_run_pictures *pictures,
+                                      const strut_experiment *experiment, const strut_model *model,
                                       strut_error *error);
 /** The sink that the run has to have besides its others, or NULL; *status is its trouble. */
 strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_scene *scene,

@@ -21,8 +21,8 @@
         "stop when the motion repeats itself within TOLERANCE, such as 0.5%"                       \
   }
 
-/** Puts the options into the scene. STRUT_USAGE with the reason on stderr. */
+/** Puts the options into the experiment. STRUT_USAGE with the reason on stderr. */
 strut_status strut_run_settings_apply(const strut_command *command,
-                                      const strut_arguments *arguments, strut_scene *scene);
+                                      const strut_arguments *arguments, strut_experiment *e);
 
 #endif

@@ -13,7 +13,7 @@
 #include "engine/scene/difference.h"
 
 /**
- * Compares two texts of strut_scene_write (or any YAML), key by key in the order of the first, then
+ * Compares two texts of strut_setup_write (or any YAML), key by key in the order of the first, then
  * what only the second has; what is a list counts as one value. A member or node that only one has is
  * one difference. The scenes' own name, description and source are left out. All in the arena. STRUT_OK, STRUT_BAD_SCENE for no YAML, STRUT_NO_MEMORY.
  */

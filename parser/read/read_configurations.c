@@ -215,7 +215,7 @@ static double whole(strut_reader *reader, int key, double most, double fallback)
 }
 
 void strut_read_search(strut_reader *reader) {
-  strut_search *search = &reader->scene->search;
+  strut_search *search = &reader->experiment->search;
   if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_ROOM_EQUILIBRIA,
                           search_owner.kind, &reader->search))
     return;

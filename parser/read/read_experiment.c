@@ -18,7 +18,7 @@ static void take_velocity(strut_reader *reader, int32_t node, const double pair[
 }
 
 static void read_settle(strut_reader *reader, const strut_slot *slot) {
-  strut_settle *settle = &reader->scene->settle;
+  strut_settle *settle = &reader->experiment->settle;
   strut_owner owner = {"the settling", NULL};
   settle->wanted = true;
   if (slot->value->kind == STRUT_TREE_SCALAR) {
@@ -149,7 +149,7 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
 }
 
 static void read_of(strut_reader *reader) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
   const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
   strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
@@ -190,7 +190,7 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
 }
 
 static void read_steady(strut_reader *reader, const strut_slot *slot) {
-  strut_steady *steady = &reader->scene->experiment.steady;
+  strut_steady *steady = &reader->experiment->steady;
   strut_owner owner = {"the steady state", NULL};
   steady->wanted = true;
   if (slot->value->kind == STRUT_TREE_SCALAR) {
@@ -222,7 +222,7 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
 }
 
 static void read_run(strut_reader *reader) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   strut_owner owner = {"the measurement", NULL};
   reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
   if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run))
@@ -254,10 +254,10 @@ static void read_run(strut_reader *reader) {
  * ends in the same bits. Below zero: by the stability limit.
  */
 static void choose_settling_step(strut_reader *reader) {
-  strut_settle *settle = &reader->scene->settle;
+  strut_settle *settle = &reader->experiment->settle;
   if (!settle->wanted) return;
   const strut_slot *step = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_STEP);
-  double given = reader->scene->experiment.step;
+  double given = reader->experiment->step;
   if (step->state == STRUT_GIVEN) given = step->number[0];
   settle->step = given > 0.0 ? given : -1.0;
 }
@@ -268,11 +268,11 @@ static void read_integrator(strut_reader *reader) {
   if (slot->state != STRUT_GIVEN) return;
   if (strut_word_at(strut_key_at(STRUT_KEY_SOLVER_INTEGRATOR)->words, slot->word, name,
                     sizeof name))
-    reader->scene->experiment.integrator = strut_keep_text(reader, name);
+    reader->experiment->integrator = strut_keep_text(reader, name);
 }
 
 void strut_read_experiment(strut_reader *reader) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   read_run(reader);
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
                          &reader->solver)) {

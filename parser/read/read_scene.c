@@ -61,6 +61,12 @@ static void prepare(strut_reader *reader) {
   reader->output.room = STRUT_ROOM_OUTPUT;
 }
 
+void strut_reader_target(strut_reader *reader, strut_setup *setup) {
+  reader->setup = setup;
+  reader->scene = &setup->scene;
+  reader->experiment = &setup->experiment;
+}
+
 /* Does the file say anything about a run? */
 static bool speaks_of_a_run(strut_reader *reader) {
   const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
@@ -92,7 +98,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;
-  if (strut_scene_check(reader->scene, reader->purpose, &findings) == STRUT_NO_MEMORY)
+  if (strut_setup_check(reader->setup, reader->purpose, &findings) == STRUT_NO_MEMORY)
     reader->out_of_memory = true;
   strut_place_findings(reader, &findings);
   reader->diagnostics->unstored += findings.unstored;
@@ -114,15 +120,15 @@ static void free_reader(strut_reader *reader) {
 /* From a tree that belongs to somebody else, or from the text where there is none yet. */
 static strut_status read_from(const strut_document *document, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
-                              strut_scene *scene) {
+                              strut_setup *setup) {
   strut_reader *reader = strut_allocate(1, sizeof *reader);
   strut_status status = STRUT_OK;
-  strut_scene_init(scene);
+  strut_setup_init(setup);
   if (!reader) {
-    strut_scene_free(scene);
+    strut_setup_free(setup);
     return STRUT_NO_MEMORY;
   }
-  reader->scene = scene;
+  strut_reader_target(reader, setup);
   reader->diagnostics = diagnostics;
   reader->purpose = purpose;
   prepare(reader);
@@ -138,20 +144,20 @@ static strut_status read_from(const strut_document *document, const strut_settin
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   free_reader(reader);
   strut_release(reader);
-  if (status) strut_scene_free(scene);
+  if (status) strut_setup_free(setup);
   return status;
 }
 
-strut_status strut_scene_read(strut_scene *scene, const char *file, const char *text, size_t length,
+strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text, size_t length,
                               const strut_override *overrides, size_t override_count,
                               strut_purpose purpose, strut_diagnostics *diagnostics) {
   strut_setting *settings = strut_allocate(override_count, sizeof *settings);
-  strut_scene_init(scene);
+  strut_setup_init(setup);
   strut_diagnostics_source(diagnostics, file, text, length);
   if (!settings) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < override_count; i++)
     settings[i] = (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
-  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, scene);
+  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, setup);
   strut_release(settings);
   return status;
 }
@@ -180,11 +186,11 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
 
 /* The parameters only. */
 static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
-  strut_scene scene;
+  strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
   if (!reader) return STRUT_NO_MEMORY;
-  strut_scene_init(&scene);
-  reader->scene = &scene;
+  strut_setup_init(&setup);
+  strut_reader_target(reader, &setup);
   reader->diagnostics = diagnostics;
   prepare(reader);
   reader->document.root = source->document.root;
@@ -195,7 +201,7 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   free_reader(reader);
   strut_release(reader);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 
@@ -214,10 +220,10 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   strut_c_locale_leave(locale);
   strut_diagnostics_free(&unused);
   if (status == STRUT_OK) return status;
-  strut_scene scene; /* once more, for everything that can be said */
+  strut_setup setup; /* once more, for everything that can be said */
   if (status == STRUT_BAD_SCENE)
-    status = strut_scene_read(&scene, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
-  if (status == STRUT_OK) strut_scene_free(&scene);
+    status = strut_setup_read(&setup, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
+  if (status == STRUT_OK) strut_setup_free(&setup);
   strut_scene_source_free(source);
   *result = NULL;
   return status == STRUT_OK ? STRUT_BAD_SCENE : status;
@@ -243,7 +249,7 @@ strut_document *strut_scene_source_document(strut_scene_source *source) {
 strut_status strut_scene_source_read(const strut_scene_source *source,
                                      const strut_setting *settings, size_t setting_count,
                                      strut_purpose purpose, strut_diagnostics *diagnostics,
-                                     strut_scene *scene) {
+                                     strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
-  return read_from(&source->document, settings, setting_count, purpose, diagnostics, scene);
+  return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
 }

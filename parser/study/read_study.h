@@ -40,11 +40,11 @@ STRUT_API strut_status strut_study_open(const char *path, const strut_override *
 /** All messages as printed text, at most `most` of each file; NULL: memory is out. */
 STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
 /**
- * The scene where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
+ * The scene and experiment where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
  * finding with its place. Safe from several threads.
  */
-STRUT_API strut_status strut_study_scene(const strut_study_file *file,
-                                         const strut_study_value *values, strut_scene *scene,
+STRUT_API strut_status strut_study_setup(const strut_study_file *file,
+                                         const strut_study_value *values, strut_setup *setup,
                                          strut_error *error);
 /** The same for one thread: on STRUT_BAD_SCENE all findings go to the messages, and the values. */
 STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);

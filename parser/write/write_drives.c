@@ -152,8 +152,7 @@ static bool leads_to(const strut_scene *scene, const char *name, int32_t signal)
 }
 
 /* What `of` may say for the signal whose periods count; NULL: it needs a name first. */
-static const char *period_name(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static const char *period_name(const strut_scene *scene, const strut_experiment *e) {
   if (e->period_of && leads_to(scene, e->period_of, e->period_signal)) return e->period_of;
   const char *own = scene->signals[e->period_signal].name;
   if (own && leads_to(scene, own, e->period_signal)) return own;
@@ -181,14 +180,14 @@ static void put_steady(strut_writer *writer, bool *first, const strut_steady *st
 
 static void put_run(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
-  const strut_experiment *e = &scene->experiment;
+  const strut_experiment *e = writer->experiment;
   bool first = true, inner = true;
   if (e->duration == 0.0 && e->periods == 0.0) return;
   strut_put(writer, "run: {");
   strut_put_value(writer, &first, "duration", e->duration);
   strut_put_value(writer, &first, "periods", e->periods);
   if (e->periods > 0.0) {
-    const char *name = period_name(scene);
+    const char *name = period_name(scene, e);
     strut_put_key(writer, &first, "of");
     strut_put_name(writer, name ? name : signal_name(writer, e->period_signal));
   }
@@ -210,7 +209,7 @@ static void put_run(strut_writer *writer) {
 void strut_put_experiment(strut_writer *writer) {
   static const char *const channels[] = {"position", "velocity", "length",
                                          "force",    "contact",  "energy"};
-  const strut_experiment *e = &writer->scene->experiment;
+  const strut_experiment *e = writer->experiment;
   bool first = true, any = false;
   strut_put(writer, "solver: {");
   strut_put_key(writer, &first, "integrator");

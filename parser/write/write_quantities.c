@@ -155,7 +155,7 @@ static void put_absolute(strut_writer *writer, bool *first, const strut_quantity
 void strut_put_quantities(strut_writer *writer, bool *first) {
   static const char *const takes[] = {"mean", "min",   "max",    "range",
                                       "rms",  "final", "change", "rate"};
-  const strut_experiment *e = &writer->scene->experiment;
+  const strut_experiment *e = writer->experiment;
   if (!e->quantity_count) return;
   strut_put_key(writer, first, "quantities");
   strut_put(writer, "{");

@@ -196,8 +196,7 @@ static void put_ground(strut_writer *writer) {
 }
 
 /* Is the signal whose periods count one that nothing names? Then it gets a name of its own. */
-static int32_t nameless_period(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static int32_t nameless_period(const strut_scene *scene, const strut_experiment *e) {
   if (e->periods == 0.0 || scene->signals[e->period_signal].name) return -1;
   for (size_t i = 0; i < scene->actuator_count; i++)
     if (scene->actuators[i].signal == e->period_signal) return -1;
@@ -206,8 +205,10 @@ static int32_t nameless_period(const strut_scene *scene) {
   return e->period_signal;
 }
 
-char *strut_scene_write(const strut_scene *scene) {
-  strut_writer writer = {.scene = scene, .period_signal = nameless_period(scene)};
+char *strut_setup_write(const strut_setup *setup) {
+  const strut_experiment *e = &setup->experiment;
+  strut_writer writer = {
+      .scene = &setup->scene, .experiment = e, .period_signal = nameless_period(&setup->scene, e)};
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
   put_nodes(&writer);

@@ -60,7 +60,7 @@ static void put_configurations(strut_writer *writer) {
 }
 
 static void put_search(strut_writer *writer) {
-  const strut_search *search = &writer->scene->search;
+  const strut_search *search = &writer->experiment->search;
   bool first = true;
   if (!search->support_count && !search->starts && search->seed == 1) return;
   strut_put(writer, "equilibria: {");
@@ -114,7 +114,7 @@ static void put_settle(strut_writer *writer, const strut_settle *settle) {
   strut_put_value(writer, &first, "limit", settle->limit);
   if (settle->evaluations > 0.0)
     strut_put_value(writer, &first, "evaluations", settle->evaluations);
-  if (settle->step != 0.0 && settle->step != writer->scene->experiment.step)
+  if (settle->step != 0.0 && settle->step != writer->experiment->step)
     strut_put_value(writer, &first, "step", fmax(0.0, settle->step));
   if (settle->perturb) strut_put(writer, ", perturb: yes");
   if (settle->friction) strut_put(writer, ", friction: kept");
@@ -142,9 +142,9 @@ static void put_initial(strut_writer *writer) {
     if (!same(node->velocity, rest))
       put_initial_pair(writer, &begun, &velocities, "  velocities:\n", node->name, node->velocity);
   }
-  if (!scene->settle.wanted) return;
+  if (!writer->experiment->settle.wanted) return;
   if (!begun) strut_put(writer, "initial:\n");
-  put_settle(writer, &scene->settle);
+  put_settle(writer, &writer->experiment->settle);
 }
 
 void strut_put_shapes(strut_writer *writer) {

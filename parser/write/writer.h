@@ -8,10 +8,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 typedef struct strut_writer {
   const strut_scene *scene;
+  const strut_experiment *experiment;
   char *text; /* strut_allocate; NUL-terminated */
   size_t length, capacity;
   bool failed;           /* memory was out; all later writing is ignored */

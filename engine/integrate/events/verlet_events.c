@@ -135,8 +135,9 @@ static const strut_step_formula stepper = {.trial = verlet_events_trial,
                                            .predict = predict,
                                            .quiet = verlet_events_quiet};
 
-static void *create(const strut_model *model, strut_state *state) {
-  return strut_event_stepper_create(model, state, &stepper);
+static void *create(const strut_model *model, strut_state *state,
+                    const strut_integrator_settings *settings) {
+  return strut_event_stepper_create(model, state, &stepper, settings);
 }
 
 const strut_integrator strut_integrator_verlet_events = {

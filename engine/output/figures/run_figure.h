@@ -9,6 +9,7 @@
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 typedef enum strut_run_view {
   STRUT_RUN_OVERVIEW,  /* the last shape, the ways to it, and curves of the last periods */
@@ -18,6 +19,7 @@ typedef enum strut_run_view {
 } strut_run_view;
 
 typedef struct strut_run_figure {
+  const strut_experiment *experiment; /* of the run */
   strut_run_view view;
   double width;        /* [pt] */
   double scale[2];     /* of PERIOD: motion along x and y is drawn so many times; 0: once */

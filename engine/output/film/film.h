@@ -9,6 +9,7 @@
 
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
+#include "engine/scene/experiment.h"
 
 /** What a film draws on; strut_trajectory_sink is asked for these. */
 #define STRUT_FILM_CHANNELS                                                                        \
@@ -18,6 +19,7 @@
 enum { STRUT_FILM_LONGEST = 1800, STRUT_FILM_FPS = 30, STRUT_FILM_GIF_FPS = 25 };
 
 typedef struct strut_film {
+  const strut_experiment *experiment; /* of the run: whose travel is shown */
   const char *path; /* .mp4, .webm (1280 x 720 pixels) or .gif (640 x 360); NULL: no film */
   double speed;     /* of the motion in it: 0.1 is slowed ten times, 1 true */
   double fps;       /* frames per second; 0: what is usual for the format */

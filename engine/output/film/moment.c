@@ -61,8 +61,7 @@ void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_
   if (moment->contact) mix(moment->contact, motion->contact, 2 * motion->contact_count, i, j, part);
 }
 
-double strut_moment_travel(const strut_moment *moment, const strut_model *model) {
-  int32_t node = model->scene->experiment.measure_node;
+double strut_moment_travel(const strut_moment *moment, const strut_model *model, int32_t node) {
   double sum = 0, weight = 0;
   if (node >= 0) return moment->q[2 * node];
   for (int32_t i = 0; i < model->node_count; i++) {

@@ -25,6 +25,6 @@ bool strut_moment_create(strut_moment *moment, const strut_model *model,
 void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_t frames,
                      double time);
 /** Where the point is whose velocity is measured, a node or the centre of mass: its x [m]. */
-double strut_moment_travel(const strut_moment *moment, const strut_model *model);
+double strut_moment_travel(const strut_moment *moment, const strut_model *model, int32_t node);
 
 #endif

@@ -153,7 +153,7 @@ static void draw_words(const strut_view_frame *s, strut_canvas *canvas,
   strut_draw_text(canvas, page.width - EDGE, EDGE + 12, s->speed,
                   (strut_font){.size = 8.5, .across = 1, .colour = grey});
   if (!s->travels) return;
-  double moved = strut_moment_travel(moment, s->model) - s->travelled_from;
+  double moved = strut_moment_travel(moment, s->model, s->measured_node) - s->travelled_from;
   if (fabs(moved) < 1e-9 * s->model->size) moved = 0;
   snprintf(text, sizeof text, "moved %s", strut_drawn_quantity(moved, DIGITS, "m").text);
   strut_draw_text(canvas, EDGE, page.height - 36, text, (strut_font){.size = 9});

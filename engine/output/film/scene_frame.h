@@ -17,6 +17,7 @@ typedef struct strut_view_frame {
   double most_contact; /* largest force of the ground [N] */
   double step;         /* between marks of the ground [m] */
   double start_time, end_time, travelled_from; /* [s], [s], [m] */
+  int32_t measured_node;                       /* that travels; -1: the centre of mass */
   double mean_velocity;                        /* [m/s] */
   double shown;                                /* time between two pictures [s] */
   bool travels;                                /* nothing holds it in x: how far it went is told */

@@ -80,7 +80,7 @@ static char *still_data(const strut_page *page) {
   strut_json_number(&json, json.root, "size", model->size);
   if (!strut_page_add_equilibria(&json, page)) json.failed = true;
   struct cJSON *rows = strut_json_array(&json, json.root, "summary");
-  strut_summary_rows(&json, rows, page->summary, scene);
+  strut_summary_rows(&json, rows, page->summary, page->experiment, scene);
   if (!add_yaml(&json, page->yaml)) json.failed = true;
   strut_json_text(&json, json.root, "study", NULL);
   return strut_json_end(&json);

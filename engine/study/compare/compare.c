@@ -85,7 +85,8 @@ strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_
 static strut_status find_stand(strut_compare_work *work, const strut_model *model) {
   strut_error error = {0};
   strut_compare_column *column = work->column;
-  strut_status status = strut_rest_state_find(model, NULL, work->arena, &work->stand, &error);
+  strut_status status = strut_rest_state_find(model, &work->column->input->setup->experiment, NULL,
+                                              work->arena, &work->stand, &error);
   if (status == STRUT_OK) {
     column->shape = work->stand.name;
     column->q = work->stand.q;
@@ -133,14 +134,14 @@ static strut_status look_at_rest(strut_compare_work *work, const strut_model *mo
 
 /* The motion starts at an equilibrium where the scene wishes one, which is found here. */
 static strut_status look_at_motion(strut_compare_work *work) {
-  strut_scene *scene = work->column->input->scene;
+  strut_setup *setup = work->column->input->setup;
   strut_error error = {0};
-  strut_status status = strut_resolve_start_equilibrium(scene, &error);
+  strut_status status = strut_resolve_start_equilibrium(setup, &error);
   bool resolved = status == STRUT_OK;
   if (!resolved)
     status = strut_compare_leave_failed(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, &error,
                                         status, true);
-  if (status == STRUT_OK) status = strut_model_compile(scene, &work->column->model, &error);
+  if (status == STRUT_OK) status = strut_model_compile(&setup->scene, &work->column->model, &error);
   if (status == STRUT_OK) status = find_limit(work, work->column->model);
   if (status == STRUT_OK && resolved) status = strut_compare_motion(work, work->column->model);
   return status;
@@ -152,7 +153,7 @@ static strut_status fill(const strut_compare_input *input, const strut_compare_o
   strut_model *model = NULL;
   *column = (strut_compare_column){.input = input, .softest = {-1, -1}};
   strut_compare_leave(&work, 0, STRUT_COMPARE_QUANTITIES - 1, "not computed");
-  strut_status status = strut_model_compile(input->scene, &model, error);
+  strut_status status = strut_model_compile(&input->setup->scene, &model, error);
   if (status == STRUT_OK) status = look_at_rest(&work, model);
   strut_model_free(model);
   if (status == STRUT_OK) status = look_at_motion(&work);

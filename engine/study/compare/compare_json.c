@@ -48,7 +48,7 @@ static void add_states(strut_json *json, struct cJSON *to, const strut_compare_c
 }
 
 static void add_shape(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
-  const strut_scene *scene = c->input->scene;
+  const strut_scene *scene = &c->input->setup->scene;
   strut_json_text(json, to, "shape", c->shape);
   struct cJSON *nodes = strut_json_object(json, to, "nodes");
   for (size_t i = 0; c->q && i < scene->node_count; i++) {
@@ -110,10 +110,10 @@ char *strut_compare_json(const strut_compare *r) {
     const strut_compare_column *c = &r->columns[i];
     struct cJSON *model = strut_json_object(&json, models, NULL);
     strut_json_text(&json, model, "model", c->input->label);
-    strut_json_text(&json, model, "name", c->input->scene->name);
+    strut_json_text(&json, model, "name", c->input->setup->scene.name);
     strut_json_text(&json, model, "status", strut_status_text(c->status));
     strut_json_text(&json, model, "reason", c->status == STRUT_OK ? NULL : c->message);
-    add_parameters(&json, model, c->input->scene);
+    add_parameters(&json, model, &c->input->setup->scene);
     add_cells(&json, model, c);
     add_states(&json, model, c);
     add_shape(&json, model, c);

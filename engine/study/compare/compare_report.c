@@ -219,7 +219,7 @@ char *strut_compare_csv(const strut_compare *r) {
     const strut_compare_column *c = &r->columns[i];
     add_quoted(&csv, c->input->label);
     strut_buffer_add(&csv, ",");
-    add_quoted(&csv, c->input->scene->name);
+    add_quoted(&csv, c->input->setup->scene.name);
     for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
       char text[STRUT_NUMBER_TEXT] = "";
       if (isfinite(c->cell[row].value)) strut_number_text(c->cell[row].value, text);

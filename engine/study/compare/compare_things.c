@@ -40,7 +40,7 @@ static void put_friction(strut_compare_work *work, const strut_scene *scene) {
 
 /* Of the signal that runs are measured by, else of the only actuator. */
 static void put_drive(strut_compare_work *work, const strut_scene *scene) {
-  int32_t signal = scene->experiment.period_signal;
+  int32_t signal = work->column->input->setup->experiment.period_signal;
   if (signal < 0 && scene->actuator_count == 1) signal = scene->actuators[0].signal;
   if (signal < 0) {
     strut_compare_leave(work, STRUT_COMPARE_DRIVE_FREQUENCY, STRUT_COMPARE_DRIVE_AMPLITUDE,

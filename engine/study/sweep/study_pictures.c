@@ -56,6 +56,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
                          strut_error *error) {
   strut_model *model = NULL;
   const strut_run_figure picture = {
+      .experiment = &o->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
       .width = width,
       .scale = {figure->scale[0], figure->scale[1]},
@@ -65,7 +66,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
       .other_name = other_name};
   const char *path = file_of(plan, directory, figure, o);
   if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
-  strut_status status = strut_model_compile(&o->scene, &model, error);
+  strut_status status = strut_model_compile(&o->setup.scene, &model, error);
   if (!status) status = strut_run_figure_draw(path, &picture, model, &o->motion, NULL, error);
   strut_model_free(model);
   return status;

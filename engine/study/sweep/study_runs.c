@@ -63,9 +63,10 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
   if (!file) return no_memory(error);
   if (stat(file, &found) != 0) return STRUT_OK; /* it failed before it moved */
-  status = plan->scenes.scene(plan->scenes.context, o->values, &o->scene, error);
+  status = plan->scenes.setup(plan->scenes.context, o->values, &o->setup, error);
   if (!status)
-    status = strut_trajectory_read(folder, &o->scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
+    status =
+        strut_trajectory_read(folder, &o->setup.scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
   if (!status && !o->motion.position)
     status = strut_fail(error, STRUT_USAGE,
                         "figure '%.60s' of the study: the runs recorded no "
@@ -74,7 +75,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   o->run = (strut_study_run){.point = point,
                              .values = o->values,
                              .texts = o->texts,
-                             .scene = &o->scene,
+                             .scene = &o->setup.scene,
                              .motion = &o->motion};
   *there = !status && o->motion.frames > 0;
   return status;
@@ -82,7 +83,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
 
 void strut_study_run_close(strut_study_opened *o) {
   strut_trajectory_free(&o->motion);
-  strut_scene_free(&o->scene);
+  strut_setup_free(&o->setup);
   strut_arena_free(&o->arena);
   *o = (strut_study_opened){.motion = {0}};
 }

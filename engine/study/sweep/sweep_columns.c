@@ -91,8 +91,7 @@ static bool is_kept(const strut_study *study, const char *quantity) {
 }
 
 /* The scene's quantities that are kept; where a column has the name of one, it gets another. */
-static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++) {
     const strut_quantity_definition *d = &e->quantities[i];
     if (!keeps(plan, STRUT_KEEP_QUANTITIES) && !is_kept(plan->study, d->name)) continue;
@@ -107,7 +106,7 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
   return true;
 }
 
-static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
+static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   bool fine = true;
   for (size_t i = 0; i < plan->axis_columns && fine; i++) {
     const strut_study_column *c = strut_grid_column(plan->study, i, NULL);
@@ -116,7 +115,7 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   for (size_t i = 0; i < ENTRIES && fine; i++)
     if (keeps(plan, entries[i].keep))
       fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
-  fine = fine && add_things(plan, scene) && add_quantities(plan, scene);
+  fine = fine && add_things(plan, &setup->scene) && add_quantities(plan, &setup->experiment);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
   if (fine && plan->check)
     fine = add_column(plan, "check_", "velocity", "m/s", false) &&
@@ -125,7 +124,8 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   return fine;
 }
 
-static strut_status make(strut_sweep_plan *plan, const strut_scene *scene, strut_error *error) {
+static strut_status make(strut_sweep_plan *plan, const strut_setup *setup, strut_error *error) {
+  const strut_scene *scene = &setup->scene;
   const strut_study *study = plan->study;
   bool shapes = scene->configuration_count > 0;
   bool usual = !study->keep && !study->quantity_count;
@@ -135,12 +135,12 @@ static strut_status make(strut_sweep_plan *plan, const strut_scene *scene, strut
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
-  size_t quantities = scene->experiment.quantity_count;
+  size_t quantities = setup->experiment.quantity_count;
   size_t most = plan->axis_columns + ENTRIES + 4 + 2 * scene->contact_count +
                 2 * scene->node_count + quantities;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
-  if (!plan->columns || !plan->quantities || !add_columns(plan, scene))
+  if (!plan->columns || !plan->quantities || !add_columns(plan, setup))
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return STRUT_OK;
 }
@@ -151,15 +151,15 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   plan->points = strut_grid_points(study);
   plan->axis_columns = strut_grid_columns(study);
   if (plan->points < 0) return strut_fail(error, STRUT_USAGE, "a study has 1e9 points at most");
-  strut_scene scene;
+  strut_setup setup;
   strut_study_value *values =
       strut_arena_allocate(&plan->arena, plan->axis_columns + 1, sizeof *values);
   if (!values) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   strut_grid_values(study, 0, values);
-  strut_status status = scenes->scene(scenes->context, values, &scene, error);
+  strut_status status = scenes->setup(scenes->context, values, &setup, error);
   if (status) return status;
-  status = make(plan, &scene, error);
-  strut_scene_free(&scene);
+  status = make(plan, &setup, error);
+  strut_setup_free(&setup);
   return status;
 }
 
@@ -179,8 +179,8 @@ void strut_sweep_word(strut_row_buffer *room, const char *word) {
 }
 
 /* The number of an entry; NAN where the summary has none. */
-static double number_of(const strut_summary *s, const strut_scene *scene, size_t index) {
-  double period = strut_scene_span(scene).period;
+static double number_of(const strut_summary *s, const strut_setup *setup, size_t index) {
+  double period = strut_experiment_span(&setup->experiment, &setup->scene).period;
   bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
   const double values[ENTRIES] = {s->velocity,
                                   s->velocity_spread,
@@ -239,16 +239,16 @@ static double measured(const strut_summary *s, const char *name) {
   return (double)NAN;
 }
 
-void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
+void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *room) {
   for (size_t i = 0; i < ENTRIES; i++) {
     if (!keeps(plan, entries[i].keep)) continue;
     if (entries[i].word)
       strut_sweep_word(room, summary ? word_of(summary, entries[i].keep) : "");
     else
-      strut_sweep_number(room, summary ? number_of(summary, scene, i) : (double)NAN);
+      strut_sweep_number(room, summary ? number_of(summary, setup, i) : (double)NAN);
   }
-  if (summary) fill_things(plan, scene, summary, room);
+  if (summary) fill_things(plan, &setup->scene, summary, room);
   for (size_t i = 0; i < plan->quantity_count; i++)
     strut_sweep_number(room, summary ? measured(summary, plan->quantities[i]) : (double)NAN);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(room, outcome);

@@ -75,7 +75,7 @@ static double soft_speed(const study *s, const strut_friction *friction) {
 }
 
 static void describe(const study *s, kind what, strut_model_variant *f) {
-  const strut_scene *scene = s->scenes[0];
+  const strut_scene *scene = &s->setups[0]->scene;
   if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
   if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
   if (what == MASS)
@@ -102,7 +102,7 @@ static void describe(const study *s, kind what, strut_model_variant *f) {
 static kind kind_of(const study *s, int fidelity) {
   int found = -1;
   for (int what = OWN; what < KINDS; what++)
-    if (makes_sense(s->scenes[0], (kind)what) && ++found == fidelity) return (kind)what;
+    if (makes_sense(&s->setups[0]->scene, (kind)what) && ++found == fidelity) return (kind)what;
   return OWN;
 }
 
@@ -112,7 +112,7 @@ strut_status strut_study_list_fidelities(study *s) {
   r->fidelities = strut_arena_allocate(&r->arena, KINDS, sizeof *r->fidelities);
   if (!r->fidelities) return STRUT_NO_MEMORY;
   for (int what = OWN; what < KINDS; what++) {
-    if (!makes_sense(s->scenes[0], (kind)what) || (what != OWN && !all)) continue;
+    if (!makes_sense(&s->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
     strut_model_variant *f = &r->fidelities[r->fidelity_count++];
     describe(s, (kind)what, f);
     f->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof *f->value);
@@ -163,6 +163,29 @@ strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene 
   return STRUT_OK;
 }
 
+strut_status strut_study_model(const study *s, size_t point, int fidelity,
+                               const strut_model **model) {
+  study_variant *v = &s->variants[point * STRUT_STUDY_VARIANTS + (size_t)fidelity];
+  strut_status status = STRUT_OK;
+  if (!v->model) {
+    v->scene = s->setups[point]->scene;
+    status = strut_study_change_scene(s, fidelity, &v->scene, &v->arena)
+                 ? strut_fail(s->error, STRUT_NO_MEMORY, "out of memory")
+                 : strut_model_compile(&v->scene, &v->model, s->error);
+  }
+  *model = v->model;
+  return status;
+}
+
+void strut_study_free_models(study *s) {
+  size_t count = s->variants ? s->result->point_count * STRUT_STUDY_VARIANTS : 0;
+  for (size_t i = 0; i < count; i++) {
+    strut_model_free(s->variants[i].model);
+    strut_arena_free(&s->variants[i].arena);
+  }
+  strut_release(s->variants);
+}
+
 bool strut_study_switches(const strut_scene *scene) {
   for (size_t i = 0; i < scene->member_count; i++)
     if (scene->members[i].kind == STRUT_CABLE) return true;
@@ -171,10 +194,11 @@ bool strut_study_switches(const strut_scene *scene) {
 
 bool strut_study_able(const study *s, const strut_integrator *method, int fidelity) {
   kind what = kind_of(s, fidelity);
-  bool own = has_friction(s->scenes[0], STRUT_FRICTION_COULOMB);
+  bool own = has_friction(&s->setups[0]->scene, STRUT_FRICTION_COULOMB);
   bool exact = own ? what <= GROUND : what == COULOMB;
   if (exact && !method->events) return false;
-  return !method->events || strut_study_adaptive(method) || strut_study_switches(s->scenes[0]);
+  return !method->events || strut_study_adaptive(method) ||
+         strut_study_switches(&s->setups[0]->scene);
 }
 
 bool strut_study_allowed(const study *s, const strut_integrator *method, int fidelity) {

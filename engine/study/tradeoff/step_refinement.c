@@ -218,7 +218,7 @@ strut_status strut_study_add_method(study *s, study_ladders *all, int fidelity,
   if (limited) first.step = outcome.step_limit;
   if (!limited && !adaptive) {
     double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
-    first.step = fmin(most, strut_study_longest(s->scenes[0]));
+    first.step = fmin(most, strut_study_longest(s, 0));
   }
   first.refine = (double)NAN;
   if (!add_ladder(s, all, fidelity, first, limited)) return status;

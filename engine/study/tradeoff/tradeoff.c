@@ -17,31 +17,31 @@ static strut_status out_of_memory(study *s) {
   return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
 }
 
-static strut_tradeoff_measure choose_measure(const strut_scene *scene, strut_tradeoff_measure m) {
+static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tradeoff_measure m) {
   if (m != STRUT_TRADEOFF_AUTOMATIC) return m;
-  bool walks = scene->contact_count > 0 || scene->experiment.periods > 0;
+  bool walks = setup->scene.contact_count > 0 || setup->experiment.periods > 0;
   return walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
 }
 
 static strut_status measure_points(study *s) {
   for (size_t p = 0; p < s->result->point_count; p++) {
-    strut_model *model = NULL;
-    strut_status status = strut_model_compile(s->scenes[p], &model, s->error);
+    const strut_model *model = NULL;
+    strut_status status = strut_study_model(s, p, 0, &model);
     if (status != STRUT_OK) return status;
-    strut_span span = strut_scene_span(s->scenes[p]);
+    const strut_setup *setup = s->setups[p];
+    strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
     s->size[p] = model->size;
     s->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
-    strut_model_free(model);
   }
   return STRUT_OK;
 }
 
 static strut_status prepare(study *s, size_t count) {
   strut_tradeoff *r = s->result;
-  const strut_scene *scene = s->scenes[0];
+  const strut_scene *scene = &s->setups[0]->scene;
   r->name = scene->name;
   r->point_count = count;
-  r->measure = choose_measure(scene, s->options->measure);
+  r->measure = choose_measure(s->setups[0], s->options->measure);
   r->value_count = r->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
   s->size = strut_arena_allocate(&r->arena, count, sizeof *s->size);
@@ -50,10 +50,11 @@ static strut_status prepare(study *s, size_t count) {
   s->base_seconds = strut_arena_allocate(&r->arena, count, sizeof *s->base_seconds);
   s->base_timed = strut_arena_allocate(&r->arena, count, sizeof *s->base_timed);
   s->scratch = strut_arena_allocate(&r->arena, most, sizeof *s->scratch);
-  if (!s->size || !s->scale || !s->base_evaluations || !s->base_seconds || !s->base_timed ||
-      !s->scratch)
+  s->variants = strut_allocate(count * STRUT_STUDY_VARIANTS, sizeof *s->variants);
+  if (!s->variants || !s->size || !s->scale || !s->base_evaluations || !s->base_seconds ||
+      !s->base_timed || !s->scratch)
     return out_of_memory(s);
-  if (!(strut_scene_span(scene).duration > 0))
+  if (!(strut_experiment_span(&s->setups[0]->experiment, scene).duration > 0))
     return strut_fail(s->error, STRUT_USAGE,
                       "the scene has no run to compare: it needs 'run' with a duration or periods");
   strut_status status = measure_points(s);
@@ -68,7 +69,7 @@ static void look_elsewhere(study *s) {
   bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(s->scratch[0]) < 1e-9 * s->scale[0];
   if (s->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
   r->measure = STRUT_TRADEOFF_POSITION;
-  r->value_count = 2 * s->scenes[0]->node_count;
+  r->value_count = 2 * s->setups[0]->scene.node_count;
 }
 
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
@@ -77,9 +78,7 @@ static strut_status choose_base(study *s) {
   study_outcome outcome = {0};
   strut_status status = STRUT_OK;
   strut_experiment e = strut_study_experiment(s, 0);
-  strut_scene scene = *s->scenes[0];
-  scene.experiment = e;
-  strut_span span = strut_scene_span(&scene);
+  strut_span span = strut_study_span(s, 0);
   r->periods = e.periods;
   r->duration = span.duration;
   for (size_t i = 0; strut_integrator_at(i); i++) {
@@ -109,12 +108,9 @@ static strut_status run_base(study *s, study_ladders *own) {
     if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
       in = &own->at[i];
   if (in == &alone) alone.group = (int)r->group_count++;
-  for (size_t p = 0; p < r->point_count; p++) {
-    strut_scene scene = *s->scenes[p];
-    scene.experiment = strut_study_experiment(s, p);
+  for (size_t p = 0; p < r->point_count; p++)
     s->base_evaluations[p] =
-        strut_scene_span(&scene).duration / s->base.step * s->base.method->evaluations;
-  }
+        strut_study_span(s, p).duration / s->base.step * s->base.method->evaluations;
   bool cannot = false;
   strut_status status = strut_study_run_row(s, in, s->base, true, &cannot);
   in->last_cost = 0;
@@ -246,18 +242,20 @@ static strut_status make(study *s, size_t count) {
   return STRUT_OK;
 }
 
-strut_status strut_tradeoff_make(const strut_scene *const *scenes, size_t count,
+strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                  const strut_tradeoff_options *options, strut_tradeoff *result,
                                  strut_error *error) {
   strut_error own = {0};
   *result = (strut_tradeoff){.name = ""};
-  study s = {.scenes = scenes,
+  study s = {.setups = setups,
              .options = options,
              .result = result,
              .error = error ? error : &own,
              .began = strut_study_clock(),
              .budget = options->budget > 0 ? options->budget : USUAL_BUDGET};
-  return make(&s, count);
+  strut_status status = make(&s, count);
+  strut_study_free_models(&s);
+  return status;
 }
 
 void strut_tradeoff_free(strut_tradeoff *result) {

@@ -102,11 +102,11 @@ typedef struct strut_tradeoff {
 } strut_tradeoff;
 
 /**
- * Runs everything. `scenes` are (count) operating points of one model, alike but for their
+ * Runs everything. `setups` are (count) operating points of one model, alike but for their
  * parameters; as strut_simulate wants them. STRUT_USAGE where there is nothing to measure; else the
  * status of the base's own run where it has none, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_tradeoff_make(const strut_scene *const *scenes, size_t count,
+STRUT_API strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                            const strut_tradeoff_options *options,
                                            strut_tradeoff *result, strut_error *error);
 /** A zeroed struct is allowed. */

@@ -7,6 +7,15 @@
 
 #include "engine/study/tradeoff/tradeoff.h"
 
+enum { STRUT_STUDY_VARIANTS = 7 }; /* most fidelities of a scene */
+
+/** A point's scene in a fidelity, and its model once that has been asked for. */
+typedef struct study_variant {
+  strut_scene scene; /* its contacts may be the arena's; all else is shared */
+  strut_model *model;
+  strut_arena arena;
+} study_variant;
+
 typedef struct study_setting {
   const strut_integrator *method;
   double step, tolerance, refine; /* tolerance, refine: NAN where they say nothing */
@@ -22,7 +31,7 @@ typedef struct study_outcome {
 } study_outcome;
 
 typedef struct study {
-  const strut_scene *const *scenes;
+  const strut_setup *const *setups;
   const strut_tradeoff_options *options;
   strut_tradeoff *result;
   strut_error *error;
@@ -34,6 +43,7 @@ typedef struct study {
   double limit; /* of the base's method [s]; 0 where there is none */
   double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
   size_t row_room;
+  study_variant *variants; /* (points, STRUT_STUDY_VARIANTS) */
 } study;
 
 /** This thread's CPU time [s]. */
@@ -44,8 +54,10 @@ double strut_study_left(const study *s, double share);
 strut_experiment strut_study_experiment(const study *s, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
 double strut_study_fit(const study *s, size_t point, double step);
+/** Duration and period of that experiment. */
+strut_span strut_study_span(const study *s, size_t point);
 /** The longest step that can make sense: a part of the period, or else of the duration [s]. */
-double strut_study_longest(const strut_scene *scene);
+double strut_study_longest(const study *s, size_t point);
 /**
  * Runs a fidelity with a setting at an operating point; its values go into (value_count) `value`,
  * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.
@@ -71,6 +83,11 @@ strut_status strut_study_list_fidelities(study *s);
 /** Changes a scene into that of a fidelity; new contacts come from the arena. */
 strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene *scene,
                                       strut_arena *arena);
+/** The model of a point in a fidelity, compiled once and kept. Fails as strut_model_compile. */
+strut_status strut_study_model(const study *s, size_t point, int fidelity,
+                               const strut_model **model);
+/** Frees all of them. */
+void strut_study_free_models(study *s);
 
 /** Two methods, refined in turn: state of the search for one fidelity's references. */
 typedef struct study_reference {

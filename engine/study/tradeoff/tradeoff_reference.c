@@ -13,7 +13,7 @@ static const double FIRST_TOLERANCE = 1e-5;
 /* How promising a method is. */
 static int merit(const study *s, const strut_integrator *method) {
   int merit = method->order;
-  if (method->events && strut_study_switches(s->scenes[0])) merit += 10;
+  if (method->events && strut_study_switches(&s->setups[0]->scene)) merit += 10;
   return merit;
 }
 

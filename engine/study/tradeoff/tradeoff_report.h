@@ -12,8 +12,8 @@
  * differ from run to run, everything else does not while the budget suffices.
  */
 STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
-/** scenes: the operating points, whose parameters are told. */
-STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_scene *const *scenes);
+/** setups: the operating points, whose parameters are told. */
+STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_setup *const *setups);
 /** One row per setting, the spreads over the operating points; diverged: "inf". */
 STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 

@@ -24,7 +24,7 @@ bool strut_study_adaptive(const strut_integrator *method) {
 }
 
 strut_experiment strut_study_experiment(const study *s, size_t point) {
-  strut_experiment e = s->scenes[point]->experiment;
+  strut_experiment e = s->setups[point]->experiment;
   e.quantity_count = 0; /* velocity and positions are compared, and what they cost */
   double most = s->options->periods > 0 ? s->options->periods : USUAL_PERIODS;
   e.accuracy = 0;
@@ -39,14 +39,13 @@ strut_experiment strut_study_experiment(const study *s, size_t point) {
   return e;
 }
 
-static strut_span span_of(const study *s, size_t point) {
-  strut_scene scene = *s->scenes[point];
-  scene.experiment = strut_study_experiment(s, point);
-  return strut_scene_span(&scene);
+strut_span strut_study_span(const study *s, size_t point) {
+  const strut_experiment e = strut_study_experiment(s, point);
+  return strut_experiment_span(&e, &s->setups[point]->scene);
 }
 
 double strut_study_fit(const study *s, size_t point, double step) {
-  strut_span span = span_of(s, point);
+  strut_span span = strut_study_span(s, point);
   double turns = span.period > 0 ? span.duration / span.period : 0;
   bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
   double unit = whole ? span.period : span.duration;
@@ -85,8 +84,9 @@ static void take_values(const study *s, const strut_summary *summary, double *va
   }
 }
 
-double strut_study_longest(const strut_scene *scene) {
-  strut_span span = strut_scene_span(scene);
+double strut_study_longest(const study *s, size_t point) {
+  const strut_setup *setup = s->setups[point];
+  strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
   return (span.period > 0 ? span.period : span.duration) / 20;
 }
 
@@ -94,54 +94,47 @@ double strut_study_longest(const strut_scene *scene) {
  * The largest step worth trying. Where nothing vibrates, as where rigid bars swing under gravity, the
  * limit of stability may be far longer than the motion lasts: then a part of that counts.
  */
-static double useful_limit(const strut_scene *scene, double limit) {
-  return isfinite(limit) ? fmin(limit, strut_study_longest(scene)) : limit;
+static double useful_limit(const study *s, size_t point, double limit) {
+  return isfinite(limit) ? fmin(limit, strut_study_longest(s, point)) : limit;
 }
 
 static bool hopeless(strut_status status) {
   return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
 }
 
-static strut_status simulate(const study *s, const strut_scene *scene, double *value,
+static strut_status simulate(const study *s, size_t point, int fidelity,
+                             const strut_experiment *experiment, double *value,
                              study_outcome *outcome) {
-  strut_model *model = NULL;
+  const strut_model *model = NULL;
   strut_summary summary = {0};
   strut_sink clock = {&outcome->seconds, begin_clock, ignore_rows, end_clock,
                       STRUT_CHANNEL_POSITION};
   strut_sink *sinks[] = {&clock};
   const strut_run_options options = {
       .force = true, .interrupt = s->options->interrupt, .sinks = sinks, .sink_count = 1};
-  strut_status status = strut_model_compile(scene, &model, s->error);
-  if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, s->error);
+  strut_status status = strut_study_model(s, point, fidelity, &model);
+  if (status == STRUT_OK) status = strut_simulate(model, experiment, &options, &summary, s->error);
   outcome->evaluations = summary.force_evaluations;
-  outcome->step_limit = useful_limit(scene, summary.step_limit);
+  outcome->step_limit = useful_limit(s, point, summary.step_limit);
   outcome->cannot = hopeless(status);
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
   outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;
   if (status == STRUT_OK) take_values(s, &summary, value);
   strut_summary_free(&summary);
-  strut_model_free(model);
   return ours ? status : STRUT_OK;
 }
 
 strut_status strut_study_run(const study *s, size_t point, int fidelity, study_setting setting,
                              double *value, study_outcome *outcome) {
-  strut_scene scene = *s->scenes[point];
-  strut_arena arena = {0};
   *outcome = (study_outcome){.seconds = (double)NAN};
   for (size_t i = 0; i < s->result->value_count; i++) value[i] = (double)NAN;
-  strut_status status = strut_study_change_scene(s, fidelity, &scene, &arena);
-  if (status != STRUT_OK) return strut_fail(s->error, status, "out of memory");
-  strut_experiment *e = &scene.experiment;
-  *e = strut_study_experiment(s, point);
-  e->integrator = setting.method->name;
-  e->step = strut_study_fit(s, point, setting.step);
-  if (isfinite(setting.tolerance)) e->tolerance = setting.tolerance;
-  e->refine = isfinite(setting.refine) ? setting.refine : 1;
-  e->output_every = strut_scene_span(&scene).duration;
-  status = simulate(s, &scene, value, outcome);
-  strut_arena_free(&arena);
-  return status;
+  strut_experiment e = strut_study_experiment(s, point);
+  e.integrator = setting.method->name;
+  e.step = strut_study_fit(s, point, setting.step);
+  if (isfinite(setting.tolerance)) e.tolerance = setting.tolerance;
+  e.refine = isfinite(setting.refine) ? setting.refine : 1;
+  e.output_every = strut_study_span(s, point).duration;
+  return simulate(s, point, fidelity, &e, value, outcome);
 }
 
 double strut_study_distance(const study *s, size_t point, const double *value,
