@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the documents say to type works: every command of every ```sh block of README.md and
-# docs/*.md runs in a scratch folder (one per document, holding models/) with the strut just built
-# first on the PATH, and none fails. Two blocks of README.md install and build, which is not done
-# here: the one for the tests must be what .ci/run runs, the one for users the same with another
-# preset, and its last command runs here.
+# The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md
+# runs in a scratch folder (one per document, holding models/) with the strut just built first on the
+# PATH, and none fails; and every link leads to a file and, after #, to a heading of it. Two blocks of
+# README.md install and build, which is not done here: the one for the tests must be what .ci/run runs,
+# the one for users the same with another preset, and its last command runs here.
 #
 #   sh tests/docs.sh ROOT STRUT
 # shellcheck disable=SC2016  # backticks that mark a fence, not a command
@@ -60,6 +60,31 @@ commands_work() {
   done
 }
 
+# dead_links FILE: the links of FILE, to files and to headings, that lead nowhere. Web addresses are not
+# followed.
+dead_links() {
+  folder=$(dirname "$1")
+  awk '/^ *```/ { inside = !inside } !inside' "$1" | grep -o ']([^) ]*)' | sed 's/^](//; s/)$//' |
+    grep -v '^[a-z]*:' | sort -u |
+    while read -r link; do
+      file=${link%%#*}
+      heading=${link#"$file"}
+      target=$1
+      [ -z "$file" ] || target=$folder/$file
+      if [ ! -e "$target" ]; then
+        echo "$1: no file for the link $link"
+      elif [ -n "$heading" ] && ! headings "$target" | grep -qxF "${heading#\#}"; then
+        echo "$1: no heading for the link $link"
+      fi
+    done
+}
+
+# headings FILE: the anchors of its headings, as GitHub and GitLab name them.
+headings() {
+  awk '/^ *```/ { inside = !inside } !inside && /^#+ / { sub(/^#+ /, ""); print tolower($0) }' "$1" |
+    sed 's/[^a-z0-9_ -]//g; s/ /-/g'
+}
+
 # Self-test: a document whose commands work, and some that must be noticed.
 ran=0
 document() { printf '%b' "$1" >"$scratch/made-up.md"; rm -rf "$scratch/self"; }
@@ -73,11 +98,20 @@ for bad in '```sh\nfalse\ntrue\n```\n' '```sh\nfalse | cat\n```\n' '```bash\ntru
     fail "self-test: passes: $bad"
 done
 
+document '# A\n## One, two\n[b](#one-two) [c](https://example.org/x)\n'
+[ -z "$(dead_links "$scratch/made-up.md")" ] || fail "self-test: a good link is dead"
+for bad in '# A\n[b](#two)\n' '# A\n[b](nowhere.md)\n'; do
+  document "$bad"
+  [ -n "$(dead_links "$scratch/made-up.md")" ] || fail "self-test: passes: $bad"
+done
+
 ran=0
-for document in "$root"/README.md "$root"/docs/*.md; do
+for document in "$root"/README.md "$root"/docs/*.md "$root"/docs/*/*.md; do
   [ -e "$document" ] || continue
   commands_work "$document" "$scratch/$(basename "$document" .md)" ||
-    fail "$(basename "$document"): not as it says"
+    fail "${document#"$root"/}: a command fails"
+  dead=$(dead_links "$document")
+  [ -z "$dead" ] || fail "$dead"
 done
 echo "$ran blocks of commands ran"
 [ "$ran" -gt 0 ] || fail "there were no commands"

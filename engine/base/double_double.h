@@ -75,6 +75,11 @@ static inline strut_dd dd_sqrt(strut_dd a) {
   return dd_quick_sum(x, rest.hi / (2.0 * x));
 }
 
+/** Length of the vector (x, y). */
+static inline strut_dd dd_length(strut_dd x, strut_dd y) {
+  return dd_sqrt(dd_add(dd_mul(x, x), dd_mul(y, y)));
+}
+
 static inline double dd_double(strut_dd a) { return a.hi + a.lo; }
 
 #endif

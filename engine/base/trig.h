@@ -12,6 +12,8 @@
 
 #include <math.h>
 
+#include "engine/base/vec.h"
+
 /*
  * Taylor sums for |x| <= pi/4, s = x^2: the first term left out is below 2e-17 in both. The even
  * and the odd powers of s are summed apart, so that neither waits for the other. For numbers, and for
@@ -43,7 +45,7 @@ static inline void strut_sincos_turns(double turns, double *sine, double *cosine
   if (!(turns > -0x1p49 && turns < 0x1p49)) turns -= floor(turns);
   double quarter = (4.0 * turns + rounder) - rounder; /* nearest quarter turn */
   double rest = turns - 0.25 * quarter;               /* exact: in [-1/8, 1/8] */
-  double x = 6.283185307179586476925 * rest;
+  double x = STRUT_TAU * rest;
   double s = strut_sine_of_small(x), c = strut_cosine_of_small(x);
   int quadrant = (int)((long long)quarter & 3);
   double first = quadrant & 1 ? c : s, second = quadrant & 1 ? s : c;

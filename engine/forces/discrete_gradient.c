@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/forces/forces.h"
+#include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
                                     strut_discrete_gradient *step) {
@@ -28,10 +29,7 @@ void strut_discrete_gradient_begin(const strut_model *model, strut_state *state,
     memcpy(step->rest_rate, state->rest_rate, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + h);
   }
-  for (int32_t j = 0; j < t->count; j++) {
-    double dx = q[t->to[j]] - q[t->from[j]], dy = q[t->to[j] + 1] - q[t->from[j] + 1];
-    step->length0[j] = sqrt(dx * dx + dy * dy);
-  }
+  for (int32_t j = 0; j < t->count; j++) step->length0[j] = strut_member_length(t, j, q);
 }
 
 /* Tension of a member on average, its elastic part, and what the first changes by with the end. */
@@ -84,7 +82,8 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
   double *restrict force = state->force;
   for (int32_t j = 0; j < t->count; j++) {
     uint32_t a = t->from[j], b = t->to[j];
-    double dx = q1[b] - q1[a], dy = q1[b + 1] - q1[a + 1], length = sqrt(dx * dx + dy * dy);
+    strut_vec2 d = strut_member_span(t, j, q1);
+    double length = strut_vec2_length(d);
     const stretching m = {.s0 = step->length0[j] - step->rest0[j],
                           .s1 = length - state->rest[j],
                           .stiffness = t->stiffness[j],
@@ -92,7 +91,7 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
                           .rate = (length - step->length0[j]) / step->h - step->rest_rate[j],
                           .h = step->h};
     average now = t->slack[j] < 0.0 ? of_taut(&m) : of_cable(&m);
-    double x = dx + (q0[b] - q0[a]), y = dy + (q0[b + 1] - q0[a + 1]);
+    double x = d.x + (q0[b] - q0[a]), y = d.y + (q0[b + 1] - q0[a + 1]);
     double lengths = step->length0[j] + length;
     double density = lengths > 0.0 ? now.tension / lengths : 0.0;
     step->sum[0][j] = x, step->sum[1][j] = y, step->lengths[j] = lengths;
@@ -123,8 +122,7 @@ void strut_discrete_gradient_tensions(const strut_model *model, const strut_stat
                                       double *tension) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
-    double dx = state->q[t->to[j]] - state->q[t->from[j]];
-    double dy = state->q[t->to[j] + 1] - state->q[t->from[j] + 1];
-    tension[j] = fmax(t->slack[j], t->stiffness[j] * (sqrt(dx * dx + dy * dy) - state->rest[j]));
+    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, state->q);
+    tension[j] = strut_member_elastic_force(t, j, &pose);
   }
 }

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/energy.h"
 
-#include <math.h>
-
 #include "engine/forces/forces.h"
+#include "engine/model/pose.h"
 
 double strut_energy_kinetic(const strut_model *model, const double *v) {
   const strut_member_table *t = &model->members;
@@ -28,10 +27,8 @@ static double elastic(const strut_model *model, const strut_state *state) {
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
     if (rigid && member[j].kind == STRUT_BAR) continue;
-    const double *a = state->q + t->from[j], *b = state->q + t->to[j];
-    double dx = b[0] - a[0], dy = b[1] - a[1];
-    double stretch = sqrt(dx * dx + dy * dy) - state->rest[j];
-    if (stretch > t->slack[j]) sum += 0.5 * t->stiffness[j] * stretch * stretch;
+    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, state->q);
+    sum += strut_member_elastic_energy(t, j, &pose);
   }
   return sum;
 }
@@ -49,8 +46,7 @@ static double contact(const strut_model *model, const double *q) {
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
   for (int32_t i = 0; i < c->count; i++) {
-    uint32_t at = c->at[i];
-    double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
+    double gap = strut_contact_gap(c, i, q);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
   return sum;

@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "engine/forces/lane_tables.h"
 #include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
@@ -102,7 +103,7 @@ STRUT_LANE_INLINE void lane_sincos(lane_real turns, lane_real *sine, lane_real *
     for (int l = 0; l < LANE_WIDTH; l++)
       if (far[l]) turns[l] -= floor(turns[l]);
   lane_real rounded = 4.0 * turns + rounder, quarter = rounded - rounder;
-  lane_real x = 6.283185307179586476925 * (turns - 0.25 * quarter);
+  lane_real x = STRUT_TAU * (turns - 0.25 * quarter);
   lane_real s = lane_sine_of_small(x), c = lane_cosine_of_small(x);
   lane_mask quadrant = (lane_mask)rounded, odd = -(quadrant & 1);
   lane_real first = lane_choose(odd, c, s), second = lane_choose(odd, s, c);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
   if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_LAWS))) return false;
@@ -115,7 +117,7 @@ static void spread(double *to, int32_t width, int32_t lane, const double *from, 
 static void fill_wave(double *to, int32_t width, int32_t lane, const strut_signal *s) {
   const double row[STRUT_LANE_WAVE_ROWS] = {
       [STRUT_LANE_AMPLITUDE] = s->amplitude,
-      [STRUT_LANE_RATE] = s->amplitude * 6.283185307179586476925 * s->frequency,
+      [STRUT_LANE_RATE] = s->amplitude * STRUT_TAU * s->frequency,
       [STRUT_LANE_FREQUENCY] = s->frequency,
       [STRUT_LANE_PHASE] = s->phase,
       [STRUT_LANE_START] = s->start,

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
+
 /* Lengths are put right until they are so near, relative to themselves and to the coordinates. */
 static const double NEAR = 1e-13, ROUNDING = 4.5e-16;
 /* What a step may leave at worst. */
@@ -62,14 +64,14 @@ static strut_rigid *create(const strut_model *model, strut_arena *arena, double 
   g->end = strut_arena_allocate(arena, bars, sizeof *g->end);
   g->foot = strut_arena_allocate(arena, feet, sizeof *g->foot);
   g->row = strut_arena_allocate(arena, most, sizeof *g->row);
-  g->way = strut_arena_allocate(arena, most, sizeof *g->way);
+  g->direction = strut_arena_allocate(arena, most, sizeof *g->direction);
   g->matrix = strut_arena_allocate(arena, most * most, sizeof(double));
   g->right = strut_arena_allocate(arena, most, sizeof(double));
   g->stuck = strut_arena_allocate(arena, feet, sizeof *g->stuck);
   g->free = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
   g->push = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
   if (!g->member || !g->length || !g->tension || !g->at || !g->end || !g->foot || !g->row ||
-      !g->way || !g->matrix || !g->right || !g->stuck || !g->free || !g->push)
+      !g->direction || !g->matrix || !g->right || !g->stuck || !g->free || !g->push)
     return NULL;
   number_nodes(model, g, index);
   for (int c = 0; c < 2; c++) {
@@ -89,8 +91,7 @@ bool strut_rigid_create(const strut_model *model, strut_state *state) {
 
 static double distance(const strut_rigid *g, int32_t r, const double *q) {
   const double *a = q + g->at[g->end[r][0]], *b = q + g->at[g->end[r][1]];
-  double dx = b[0] - a[0], dy = b[1] - a[1];
-  return sqrt(dx * dx + dy * dy);
+  return strut_distance(a, b);
 }
 
 /* x += M^-1 J' right. */
@@ -160,11 +161,8 @@ static int32_t find_stuck(const strut_model *model, strut_rigid *g, const double
   const strut_contact_table *c = &model->contacts;
   int32_t count = 0;
   for (int32_t i = 0; i < c->count; i++) {
-    const double *x = q + c->at[i], *u = v + c->at[i];
-    double gap = x[0] * c->normal[0] + (x[1] - c->height) * c->normal[1];
-    double slip = u[0] * c->tangent[0] + u[1] * c->tangent[1] - c->belt_speed;
-    if (gap < 0.0 && c->entry[i].law == STRUT_FRICTION_KARNOPP &&
-        fabs(slip) < c->entry[i].stick_velocity)
+    if (strut_contact_gap(c, i, q) < 0.0 && c->entry[i].law == STRUT_FRICTION_KARNOPP &&
+        fabs(strut_contact_slip(c, i, v)) < c->entry[i].stick_velocity)
       g->stuck[count++] = i;
   }
   return count;
@@ -177,7 +175,7 @@ static bool hold(const strut_model *model, strut_rigid *g, const double *q, cons
   for (int32_t r = 0; r < g->bars; r++) {
     const double *va = v + g->at[g->end[r][0]], *vb = v + g->at[g->end[r][1]];
     double wx = vb[0] - va[0], wy = vb[1] - va[1];
-    double turn = g->way[r][0] * wy - g->way[r][1] * wx, length = distance(g, r, q);
+    double turn = g->direction[r].x * wy - g->direction[r].y * wx, length = distance(g, r, q);
     g->right[r] = -strut_rigid_along(g, r, a) - (length > 0.0 ? turn * turn / length : 0.0);
   }
   for (int32_t k = 0; k < stuck; k++) {
@@ -216,9 +214,8 @@ static void book(const strut_model *model, strut_state *state, const double *q, 
   int32_t count = find_stuck(model, g, q, v);
   for (int32_t k = 0; k < count; k++) {
     int32_t i = g->stuck[k];
-    const double *u = v + c->at[i];
-    double slip = u[0] * c->tangent[0] + u[1] * c->tangent[1] - c->belt_speed;
-    double rubbed = -state->friction[i] * slip, belt = state->friction[i] * c->belt_speed;
+    double slip = strut_contact_slip(c, i, v), rubbed = -state->friction[i] * slip;
+    double belt = state->friction[i] * c->belt_speed;
     state->power[STRUT_POWER_FRICTION] += rubbed;
     state->power[STRUT_POWER_BELT] += belt;
     state->power[STRUT_POWER_EXCHANGED] += fabs(rubbed) + fabs(belt);

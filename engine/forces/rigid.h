@@ -12,6 +12,7 @@
 #ifndef STRUT_ENGINE_FORCES_RIGID_H
 #define STRUT_ENGINE_FORCES_RIGID_H
 
+#include "engine/base/vec.h"
 #include "engine/model/state.h"
 
 /** Rigid bars at most: 600 take 12 MB and 40 million operations for an evaluation. */
@@ -28,7 +29,7 @@ typedef struct strut_rigid {
   double *inverse[2];        /* (nodes, nodes) M^-1 of x and of y [1/kg] */
   int32_t rows;              /* in use now */
   int32_t (*row)[2];         /* (most) ends of a row; the first -1 for a contact */
-  double (*way)[2];          /* (most) its direction */
+  strut_vec2 *direction;     /* (most) of a row */
   double *matrix;            /* (most, most) J M^-1 J', then its Cholesky factor */
   double *right;             /* (most) right-hand side, then the multipliers */
   int32_t *stuck;            /* (contacts) those within the band */

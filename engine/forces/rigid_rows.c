@@ -13,37 +13,37 @@ void strut_rigid_rows(strut_rigid *rigid, const double *q) {
   rigid->rows = rigid->bars;
   for (int32_t r = 0; r < rigid->bars; r++) {
     const double *a = q + rigid->at[rigid->end[r][0]], *b = q + rigid->at[rigid->end[r][1]];
-    double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
+    strut_vec2 span = strut_vec2_between(a, b);
     rigid->row[r][0] = rigid->end[r][0], rigid->row[r][1] = rigid->end[r][1];
-    rigid->way[r][0] = length > 0.0 ? dx / length : 0.0;
-    rigid->way[r][1] = length > 0.0 ? dy / length : 0.0;
+    rigid->direction[r] = strut_vec2_unit(span, strut_vec2_length(span));
   }
 }
 
 void strut_rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t contact) {
   int32_t r = rigid->rows++;
   rigid->row[r][0] = -1, rigid->row[r][1] = rigid->foot[contact];
-  for (int c = 0; c < 2; c++) rigid->way[r][c] = model->contacts.tangent[c];
+  rigid->direction[r] = (strut_vec2){model->contacts.tangent[0], model->contacts.tangent[1]};
 }
 
 double strut_rigid_along(const strut_rigid *rigid, int32_t r, const double *x) {
-  const double *way = rigid->way[r], *b = x + rigid->at[rigid->row[r][1]];
-  double sum = b[0] * way[0] + b[1] * way[1];
+  const strut_vec2 u = rigid->direction[r];
+  const double *b = x + rigid->at[rigid->row[r][1]];
+  double sum = b[0] * u.x + b[1] * u.y;
   if (rigid->row[r][0] < 0) return sum;
   const double *a = x + rigid->at[rigid->row[r][0]];
-  return sum - (a[0] * way[0] + a[1] * way[1]);
+  return sum - (a[0] * u.x + a[1] * u.y);
 }
 
 /* The entry of J M^-1 J' between two rows. */
 static double between(const strut_rigid *rigid, int32_t r, int32_t s) {
+  const strut_vec2 u = rigid->direction[r], w = rigid->direction[s];
   double sum = 0.0;
   for (int e = 0; e < 2; e++)
     for (int f = 0; f < 2; f++) {
       int32_t i = rigid->row[r][e], j = rigid->row[s][f];
       if (i < 0 || j < 0) continue;
       size_t place = (size_t)i * (size_t)rigid->nodes + (size_t)j;
-      double part = rigid->way[r][0] * rigid->way[s][0] * rigid->inverse[0][place] +
-                    rigid->way[r][1] * rigid->way[s][1] * rigid->inverse[1][place];
+      double part = u.x * w.x * rigid->inverse[0][place] + u.y * w.y * rigid->inverse[1][place];
       sum += e == f ? part : -part;
     }
   return sum;
@@ -93,7 +93,7 @@ void strut_rigid_spread(const strut_rigid *rigid, double *force) {
       if (rigid->row[r][e] < 0) continue;
       double *f = force + rigid->at[rigid->row[r][e]],
              push = e ? rigid->right[r] : -rigid->right[r];
-      f[0] += push * rigid->way[r][0];
-      f[1] += push * rigid->way[r][1];
+      f[0] += push * rigid->direction[r].x;
+      f[1] += push * rigid->direction[r].y;
     }
 }

@@ -4,18 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Row and column of a member's k-th place among its four coordinates: the lower triangle by rows. */
-static const int32_t row_of_place[STRUT_MIDPOINT_PLACES] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3};
-static const int32_t column_of_place[STRUT_MIDPOINT_PLACES] = {0, 0, 1, 0, 1, 2, 0, 1, 2, 3};
-
-/* Rows of the four coordinates of member j; -1 where supported. */
-static void rows_of(const strut_model *model, const int32_t *row_of, int32_t j, int32_t row[4]) {
-  for (int c = 0; c < 2; c++) {
-    row[c] = row_of[model->members.from[j] + (uint32_t)c];
-    row[2 + c] = row_of[model->members.to[j] + (uint32_t)c];
-  }
-}
-
 static void add_masses(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
   for (int c = 0; c < 2; c++) {
     const strut_mass_operator *op = &model->mass->coordinate[c];
@@ -37,47 +25,23 @@ static bool make_pattern(const strut_model *model, const int32_t *row_of, strut_
                          strut_midpoint_matrix *m) {
   strut_arena scratch = {0};
   strut_triplets sum = {0};
-  size_t most = STRUT_MIDPOINT_PLACES * (size_t)model->members.count + mass_entries(model);
+  size_t most = STRUT_MEMBER_ENTRIES * (size_t)model->members.count + mass_entries(model);
   bool good = strut_triplets_reserve(&sum, most, &scratch);
   if (good) {
     add_masses(model, row_of, &sum);
-    for (int32_t j = 0; j < model->members.count; j++) {
-      int32_t row[4];
-      rows_of(model, row_of, j, row);
-      for (int k = 0; k < STRUT_MIDPOINT_PLACES; k++) {
-        int32_t a = row[row_of_place[k]], b = row[column_of_place[k]];
-        if (a >= 0 && b >= 0) strut_triplets_add(&sum, a, b, 0.0);
-      }
-    }
+    strut_tangent_add_pattern(model, row_of, false, &sum);
     m->matrix = strut_sparse_build(m->n, &sum, arena);
   }
   strut_arena_free(&scratch);
   return good && m->matrix;
 }
 
-static int32_t find_place(const strut_sparse *matrix, int32_t a, int32_t b) {
-  int32_t column = a < b ? a : b, row = a < b ? b : a;
-  for (int32_t k = matrix->start[column]; k < matrix->start[column + 1]; k++)
-    if (matrix->row[k] == row) return k;
-  return -1;
-}
-
-static void find_places(const strut_model *model, const int32_t *row_of, strut_midpoint_matrix *m) {
-  for (int32_t j = 0; j < model->members.count; j++) {
-    int32_t row[4];
-    rows_of(model, row_of, j, row);
-    for (int k = 0; k < STRUT_MIDPOINT_PLACES; k++) {
-      int32_t a = row[row_of_place[k]], b = row[column_of_place[k]];
-      m->place[STRUT_MIDPOINT_PLACES * j + k] = a >= 0 && b >= 0 ? find_place(m->matrix, a, b) : -1;
-    }
-  }
-}
-
 static bool make_members(const strut_model *model, strut_arena *arena, strut_midpoint_matrix *m) {
   const strut_member_table *t = &model->members;
-  double **all[] = {&m->lightness, &m->way[0], &m->way[1], &m->slope};
-  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-    if (!(*all[i] = strut_arena_allocate(arena, (size_t)t->count, sizeof(double)))) return false;
+  m->lightness = strut_arena_allocate(arena, (size_t)t->count, sizeof *m->lightness);
+  m->direction = strut_arena_allocate(arena, (size_t)t->count, sizeof *m->direction);
+  m->slope = strut_arena_allocate(arena, (size_t)t->count, sizeof *m->slope);
+  if (!m->lightness || !m->direction || !m->slope) return false;
   for (int32_t j = 0; j < t->count; j++)
     for (int e = 0; e < 2; e++) {
       uint32_t at = e ? t->to[j] : t->from[j];
@@ -92,13 +56,9 @@ bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
   size_t both = (size_t)model->length, members = (size_t)model->members.count;
   int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
   m->coordinate = strut_arena_allocate(arena, both, sizeof *m->coordinate);
-  m->place = strut_arena_allocate(arena, STRUT_MIDPOINT_PLACES * members, sizeof *m->place);
+  m->place = strut_arena_allocate(arena, STRUT_MEMBER_ENTRIES * members, sizeof *m->place);
   if (!row_of || !m->coordinate || !m->place) return false;
-  m->n = 0;
-  for (int32_t at = 0; at < 2 * model->node_count; at++) {
-    row_of[at] = model->fixed[at] ? -1 : m->n;
-    if (!model->fixed[at]) m->coordinate[m->n++] = at;
-  }
+  m->n = strut_number_free(model, NULL, row_of, m->coordinate);
   if (m->n == 0) return true;
   if (!make_members(model, arena, m)) return false;
   if (!make_pattern(model, row_of, arena, m)) return false;
@@ -107,35 +67,28 @@ bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
   m->factor = strut_refactor_create(m->matrix, arena);
   if (!m->mass || !m->factor) return false;
   memcpy(m->mass, m->matrix->value, entries * sizeof *m->mass);
-  find_places(model, row_of, m);
+  strut_tangent_find_places(model, row_of, false, m->matrix, m->place);
   return true;
 }
 
 /* The direction of a member's force; 0 where it has none. */
-static void way_of(const strut_discrete_gradient *step, int32_t j, double way[2]) {
-  double x = step->sum[0][j], y = step->sum[1][j], size = sqrt(x * x + y * y);
-  way[0] = size > 0.0 ? x / size : 0.0;
-  way[1] = size > 0.0 ? y / size : 0.0;
+static strut_vec2 force_direction(const strut_discrete_gradient *step, int32_t j) {
+  strut_vec2 sum = {step->sum[0][j], step->sum[1][j]};
+  return strut_vec2_unit(sum, strut_vec2_length(sum));
 }
 
 /* Adds h^2/2 of what the forces of member j change by with its end: B, -B, B. */
 static void add_member(const strut_discrete_gradient *step, int32_t j, double tension,
                        strut_midpoint_matrix *m) {
-  double half = 0.5 * step->h * step->h, lengths = step->lengths[j], way[2];
-  const int32_t *place = m->place + STRUT_MIDPOINT_PLACES * j;
-  double *value = m->matrix->value;
-  way_of(step, j, way);
-  double ux = m->way[0][j] = way[0], uy = m->way[1][j] = way[1];
-  bool shapeless = ux == 0.0 && uy == 0.0; /* as an isotropic spring */
+  double half = 0.5 * step->h * step->h, lengths = step->lengths[j];
+  strut_vec2 u = m->direction[j] = force_direction(step, j);
+  bool shapeless = u.x == 0.0 && u.y == 0.0; /* as an isotropic spring */
   m->slope[j] = step->slope[j];
-  double across = shapeless ? step->slope[j] : tension / lengths, along = step->slope[j] - across;
-  double block[3] = {half * (across + along * ux * ux), half * along * ux * uy,
-                     half * (across + along * uy * uy)};
-  for (int k = 0; k < STRUT_MIDPOINT_PLACES; k++) {
-    int32_t row = row_of_place[k], column = column_of_place[k];
-    double part = block[row % 2 + column % 2];
-    if (place[k] >= 0) value[place[k]] += row / 2 == column / 2 ? part : -part;
-  }
+  strut_block block =
+      strut_block_of(step->slope[j], shapeless ? step->slope[j] : tension / lengths, u);
+  for (int k = 0; k < 3; k++) block.part[k] *= half;
+  strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, m->place + STRUT_MEMBER_ENTRIES * j,
+                      m->matrix->value);
 }
 
 bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
@@ -153,9 +106,9 @@ bool strut_midpoint_matrix_stale(const strut_model *model, const strut_discrete_
                                  const strut_midpoint_matrix *m) {
   const double much = 1e-3;
   for (int32_t j = 0; j < model->members.count; j++) {
-    double per_mass = 0.5 * step->h * step->h * m->lightness[j], way[2];
-    way_of(step, j, way);
-    double sine = way[0] * m->way[1][j] - way[1] * m->way[0][j];
+    double per_mass = 0.5 * step->h * step->h * m->lightness[j];
+    strut_vec2 u = force_direction(step, j), before = m->direction[j];
+    double sine = u.x * before.y - u.y * before.x;
     double change = fabs(step->slope[j] - m->slope[j]);
     if (per_mass * step->slope[j] * sine * sine > much) return true;
     if (per_mass * change > much * (1.0 + per_mass * m->slope[j])) return true;

@@ -7,20 +7,20 @@
 #define STRUT_ENGINE_INTEGRATE_MIDPOINT_MATRIX_H
 
 #include "engine/forces/discrete_gradient.h"
+#include "engine/forces/tangent.h"
 #include "engine/model/refactor.h"
 #include "engine/model/sparse.h"
-
-enum { STRUT_MIDPOINT_PLACES = 10 }; /* of a member in the lower triangle */
 
 typedef struct strut_midpoint_matrix {
   int32_t n;           /* free coordinates */
   int32_t *coordinate; /* (n) where they stand in coordinate arrays */
   strut_sparse *matrix;
   double *mass;           /* M at the matrix's places */
-  int32_t *place;         /* (members, STRUT_MIDPOINT_PLACES) into its values; -1 where supported */
+  int32_t *place;         /* (members, STRUT_MEMBER_ENTRIES) into its values; -1 where supported */
   strut_refactor *factor; /* NULL where nothing is free */
   double *lightness;      /* (members) inverse masses of their free ends, added [1/kg] */
-  double *way[2], *slope; /* (members) direction and slope that the factor was made with */
+  strut_vec2 *direction;  /* (members) that the factor was made with */
+  double *slope;          /* (members) likewise */
 } strut_midpoint_matrix;
 
 /** In the arena; false: out of memory. */

@@ -194,6 +194,14 @@ strut_status strut_file_write_text(const char *directory, const char *name, cons
   return status == STRUT_OK ? write_and_commit(&file, text, error) : status;
 }
 
+strut_status strut_file_write_block(const char *directory, const char *name, char *text,
+                                    strut_error *error) {
+  if (!text) return no_memory(error);
+  strut_status status = strut_file_write_text(directory, name, text, error);
+  strut_release(text);
+  return status;
+}
+
 strut_status strut_file_write_path(const char *path, const char *text, strut_error *error) {
   strut_file file;
   strut_status status = strut_file_open_path(&file, path, error);

@@ -12,7 +12,7 @@
 
 /** A file being written. Zero-initialise. */
 typedef struct strut_file {
-  FILE *stream;      /* write here; its error flag is looked at on commit */
+  FILE *stream;      /* write here; its error flag is checked on commit */
   char *path, *part; /* the final name, and the name while it is written */
 } strut_file;
 
@@ -21,7 +21,7 @@ STRUT_API strut_status strut_directory_create(const char *directory, strut_error
 /** Opens directory/name for writing under a temporary name beside it. */
 STRUT_API strut_status strut_file_open(strut_file *file, const char *directory, const char *name,
                                        strut_error *error);
-/** The same for a path of any kind, such as the argument of an option; its folder exists. */
+/** As strut_file_open, for a path whose folder exists. */
 STRUT_API strut_status strut_file_open_path(strut_file *file, const char *path, strut_error *error);
 /** Flushes, synchronises and renames; on failure nothing of it is left. */
 STRUT_API strut_status strut_file_commit(strut_file *file, strut_error *error);
@@ -34,7 +34,10 @@ STRUT_API void strut_file_remove(const char *directory, const char *name);
 /** Writes a whole text as a file. */
 STRUT_API strut_status strut_file_write_text(const char *directory, const char *name,
                                              const char *text, strut_error *error);
-/** The same for a path. */
+/** As strut_file_write_text, but releases the text (of strut_allocate); NULL means memory is out. */
+STRUT_API strut_status strut_file_write_block(const char *directory, const char *name, char *text,
+                                              strut_error *error);
+/** As strut_file_write_text, for a path. */
 STRUT_API strut_status strut_file_write_path(const char *path, const char *text,
                                              strut_error *error);
 

@@ -39,11 +39,12 @@ static void add_accuracy(strut_json *json, cJSON *to, const strut_accuracy_summa
   strut_json_integer(json, accuracy, "check_evaluations", a->check_evaluations);
 }
 
-static void add_limit_fell(strut_json *json, cJSON *to, const strut_step_limit_violation *fell) {
+static void add_limit_violation(strut_json *json, cJSON *to,
+                                const strut_step_limit_violation *fell) {
   if (!(fell->limit > 0.0)) return;
-  cJSON *object = strut_json_object(json, to, "step_limit_fell");
-  strut_json_number(json, object, "to", fell->limit);
-  strut_json_number(json, object, "at", fell->time);
+  cJSON *object = strut_json_object(json, to, "step_limit_violation");
+  strut_json_number(json, object, "limit", fell->limit);
+  strut_json_number(json, object, "time", fell->time);
   strut_json_number(json, object, "since", fell->since);
   strut_json_integer(json, object, "steps", fell->steps);
 }
@@ -89,7 +90,7 @@ static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_text(json, to, "method", s->method);
   strut_json_number(json, to, "step", s->step);
   strut_json_number(json, to, "step_limit", s->step_limit);
-  add_limit_fell(json, to, &s->limit_fell);
+  add_limit_violation(json, to, &s->limit_fell);
   add_steady(json, to, &s->steady);
   add_accuracy(json, to, &s->accuracy);
   if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);
@@ -160,7 +161,7 @@ static void add_energy(strut_json *json, cJSON *to, const strut_summary *s) {
   strut_json_number(json, energy, "dissipated_friction", e->dissipated_friction);
   strut_json_number(json, energy, "initial", e->initial);
   strut_json_number(json, energy, "residual", e->residual);
-  strut_json_number(json, energy, "moved", e->moved);
+  strut_json_number(json, energy, "exchanged", e->moved);
   strut_json_text(json, energy, "balance", balances[s->balance]);
 }
 

@@ -67,7 +67,7 @@ static void add_velocity(rows *r, const strut_experiment *experiment, const stru
   if (!isfinite(number(r->from, "velocity"))) return;
   snprintf(label, sizeof label, "mean velocity of %s",
            node >= 0 ? scene->nodes[node].name : "the centre of mass");
-  snprintf(value, sizeof value, "%s%s%s, from %s on", in(number(r->from, "velocity"), "m/s").text,
+  snprintf(value, sizeof value, "%s%s%s, from %s", in(number(r->from, "velocity"), "m/s").text,
            isfinite(spread) ? ", spread " : "", isfinite(spread) ? in(spread, "m/s").text : "",
            isfinite(from) ? in(from, "s").text : "the start");
   add_row(r, label, value);
@@ -95,7 +95,7 @@ static void add_steps(rows *r) {
   double step = number(r->from, "step"), limit = number(r->from, "step_limit");
   double steps = number(r->from, "steps"), settled = number(r->from, "settle_time");
   add_quantity(r, "duration", "duration", "s");
-  if (settled > 0) add_row(r, "settling before", in(settled, "s").text);
+  if (settled > 0) add_row(r, "settling time", in(settled, "s").text);
   if (!isfinite(step) || !isfinite(steps)) return;
   snprintf(value, sizeof value, "%.0f of %s", steps, in(step, "s").text);
   add_row(r, "steps", value);
@@ -115,20 +115,23 @@ static void add_contacts(rows *r) {
       return;
     }
     snprintf(label, sizeof label, "contact of %s", contact->string);
-    snprintf(value, sizeof value, "%.1f %% of the time, up to %s high", 100 * duty,
+    snprintf(value, sizeof value, "%.1f %% of the time, at most %s high", 100 * duty,
              in(height, "m").text);
     add_row(r, label, value);
   }
 }
 
-/* Works and losses that there are, and what is left over. */
+/* Works and losses that are not zero, and the residual of the balance. */
 static void add_energy(rows *r) {
   static const struct {
     const char *key, *label;
   } parts[] = {
-      {"drive_work", "work of the drives"},       {"load_work", "work of the loads"},
-      {"belt_work", "work of the belt"},          {"dissipated_members", "lost in members"},
-      {"dissipated_contact", "lost in contacts"}, {"dissipated_friction", "lost to friction"},
+      {"drive_work", "drive work"},
+      {"load_work", "load work"},
+      {"belt_work", "belt work"},
+      {"dissipated_members", "dissipated in members"},
+      {"dissipated_contact", "dissipated in contacts"},
+      {"dissipated_friction", "dissipated by friction"},
   };
   const cJSON *energy = cJSON_GetObjectItemCaseSensitive(r->from, "energy");
   char value[VALUE];
@@ -136,16 +139,17 @@ static void add_energy(rows *r) {
     double amount = number(energy, parts[i].key);
     if (isfinite(amount) && amount != 0) add_row(r, parts[i].label, in(amount, "J").text);
   }
-  double residual = number(energy, "residual"), moved = number(energy, "moved");
+  double residual = number(energy, "residual"), moved = number(energy, "exchanged");
+  if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */
   const char *balance = text(energy, "balance");
   bool open = balance && strcmp(balance, "open") == 0;
   if (!isfinite(residual)) return;
   if (moved > 0)
-    snprintf(value, sizeof value, "%s, %.1e of the energy moved%s", in(residual, "J").text,
+    snprintf(value, sizeof value, "%s, %.1e of the energy exchanged%s", in(residual, "J").text,
              fabs(residual) / moved, open ? ": the balance does not close" : "");
   else
     snprintf(value, sizeof value, "%s", in(residual, "J").text);
-  add_row(r, "missing in the energy balance", value);
+  add_row(r, "energy residual", value);
 }
 
 void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The end of a run as a table of a screenful. */
+/* The summary of a run as a table that fits a screen. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,17 +15,17 @@ static strut_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-/* Steady motion and wanted accuracy, where they were asked for. */
+/* Steady motion and accuracy, if requested. */
 static void add_claims(strut_buffer *table, const strut_summary *s) {
   const strut_steady_summary *m = &s->steady;
   const strut_accuracy_summary *a = &s->accuracy;
   if (m->kind == STRUT_MOTION_PERIODIC) {
     strut_buffer_add(table, "  steady      after %" PRId64 " periods, every ", m->periods);
     if (m->repeats > 1)
-      strut_buffer_add(table, "%d of them alike", (int)m->repeats);
+      strut_buffer_add(table, "%d of them repeating", (int)m->repeats);
     else
-      strut_buffer_add(table, "one alike");
-    strut_buffer_add(table, "; the velocity is known within %s\n", in(m->interval, "m/s").text);
+      strut_buffer_add(table, "one repeating");
+    strut_buffer_add(table, "; velocity known within %s\n", in(m->interval, "m/s").text);
   } else if (m->kind == STRUT_MOTION_TRANSIENT) {
     strut_buffer_add(table, "  steady      not within %" PRId64 " periods\n", m->periods);
   } else if (m->kind == STRUT_MOTION_IRREGULAR) {
@@ -43,17 +43,18 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
       strut_buffer_add(table, " %.4g", hypot(m->multiplier[i][0], m->multiplier[i][1]));
     strut_buffer_add(table, "\n");
   } else if (m->reason[0]) {
-    strut_buffer_add(table, "  orbit       not shot: %s\n", m->reason);
+    strut_buffer_add(table, "  orbit       not computed: %s\n", m->reason);
   }
   if (!(a->wanted > 0.0)) return;
   char expected[40] = "the velocity is zero by symmetry";
   if (!s->velocity_zero || s->measured_count)
     snprintf(expected, sizeof expected, isnan(a->expected) ? "error not known" : "%.3g %% expected",
              100.0 * a->expected);
-  strut_buffer_add(
-      table,
-      "  accuracy    %.2g %% %s, %s; checked with %" PRId64 " forces more\n              %s\n",
-      100.0 * a->wanted, a->kept ? "kept" : "NOT kept", expected, a->check_evaluations, a->why);
+  strut_buffer_add(table,
+                   "  accuracy    %.2g %% %s, %s; checked with %" PRId64
+                   " more force evaluations\n              %s\n",
+                   100.0 * a->wanted, a->kept ? "kept" : "NOT kept", expected, a->check_evaluations,
+                   a->why);
 }
 
 static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
@@ -65,7 +66,7 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   if (isfinite(s->velocity_spread)) {
     strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
   }
-  strut_buffer_add(table, ", from %s on%s\n", in(s->window_start, "s").text,
+  strut_buffer_add(table, ", from %s%s\n", in(s->window_start, "s").text,
                    s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
                        ? ", zero but for rounding"
                        : "");
@@ -75,15 +76,16 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
     strut_buffer_add(table, ", after %s of settling", in(s->settle_time, "s").text);
   }
   if (s->settle.unstable)
-    strut_buffer_add(
-        table, "\n  start       settled on an UNSTABLE equilibrium; node %s would leave it first",
-        s->settle.node);
+    strut_buffer_add(table,
+                     "\n  start       settled on an UNSTABLE equilibrium; node %s moves most in "
+                     "the unstable direction",
+                     s->settle.node);
   strut_buffer_add(table, "\n  step        %s, stable up to %s\n", in(s->step, "s").text,
                    in(s->step_limit, "s").text);
   if (s->limit_fell.limit > 0.0)
-    strut_buffer_add(table, "              TOO LARGE since %s: the largest stable one fell to %s\n",
+    strut_buffer_add(table, "              TOO LARGE since %s: the stability limit fell to %s\n",
                      in(s->limit_fell.since, "s").text, in(s->limit_fell.limit, "s").text);
-  strut_buffer_add(table, "  computed    %" PRId64 " forces in %s", s->force_evaluations,
+  strut_buffer_add(table, "  computed    %" PRId64 " force evaluations in %s", s->force_evaluations,
                    in(s->wall_time, "s").text);
   if (s->steps > 0) {
     strut_buffer_add(table, ", %s per step", in(s->wall_time / (double)s->steps, "s").text);
@@ -93,9 +95,9 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   add_claims(table, s);
 }
 
-/* Why a quantity of a run that came to its end has no value. */
+/* Why a quantity has no value. */
 static const char *missing(const strut_summary *s) {
-  return s->status == STRUT_OK ? "no finite number" : "the window was not reached";
+  return s->status == STRUT_OK ? "not finite" : "the window was not reached";
 }
 
 static void add_measured(strut_buffer *table, const strut_summary *s) {
@@ -110,7 +112,8 @@ static void add_measured(strut_buffer *table, const strut_summary *s) {
     if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s));
     if (m->zero) strut_buffer_add(table, "  zero but for rounding");
     if (isfinite(m->expected))
-      strut_buffer_add(table, "  %s within %s", m->kept ? "known" : "NOT known as wanted, but",
+      strut_buffer_add(table, "  %s within %s",
+                       m->kept ? "known" : "NOT as accurate as requested, but",
                        strut_quantity_of_any(m->expected, 2, m->unit).text);
     strut_buffer_add(table, "\n");
   }
@@ -131,11 +134,11 @@ static void add_positions(strut_buffer *table, const strut_summary *s) {
 
 static void add_contacts(strut_buffer *table, const strut_summary *s) {
   if (s->contact_count) {
-    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "time touching", "largest height");
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
   }
   for (size_t i = 0; i < s->contact_count && i < MOST_ROWS; i++) {
     const strut_contact_summary *contact = &s->contacts[i];
-    if (isnan(contact->duty)) { /* the run did not come to its window */
+    if (isnan(contact->duty)) { /* the run ended before its window */
       strut_buffer_add(table, "  %-16s %14s %14s\n", contact->node, "none", "none");
       continue;
     }
@@ -149,10 +152,10 @@ static void add_balance(strut_buffer *table, const strut_summary *s) {
   const strut_energy *e = &s->energy;
   if (s->balance == STRUT_BALANCE_NOT_KEPT || !(e->moved > 0.0)) return;
   if (s->balance == STRUT_BALANCE_OPEN)
-    strut_buffer_add(table, "  %-16s %14s   NOT closed: %.2g %% of the energy moved\n", "balance",
-                     "", 100.0 * fabs(e->residual) / e->moved);
+    strut_buffer_add(table, "  %-16s %14s   NOT closed: %.2g %% of the energy exchanged\n",
+                     "balance", "", 100.0 * fabs(e->residual) / e->moved);
   else
-    strut_buffer_add(table, "  %-16s %14s   within 1 %% of the energy moved\n", "balance",
+    strut_buffer_add(table, "  %-16s %14s   within 1 %% of the energy exchanged\n", "balance",
                      "closed");
 }
 
@@ -165,9 +168,9 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
       {"elastic", e->elastic},
       {"gravity", e->gravity},
       {"ground springs", e->contact},
-      {"done by drives", e->drive_work},
-      {"done by loads", e->load_work},
-      {"done by the belt", e->belt_work},
+      {"drive work", e->drive_work},
+      {"load work", e->load_work},
+      {"belt work", e->belt_work},
       {"lost in members", e->dissipated_members},
       {"lost in contact", e->dissipated_contact},
       {"lost to friction", e->dissipated_friction},
@@ -175,7 +178,7 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
   };
   strut_buffer_add(table, "\n  energy\n");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    if (rows[i].value == 0.0) continue; /* what the scene does not have */
+    if (rows[i].value == 0.0) continue; /* not in this scene */
     strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);
   }
 }

@@ -8,6 +8,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/integrate/integrator.h"
+#include "engine/model/pose.h"
 
 /* Evaluations after which accelerations that rounding alone explains count as rest. */
 static const int64_t PATIENCE = 1000000;
@@ -51,13 +52,13 @@ static double rounding(const strut_relaxation *r) {
   memset(force, 0, (size_t)model->length * sizeof *force);
   for (int32_t j = 0; j < t->count; j++) {
     const double *a = r->state->q + t->from[j], *b = r->state->q + t->to[j];
-    double far = fmax(fmax(fabs(a[0]), fabs(a[1])), fmax(fabs(b[0]), fabs(b[1])));
+    double far = strut_coordinate_rounding(a, b);
     force[t->from[j]] += t->stiffness[j] * far;
     force[t->to[j]] += t->stiffness[j] * far;
   }
   for (int32_t i = 0; i < model->node_count; i++)
     if (model->weight[i] > 0.0) worst = fmax(worst, force[2 * i] / model->weight[i]);
-  return 4.0 * DBL_EPSILON * worst;
+  return 4.0 * worst;
 }
 
 static strut_status give_up(const strut_relaxation *r, strut_error *error) {

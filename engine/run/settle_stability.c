@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "engine/run/settle.h"
 
 /* Of the largest stiffness: what rounding may make of a motion without any. */
@@ -83,8 +83,8 @@ static void hold_sticking(const strut_model *model, const double *q, strut_tange
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
-    const double *at = q + c->at[i], *t = c->tangent;
-    bool touches = at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1] < 0.0;
+    const double *t = c->tangent;
+    bool touches = strut_contact_gap(c, i, q) < 0.0;
     if (!touches || e->law == STRUT_FRICTION_NONE || !(e->mu_static > 0.0)) continue;
     strut_sparse *k = tangent->stiffness;
     const int32_t row[2] = {find_row(tangent, (int32_t)c->at[i]),

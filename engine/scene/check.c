@@ -9,6 +9,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/name_map.h"
+#include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
 
 void strut_candidate_equilibrium(strut_checker *checker, strut_subject subject, size_t index,
@@ -139,11 +140,6 @@ void strut_check_nodes(strut_checker *checker) {
   }
 }
 
-static double distance(const double a[2], const double b[2]) {
-  double dx = b[0] - a[0], dy = b[1] - a[1];
-  return sqrt(dx * dx + dy * dy);
-}
-
 static const char *rest_key(strut_rest_kind kind) {
   static const char *const keys[] = {"rest_length_ratio", "rest_length", "pretension",
                                      "force_density"};
@@ -222,7 +218,8 @@ static void check_shape(strut_checker *checker, size_t index, const char *owner)
   const strut_scene *scene = checker->scene;
   const strut_member *m = &scene->members[index];
   const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
-  double drawn = distance(a->position, b->position), start = distance(a->start, b->start);
+  double drawn = strut_distance(a->position, b->position),
+         start = strut_distance(a->start, b->start);
   const char *key = rest_key(m->rest_kind);
   bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
   strut_rest rest;

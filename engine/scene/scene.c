@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 void strut_scene_init(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
   scene->name = scene->description = scene->source = "";
@@ -31,8 +33,7 @@ void strut_scene_free(strut_scene *scene) {
 static double drawn_length(const strut_scene *scene, const strut_member *member) {
   const double *a = scene->nodes[member->node[0]].position;
   const double *b = scene->nodes[member->node[1]].position;
-  double dx = b[0] - a[0], dy = b[1] - a[1];
-  return sqrt(dx * dx + dy * dy);
+  return strut_distance(a, b);
 }
 
 /* Rest length that gives `force` in the drawn shape; NAN where there is none. */

@@ -6,8 +6,7 @@
 #include <stdbool.h>
 
 #include "engine/base/trig.h"
-
-static const double TWO_PI = 6.283185307179586476925;
+#include "engine/base/vec.h"
 
 strut_signal strut_signal_default(strut_signal_kind kind) {
   return (strut_signal){.kind = kind, .stop = (double)INFINITY};
@@ -17,7 +16,7 @@ static inline void wave(const strut_signal *s, double turns, double *value, doub
   double sine, cosine;
   strut_sincos_turns(turns, &sine, &cosine);
   *value = s->amplitude * sine;
-  *rate = s->amplitude * TWO_PI * s->frequency * cosine;
+  *rate = s->amplitude * STRUT_TAU * s->frequency * cosine;
 }
 
 static void ramp(const strut_signal *s, double t, double *value, double *rate) {

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/descent_parts.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
@@ -65,13 +66,6 @@ static bool look(strut_minimiser *m, const double *q) {
   return m->curvature->look(m->room, q);
 }
 
-static double largest_of(const double *g, int32_t n) {
-  double largest = 0.0;
-  for (int32_t i = 0; i < n; i++)
-    if (!(fabs(g[i]) <= largest)) largest = fabs(g[i]); /* a NAN stays */
-  return largest;
-}
-
 /* trial = q + factor * step. */
 static void move(strut_minimiser *m, const double *q, double factor) {
   const strut_potential *p = m->potential;
@@ -114,7 +108,7 @@ static void polish(strut_minimiser *m, double *q, double tolerance, double reach
     if (!(length < 0.9 * earlier) || length > reach) break;
     move(m, q, 1.0);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
-    double residual = largest_of(m->g_trial, n);
+    double residual = strut_largest_magnitude(m->g_trial, n);
     double allowed = tolerated(m, m->trial, tolerance, &end->rounding);
     if (!(residual <= fmax(allowed, end->residual))) break;
     keep_trial(m, q);
@@ -247,7 +241,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   memcpy(m->before, q, (size_t)m->potential->model->length * sizeof *q);
   strut_potential_gradient(m->potential, q, m->g);
   for (; end.iterations < MOST_STEPS; end.iterations++) {
-    end.residual = largest_of(m->g, n);
+    end.residual = strut_largest_magnitude(m->g, n);
     double allowed = tolerated(m, q, tolerance, &end.rounding);
     end.end = STRUT_DESCENT_EXHAUSTED;
     if (ran_away(m, q, m->before)) {
@@ -315,9 +309,9 @@ bool strut_descend_along(strut_minimiser *m, const double *direction, double sid
 strut_descent strut_polish(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   strut_potential_gradient(m->potential, q, m->g);
-  end.residual = largest_of(m->g, m->potential->n);
+  end.residual = strut_largest_magnitude(m->g, m->potential->n);
   polish(m, q, tolerance, 0.1 * m->size, &end);
-  end.residual = largest_of(m->g, m->potential->n);
+  end.residual = strut_largest_magnitude(m->g, m->potential->n);
   if (end.residual <= tolerated(m, q, tolerance, &end.rounding)) end.end = STRUT_DESCENT_REACHED;
   return end;
 }

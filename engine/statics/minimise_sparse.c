@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/descent_parts.h"
 
 typedef struct room {
@@ -61,24 +62,19 @@ static bool look(void *memory, const double *q) {
   return true;
 }
 
-static double dot(const double *a, const double *b, int32_t n) {
-  double sum = 0.0;
-  for (int32_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* s = -(H + shift)^-1 g; its length. */
 static double solve(room *r, const double *g, double *s) {
   int32_t n = r->hessian->n;
   for (int32_t i = 0; i < n; i++) s[i] = -g[i];
   strut_ldl_solve(r->ldl, s);
-  return sqrt(dot(s, s, n));
+  return sqrt(strut_dot(s, s, n));
 }
 
 static strut_model_step judge(room *r, const double *g, const double *s) {
   int32_t n = r->hessian->n;
   strut_sparse_multiply(r->hessian, s, r->work);
-  return (strut_model_step){sqrt(dot(s, s, n)), -dot(g, s, n) - 0.5 * dot(s, r->work, n)};
+  return (strut_model_step){sqrt(strut_dot(s, s, n)),
+                            -strut_dot(g, s, n) - 0.5 * strut_dot(s, r->work, n)};
 }
 
 /* The smallest of the shifts tried at which H + shift is positive definite; false: none is. */
@@ -124,7 +120,7 @@ static void shorten(room *r, const double *g, double radius, double low, double 
   for (int i = 0; i < 30 && !(length <= radius && length > 0.7 * radius); i++) {
     memcpy(r->other, s, (size_t)n * sizeof *s);
     strut_ldl_solve(r->ldl, r->other);
-    double slope = dot(s, r->other, n); /* -|s| d|s|/dshift */
+    double slope = strut_dot(s, r->other, n); /* -|s| d|s|/dshift */
     double next = shift + length * length * (length / (0.85 * radius) - 1.0) / slope;
     if (!(next > low && next < high))
       next = high == HUGE_VAL ? fmax(10.0 * low, 1e-14 * r->scale) : 0.5 * (low + high);
@@ -176,10 +172,10 @@ static bool ridge(void *memory, double *s) {
   for (int32_t i = 0; i < n; i++) s[i] = sin(1.0 + 12.9898 * i);
   for (int turn = 0; turn < 20; turn++) {
     strut_ldl_solve(r->ldl, s);
-    double length = sqrt(dot(s, s, n));
+    double length = sqrt(strut_dot(s, s, n));
     for (int32_t i = 0; i < n; i++) s[i] /= length;
     strut_sparse_multiply(r->hessian, s, r->work);
-    quotient = dot(s, r->work, n);
+    quotient = strut_dot(s, r->work, n);
     if (turn > 3 && quotient < 0) break;
   }
   return quotient < -1e-13 * r->scale;

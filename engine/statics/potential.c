@@ -1,21 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/potential.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* Entries of the lower triangle of a member's 4 x 4 block, and of a contact's 2 x 2 one. */
-enum { MEMBER_ENTRIES = 10, CONTACT_ENTRIES = 3 };
-
-static void number_coordinates(strut_potential *p, const uint8_t *held) {
-  const strut_model *model = p->model;
-  for (int32_t at = 0; at < model->length; at++) {
-    bool free = at < 2 * model->node_count && !model->fixed[at] && !(held && held[at]);
-    p->row_of[at] = free ? p->n : -1;
-    if (free) p->coordinate[p->n++] = at;
-  }
-}
+#include "engine/forces/tangent.h"
 
 static void sum_forces(strut_potential *p) {
   const strut_model *model = p->model;
@@ -29,70 +20,20 @@ static void sum_forces(strut_potential *p) {
       p->force_scale += hypot(scene->loads[i].force[0], scene->loads[i].force[1]);
 }
 
-/* The rows of a member's x and y at one end, x and y at the other. */
-static void member_rows(const strut_potential *p, int32_t j, int32_t row[4]) {
-  uint32_t a = p->model->members.from[j], b = p->model->members.to[j];
-  row[0] = p->row_of[a], row[1] = p->row_of[a + 1];
-  row[2] = p->row_of[b], row[3] = p->row_of[b + 1];
-}
-
-static void add_pattern(const int32_t *row, int count, strut_triplets *sum) {
-  for (int i = 0; i < count; i++)
-    for (int j = 0; j <= i; j++)
-      if (row[i] >= 0 && row[j] >= 0) strut_triplets_add(sum, row[i], row[j], 0.0);
-}
-
-/* Where entry (row, column) stands in the pattern's values; it is there. */
-static int32_t find_place(const strut_sparse *pattern, int32_t row, int32_t column) {
-  int32_t low = pattern->start[column], high = pattern->start[column + 1] - 1;
-  while (low < high) {
-    int32_t middle = low + (high - low) / 2;
-    if (pattern->row[middle] < row)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-static int32_t *find_places(const strut_potential *p, const int32_t *row, int count,
-                            int32_t *place) {
-  for (int i = 0; i < count; i++)
-    for (int j = 0; j <= i; j++, place++) {
-      bool there = row[i] >= 0 && row[j] >= 0;
-      *place = !there            ? -1
-               : row[i] > row[j] ? find_place(p->pattern, row[i], row[j])
-                                 : find_place(p->pattern, row[j], row[i]);
-    }
-  return place;
-}
-
 static bool make_pattern(strut_potential *p) {
   const strut_model *model = p->model;
-  size_t members = (size_t)model->members.count, contacts = (size_t)model->contacts.count;
-  size_t most = MEMBER_ENTRIES * members + CONTACT_ENTRIES * contacts;
+  size_t most = STRUT_MEMBER_ENTRIES * (size_t)model->members.count +
+                STRUT_CONTACT_ENTRIES * (size_t)model->contacts.count;
   strut_arena scratch = {0};
   strut_triplets sum = {0};
   p->place = strut_arena_allocate(&p->arena, most, sizeof *p->place);
   if (p->place && strut_triplets_reserve(&sum, most, &scratch)) {
-    int32_t row[4];
-    for (int32_t j = 0; j < model->members.count; j++) {
-      member_rows(p, j, row);
-      add_pattern(row, 4, &sum);
-    }
-    for (int32_t i = 0; i < model->contacts.count; i++)
-      add_pattern(p->row_of + model->contacts.at[i], 2, &sum);
+    strut_tangent_add_pattern(model, p->row_of, true, &sum);
     p->pattern = strut_sparse_build(p->n, &sum, &p->arena);
   }
   strut_arena_free(&scratch);
   if (!p->pattern) return false;
-  int32_t *place = p->place, row[4];
-  for (int32_t j = 0; j < model->members.count; j++) {
-    member_rows(p, j, row);
-    place = find_places(p, row, 4, place);
-  }
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    place = find_places(p, p->row_of + model->contacts.at[i], 2, place);
+  strut_tangent_find_places(model, p->row_of, true, p->pattern, p->place);
   return true;
 }
 
@@ -107,7 +48,7 @@ strut_status strut_potential_create(const strut_model *model, const uint8_t *hel
   p->row_of = strut_arena_allocate(&p->arena, length, sizeof *p->row_of);
   p->force = strut_arena_allocate(&p->arena, length, sizeof *p->force);
   if (p->coordinate && p->row_of && p->force) {
-    number_coordinates(p, held);
+    p->n = strut_number_free(model, held, p->row_of, p->coordinate);
     sum_forces(p);
     if (make_pattern(p)) return STRUT_OK;
   }
@@ -122,34 +63,12 @@ void strut_potential_free(strut_potential *potential) {
   strut_release(potential);
 }
 
-/* A member as it lies. */
-typedef struct pose {
-  double length, stretch;
-  double ux, uy; /* from its first node to the second; 0 where it has no length */
-  bool taut;     /* pulls or pushes */
-} pose;
-
-static inline pose pose_of(const strut_member_table *t, int32_t j, const double *q) {
-  const double *a = q + t->from[j], *b = q + t->to[j];
-  double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
-  pose m = {.length = length, .stretch = length - t->rest[j]};
-  m.taut = m.stretch > t->slack[j];
-  if (length > 0) m.ux = dx / length, m.uy = dy / length;
-  return m;
-}
-
-/* How far a contact's node lies above the ground, below 0 where it touches. */
-static inline double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
-  const double *at = q + c->at[i];
-  return at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
-}
-
 static double elastic_energy(const strut_potential *p, const double *q) {
   const strut_member_table *t = &p->model->members;
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
-    pose m = pose_of(t, j, q);
-    if (m.taut) sum += 0.5 * t->stiffness[j] * m.stretch * m.stretch;
+    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
+    sum += strut_member_elastic_energy(t, j, &m);
   }
   return sum;
 }
@@ -159,7 +78,7 @@ double strut_potential_value(const strut_potential *p, const double *q) {
   double sum = elastic_energy(p, q), work = 0.0;
   for (int32_t at = 0; at < 2 * p->model->node_count; at++) work += p->force[at] * q[at];
   for (int32_t i = 0; i < c->count && p->ground; i++) {
-    double gap = gap_of(c, i, q);
+    double gap = strut_contact_gap(c, i, q);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
   return sum - work;
@@ -178,14 +97,14 @@ void strut_potential_force(const strut_potential *p, const double *q, double *fo
   const strut_contact_table *c = &p->model->contacts;
   memcpy(force, p->force, (size_t)p->model->length * sizeof *force);
   for (int32_t j = 0; j < t->count; j++) {
-    pose m = pose_of(t, j, q);
+    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
     if (!m.taut) continue;
-    double tension = t->stiffness[j] * m.stretch, fx = tension * m.ux, fy = tension * m.uy;
+    double tension = t->stiffness[j] * m.stretch, fx = tension * m.unit.x, fy = tension * m.unit.y;
     double *a = force + t->from[j], *b = force + t->to[j];
     a[0] += fx, a[1] += fy, b[0] -= fx, b[1] -= fy;
   }
   for (int32_t i = 0; i < c->count && p->ground; i++) {
-    double gap = gap_of(c, i, q), *f = force + c->at[i];
+    double gap = strut_contact_gap(c, i, q), *f = force + c->at[i];
     if (!(gap < 0.0)) continue;
     double push = -c->entry[i].stiffness * gap;
     f[0] += push * c->normal[0], f[1] += push * c->normal[1];
@@ -199,9 +118,9 @@ void strut_potential_gradient(const strut_potential *p, const double *q, double 
   const int32_t *row = p->row_of;
   for (int32_t i = 0; i < p->n; i++) g[i] = -p->force[p->coordinate[i]];
   for (int32_t j = 0; j < t->count; j++) {
-    pose m = pose_of(t, j, q);
+    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
     if (!m.taut) continue;
-    double tension = t->stiffness[j] * m.stretch, fx = tension * m.ux, fy = tension * m.uy;
+    double tension = t->stiffness[j] * m.stretch, fx = tension * m.unit.x, fy = tension * m.unit.y;
     const int32_t *a = row + t->from[j], *b = row + t->to[j];
     if (a[0] >= 0) g[a[0]] -= fx;
     if (a[1] >= 0) g[a[1]] -= fy;
@@ -209,19 +128,13 @@ void strut_potential_gradient(const strut_potential *p, const double *q, double 
     if (b[1] >= 0) g[b[1]] += fy;
   }
   for (int32_t i = 0; i < c->count && p->ground; i++) {
-    double gap = gap_of(c, i, q);
+    double gap = strut_contact_gap(c, i, q);
     const int32_t *a = row + c->at[i];
     if (!(gap < 0.0)) continue;
     double push = -c->entry[i].stiffness * gap;
     if (a[0] >= 0) g[a[0]] -= push * c->normal[0];
     if (a[1] >= 0) g[a[1]] -= push * c->normal[1];
   }
-}
-
-/* What |q| may be off by in its last bit, where a member's ends are. */
-static double last_bit(const double *a, const double *b) {
-  double size = fmax(fmax(fabs(a[0]), fabs(a[1])), fmax(fabs(b[0]), fabs(b[1])));
-  return size * DBL_EPSILON;
 }
 
 double strut_potential_rounding(const strut_potential *p, const double *q) {
@@ -232,15 +145,16 @@ double strut_potential_rounding(const strut_potential *p, const double *q) {
     if (p->row_of[at] >= 0) forces = fmax(forces, fabs(p->force[at]));
   for (int32_t j = 0; j < t->count; j++) {
     const int32_t *a = p->row_of + t->from[j], *b = p->row_of + t->to[j];
-    pose m = pose_of(t, j, q);
+    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
     if (!m.taut || (a[0] < 0 && a[1] < 0 && b[0] < 0 && b[1] < 0)) continue;
-    double bit = last_bit(q + t->from[j], q + t->to[j]);
+    double bit = strut_coordinate_rounding(q + t->from[j], q + t->to[j]);
     largest = fmax(largest, t->stiffness[j] * (bit + fabs(m.stretch) * DBL_EPSILON));
   }
   for (int32_t i = 0; i < c->count && p->ground; i++) {
     const double *at = q + c->at[i];
-    double gap = gap_of(c, i, q);
-    if (gap < 0.0) largest = fmax(largest, c->entry[i].stiffness * last_bit(at, at));
+    double gap = strut_contact_gap(c, i, q);
+    if (gap < 0.0)
+      largest = fmax(largest, c->entry[i].stiffness * strut_coordinate_rounding(at, at));
   }
   return largest + forces * DBL_EPSILON;
 }
@@ -258,34 +172,32 @@ void strut_potential_hessian(const strut_potential *p, const double *q, strut_sp
   strut_potential_hessian_above(p, q, 0.0, hessian);
 }
 
+typedef struct hessian_sum {
+  const strut_potential *potential;
+  double *value;
+} hessian_sum;
+
+static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
+  const hessian_sum *sum = context;
+  const strut_block block = strut_block_of(m->along, m->across, m->pose.unit);
+  const int32_t *place = sum->potential->place + STRUT_MEMBER_ENTRIES * j;
+  strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, place, sum->value);
+}
+
+static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
+  const hessian_sum *sum = context;
+  const strut_model *model = sum->potential->model;
+  const strut_block block = strut_block_of_contact(contact->stiffness, model->contacts.normal);
+  const int32_t *place = sum->potential->place + STRUT_MEMBER_ENTRIES * model->members.count;
+  strut_block_scatter(&block, STRUT_CONTACT_ENTRIES, place + STRUT_CONTACT_ENTRIES * i, sum->value);
+}
+
 void strut_potential_hessian_above(const strut_potential *p, const double *q, double least,
                                    strut_sparse *hessian) {
-  const strut_member_table *t = &p->model->members;
-  const strut_contact_table *c = &p->model->contacts;
-  const int32_t *place = p->place;
-  double *value = hessian->value;
-  memset(value, 0, (size_t)hessian->start[hessian->n] * sizeof *value);
-  for (int32_t j = 0; j < t->count; j++, place += MEMBER_ENTRIES) {
-    pose m = pose_of(t, j, q);
-    if (!m.taut || (t->slack[j] == 0.0 && t->stiffness[j] * m.stretch <= least)) continue;
-    /* of zero length and zero rest length: a spring alike in all directions */
-    double across = m.length > 0     ? t->stiffness[j] * m.stretch / m.length
-                    : t->rest[j] > 0 ? 0.0
-                                     : t->stiffness[j];
-    double along = t->stiffness[j] - across;
-    double xx = across + along * m.ux * m.ux, xy = along * m.ux * m.uy;
-    double yy = across + along * m.uy * m.uy;
-    const double block[MEMBER_ENTRIES] = {xx, xy, yy, -xx, -xy, xx, -xy, -yy, xy, yy};
-    for (int k = 0; k < MEMBER_ENTRIES; k++)
-      if (place[k] >= 0) value[place[k]] += block[k];
-  }
-  for (int32_t i = 0; i < c->count && p->ground; i++, place += CONTACT_ENTRIES) {
-    double gap = gap_of(c, i, q), stiffness = c->entry[i].stiffness;
-    if (!(gap < 0.0) || -stiffness * gap <= least) continue;
-    double nx = c->normal[0], ny = c->normal[1];
-    const double block[CONTACT_ENTRIES] = {stiffness * nx * nx, stiffness * nx * ny,
-                                           stiffness * ny * ny};
-    for (int k = 0; k < CONTACT_ENTRIES; k++)
-      if (place[k] >= 0) value[place[k]] += block[k];
-  }
+  hessian_sum sum = {p, hessian->value};
+  assert(hessian->n == p->n);
+  memset(sum.value, 0, (size_t)hessian->start[hessian->n] * sizeof *sum.value);
+  strut_tangent_visit(p->model, q, p->model->members.rest, least,
+                      p->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE, &sum, add_member,
+                      add_contact);
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 /* Turns rows and columns p, q so that their common entry becomes 0. */
 static void rotate(double a[3][3], double v[3][3], int p, int q) {
   if (a[p][q] == 0.0) return;
@@ -60,23 +62,17 @@ static void motion_at(const frame *f, const double *q, int32_t at, double row[3]
                        : (q[2 * node] - f->centre[0]) / f->size;
 }
 
-static double dot(const double *a, const double *b, int32_t n) {
-  double sum = 0.0;
-  for (int32_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* Takes the directions of the earlier ones out of row `count`; false where nothing is left. */
 static bool make_orthonormal(double *motion, int32_t n, int32_t count) {
   double *row = motion + (size_t)count * (size_t)n;
-  double before = sqrt(dot(row, row, n));
+  double before = sqrt(strut_dot(row, row, n));
   for (int again = 0; again < 2; again++)
     for (int32_t k = 0; k < count; k++) {
       const double *other = motion + (size_t)k * (size_t)n;
-      double share = dot(row, other, n);
+      double share = strut_dot(row, other, n);
       for (int32_t i = 0; i < n; i++) row[i] -= share * other[i];
     }
-  double length = sqrt(dot(row, row, n));
+  double length = sqrt(strut_dot(row, row, n));
   if (!(length > 1e-9 * before)) return false;
   for (int32_t i = 0; i < n; i++) row[i] /= length;
   return true;
@@ -115,7 +111,7 @@ int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, 
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)
       form[i][k] = i < count && k < count
-                       ? dot(work + (size_t)i * n, work + (size_t)k * n, hessian->n)
+                       ? strut_dot(work + (size_t)i * n, work + (size_t)k * n, hessian->n)
                    : i == k ? HUGE_VAL
                             : 0.0;
   for (int i = 0; i < 3; i++)

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/tangent.h"
 #include "engine/statics/eigen.h"
 
 struct strut_spectrum_workspace {
@@ -113,44 +114,41 @@ static void add_form(strut_spectrum_workspace *room, int32_t count, double stiff
   }
 }
 
-static void add_members(strut_spectrum_workspace *room, const double *q, int32_t count) {
+typedef struct form_sum {
+  strut_spectrum_workspace *room;
+  const double *q;
+  int32_t count;
+} form_sum;
+
+static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
+  const form_sum *sum = context;
+  strut_spectrum_workspace *room = sum->room;
   const strut_member_table *t = &room->potential->model->members;
-  size_t n = (size_t)room->potential->n;
-  for (int32_t j = 0; j < t->count; j++) {
-    uint32_t a = t->from[j], b = t->to[j];
-    double dx = q[b] - q[a], dy = q[b + 1] - q[a + 1], length = sqrt(dx * dx + dy * dy);
-    double stretch = length - t->rest[j], c = t->stiffness[j];
-    if (!(stretch > t->slack[j]) || (t->slack[j] == 0.0 && c * stretch <= room->least)) continue;
-    if (!(length > 0) && t->rest[j] > 0) continue;
-    double ux = length > 0 ? dx / length : 1.0, uy = length > 0 ? dy / length : 0.0;
-    double geometric = length > 0 ? c * stretch / length : c;
-    double bit = fmax(fmax(fabs(q[a]), fabs(q[a + 1])), fmax(fabs(q[b]), fabs(q[b + 1])));
-    for (int32_t i = 0; i < count; i++) {
-      const double *mode = room->vector + (size_t)i * n;
-      double mx = moved(room, mode, b) - moved(room, mode, a);
-      double my = moved(room, mode, b + 1) - moved(room, mode, a + 1);
-      room->along[i] = ux * mx + uy * my;
-      room->across[i] = ux * my - uy * mx;
-    }
-    add_form(room, count, c, geometric, length > 0 ? c * DBL_EPSILON * bit / length : 0.0);
+  uint32_t a = t->from[j], b = t->to[j];
+  double length = m->pose.length, bit = strut_coordinate_rounding(sum->q + a, sum->q + b);
+  if (!(length > 0.0) && t->rest[j] > 0.0) return;
+  strut_vec2 u = length > 0.0 ? m->pose.unit : (strut_vec2){1.0, 0.0};
+  for (int32_t i = 0; i < sum->count; i++) {
+    const double *mode = room->vector + (size_t)i * (size_t)room->potential->n;
+    double mx = moved(room, mode, b) - moved(room, mode, a);
+    double my = moved(room, mode, b + 1) - moved(room, mode, a + 1);
+    room->along[i] = u.x * mx + u.y * my;
+    room->across[i] = u.x * my - u.y * mx;
   }
+  add_form(room, sum->count, m->along, m->across, length > 0.0 ? m->along * bit / length : 0.0);
 }
 
-static void add_contacts(strut_spectrum_workspace *room, const double *q, int32_t count) {
+static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
+  const form_sum *sum = context;
+  strut_spectrum_workspace *room = sum->room;
   const strut_contact_table *c = &room->potential->model->contacts;
-  size_t n = (size_t)room->potential->n;
-  for (int32_t j = 0; j < c->count && room->potential->ground; j++) {
-    uint32_t at = c->at[j];
-    double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
-    if (!(gap < 0.0) || -c->entry[j].stiffness * gap <= room->least) continue;
-    for (int32_t i = 0; i < count; i++) {
-      const double *mode = room->vector + (size_t)i * n;
-      room->along[i] =
-          moved(room, mode, at) * c->normal[0] + moved(room, mode, at + 1) * c->normal[1];
-      room->across[i] = 0.0;
-    }
-    add_form(room, count, c->entry[j].stiffness, 0.0, 0.0);
+  for (int32_t k = 0; k < sum->count; k++) {
+    const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
+    room->along[k] =
+        moved(room, mode, c->at[i]) * c->normal[0] + moved(room, mode, c->at[i] + 1) * c->normal[1];
+    room->across[k] = 0.0;
   }
+  add_form(room, sum->count, contact->stiffness, 0.0, 0.0);
 }
 
 /* Replaces the first `count` eigenpairs by those of the form summed member by member. */
@@ -158,8 +156,10 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
   size_t n = (size_t)room->potential->n, m = (size_t)count;
   memset(room->soft, 0, m * m * sizeof *room->soft);
   memset(room->form_noise, 0, m * sizeof *room->form_noise);
-  add_members(room, q, count);
-  add_contacts(room, q, count);
+  form_sum sum = {room, q, count};
+  strut_tangent_visit(room->potential->model, q, room->potential->model->members.rest, room->least,
+                      room->potential->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE, &sum,
+                      add_member, add_contact);
   for (size_t i = 0; i < m; i++)
     for (size_t k = 0; k < i; k++) room->soft[k * m + i] = room->soft[i * m + k];
   if (!strut_eigen(room->soft, count, room->raw, room->work)) return false;

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_check.h"
+#include "parser/cli/commands.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
@@ -14,16 +15,14 @@
 #include "engine/run/plan.h"
 #include "parser/cli/fidelity_settings.h"
 #include "parser/cli/open_model.h"
+#include "parser/cli/progress.h"
 #include "parser/cli/run_settings.h"
 #include "parser/cli/streams.h"
-#include "parser/cli/terminal.h"
 
-enum { MOST_MEMBERS = 40, MOST_BANDS = 10, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
-
-static const double TURN = 6.283185307179586476925;
+enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
@@ -39,7 +38,7 @@ static const char *kind_name(strut_member_kind kind) {
   return names[kind];
 }
 
-static void print_things(const strut_plan *plan) {
+static void print_counts(const strut_plan *plan) {
   size_t members = plan->bars + plan->springs + plan->cables;
   printf("  nodes              %zu, with %zu degrees of freedom\n", plan->nodes,
          plan->degrees_of_freedom);
@@ -50,7 +49,7 @@ static void print_things(const strut_plan *plan) {
   printf("  memory             %s\n", in((double)plan->bytes, "B").text);
 }
 
-/* Those of the other methods, on one line. */
+/* Step limits of the other methods, on one line. */
 static void print_limits(const strut_plan *plan) {
   const char *between = "  of other methods   ";
   for (size_t i = 0; strut_integrator_at(i); i++) {
@@ -65,18 +64,18 @@ static void print_limits(const strut_plan *plan) {
 
 static void print_run(const strut_plan *plan, const strut_experiment *e) {
   if (!plan->runnable) {
-    printf("  no run             some node that can move has no mass: statics only\n");
+    printf("  no run             a free node has no mass: statics only\n");
     return;
   }
-  double step = e->step, hertz = plan->largest_frequency / TURN;
+  double step = e->step, hertz = plan->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
          plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
   bool bound = plan->limits.bound;
-  printf("  highest frequency  %s%s, undamped, all contacts closed\n", bound ? "at most " : "",
+  printf("  highest frequency  %s%s (undamped, all contacts closed)\n", bound ? "at most " : "",
          in(hertz, "Hz").text);
-  printf("  largest step       %s%s for rk4, contacts and damping counted (%s)\n",
+  printf("  largest step       %s%s for rk4, with contacts and damping (%s)\n",
          bound ? "at least " : "", in(plan->step_limit, "s").text,
-         bound                    ? "a bound: too large a structure for an estimate"
+         bound                    ? "a bound: the structure is too large for an estimate"
          : plan->step_limit_exact ? "from all eigenvalues"
                                   : "within 1 %");
   print_limits(plan);
@@ -84,31 +83,35 @@ static void print_run(const strut_plan *plan, const strut_experiment *e) {
   double limit = method ? strut_step_limit_of_method(&plan->limits, method) : plan->step_limit;
   if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
   if (step > limit) {
-    printf("  step               %s: too large, strut run will refuse it\n", in(step, "s").text);
+    printf("  step               %s: too large, strut run rejects it\n", in(step, "s").text);
   } else if (step > 0) {
     printf("  step               %s\n", in(step, "s").text);
   }
 }
 
-/* Stick bands that a step passes over. */
+/* Warns of stick bands that a step passes over, in one line for all nodes. */
 static void print_bands(const strut_model *model, const strut_experiment *experiment) {
   const strut_scene *scene = model->scene;
   const strut_integrator *method = strut_integrator_find(experiment->integrator);
-  int32_t narrow = 0;
+  double needed = 0.0;
+  int32_t first = -1, more = -1;
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
-    const strut_contact_entry *e = &model->contacts.entry[i];
-    double needed = strut_stick_band_needed(model, method, i, experiment->step);
-    if (!(needed * (1.0 - 1e-6) > e->stick_velocity) || ++narrow > MOST_BANDS) continue;
-    fprintf(stderr,
-            "strut: warning: stick_velocity %s of node '%s' is narrower than what a step of %s "
-            "changes its slip by, so that it sticks by luck; use stick_velocity >= %s, a smaller "
-            "step, or a method with events\n",
-            in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name,
-            in(experiment->step, "s").text, in(needed, "m/s").text);
+    double here = strut_stick_band_needed(model, method, i, experiment->step);
+    if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].stick_velocity)) continue;
+    if (first < 0) first = i;
+    if (here > needed) needed = here;
+    more++;
   }
-  if (narrow > MOST_BANDS)
-    fprintf(stderr, "strut: warning: ... and %d more nodes whose stick_velocity is too narrow\n",
-            (int)(narrow - MOST_BANDS));
+  if (first < 0) return;
+  const strut_contact_entry *e = &model->contacts.entry[first];
+  char others[40] = "";
+  if (more > 0) snprintf(others, sizeof others, " and %d more", (int)more);
+  fprintf(stderr,
+          "strut: warning: stick_velocity %s of node '%s'%s is narrower than the change of slip in "
+          "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
+          "smaller step, or a method with events\n",
+          in(e->stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
+          in(experiment->step, "s").text, in(needed, "m/s").text);
 }
 
 static void print_terms(const strut_plan *plan, bool wanted, const char *title) {
@@ -122,7 +125,7 @@ static void print_terms(const strut_plan *plan, bool wanted, const char *title) 
   }
 }
 
-/* Every member's rest length, said in the four ways of the field. */
+/* Every member's rest length in the four forms that the language accepts. */
 static void print_members(const strut_scene *scene) {
   if (scene->member_count == 0) return;
   printf("\n  %-12s %-6s %12s %12s %10s %12s %13s %12s\n", "member", "kind", "drawn", "rest length",
@@ -141,7 +144,7 @@ static void print_members(const strut_scene *scene) {
   }
 }
 
-/* The shape as drawn, whatever a run starts with: what was written is what may be mistyped. */
+/* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
 static strut_status print_sketch(const strut_model *model) {
   const strut_scene *scene = model->scene;
   int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
@@ -164,10 +167,10 @@ static strut_status print_plan(const strut_plan *plan, const strut_model *model,
   const strut_scene *scene = model->scene;
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
   strut_status status = print_sketch(model);
-  print_things(plan);
+  print_counts(plan);
   print_run(plan, experiment);
   print_terms(plan, true, "each step evaluates");
-  print_terms(plan, false, "left out, for nothing asks for it");
+  print_terms(plan, false, "omitted, as the scene does not need it");
   print_members(scene);
   return status;
 }
@@ -192,7 +195,7 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_setup
   strut_json_integer(json, root, "bytes", (int64_t)plan->bytes);
   strut_json_bool(json, root, "runnable", plan->runnable);
   strut_json_number(json, root, "largest_frequency",
-                    plan->runnable ? plan->largest_frequency / TURN : (double)NAN);
+                    plan->runnable ? plan->largest_frequency / STRUT_TAU : (double)NAN);
   strut_json_number(json, root, "step", setup->experiment.step);
   strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
   strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);
@@ -246,15 +249,11 @@ static strut_status print_json(const strut_plan *plan, const strut_setup *setup)
   add_terms(&json, plan);
   add_members(&json, &setup->scene);
   if (!add_warnings(&json, setup)) json.failed = true;
-  char *text = strut_json_end(&json);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
+  return strut_print_block(strut_json_end(&json));
 }
 
-/* Is there a run by the method that is given? Else it is for statics, or accuracy chooses. */
-static bool runs(const strut_experiment *e) {
+/* Does the scene fix the method of a run? If not, it is for statics, or --accuracy chooses. */
+static bool has_fixed_method(const strut_experiment *e) {
   bool by_hand = !(e->accuracy > 0.0);
   return by_hand && (e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0);
 }
@@ -274,17 +273,17 @@ static strut_status run(const strut_arguments *arguments) {
     return status;
   }
   status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK && runs(&setup.experiment))
+  if (status == STRUT_OK && has_fixed_method(&setup.experiment))
     status = strut_integrator_check(model, &setup.experiment, &error);
   if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
   if (status == STRUT_OK) print_bands(model, &setup.experiment);
   if (status == STRUT_OK && (status = strut_warn_of_scene(&setup))) {
-    /* said */
+    /* reported already */
   } else if (status != STRUT_OK) {
     strut_print_error(&error);
   } else if (arguments->json) {
     status = print_json(&plan, &setup);
-  } else {
+  } else if (!arguments->quiet) {
     status = print_plan(&plan, model, &setup.experiment);
   }
   strut_model_free(model);
@@ -295,11 +294,13 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_check = {
     .name = "check",
     .model = "MODEL",
-    .summary = "checks a model and says what running it will take",
+    .summary = "validates a model and describes what a run of it computes",
     .details =
-        "\nPrints a sketch of the structure as drawn, what it consists of, the terms of the\n"
-        "equations that its step evaluates and those it leaves out, the largest stable step,\n"
-        "and for every member the rest length in each of the four ways to give one.\n",
+        "\nPrints a sketch of the drawn structure, its numbers of nodes and members, the terms of "
+        "the\n"
+        "equations that a step evaluates and those it omits, the largest stable step, and for "
+        "each\n"
+        "member its rest length in each of the four forms that the language accepts.\n",
     .options = options,
     .run = run,
 };

@@ -1,30 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_equilibria.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
-#include "engine/output/figures/equilibria_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/equilibria_report.h"
-#include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/yaml/diagnostics.h"
 
-/* The seed is kept as a JSON integer, which readers hold exactly up to here. */
+/* JSON readers represent integers exactly up to here. */
 static const int64_t MOST_STARTS = 1000000000, MOST_SEED = 9007199254740992;
 
 static const char *const file_names[] = {"equilibria.json", NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
-    {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold these contact nodes only, such as n1,n4"},
-    {STRUT_OPTION_STARTS, "starts", "N", "random starts for each search"},
-    {STRUT_OPTION_SEED, "seed", "S", "of the random starts; the same seed gives the same bits"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold only these contact nodes, such as n1,n4"},
+    {STRUT_OPTION_STARTS, "starts", "N", "number of random starts per search (default automatic)"},
+    {STRUT_OPTION_SEED, "seed", "S", "seed of the random starts (default as the scene says)"},
+    {STRUT_OPTION_ALL, "all", NULL,
+     "list every equilibrium, and the positions of those that stand"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write equilibria.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
@@ -44,7 +43,7 @@ static strut_status refuse_node(const strut_scene *scene, const char *name, cons
   return STRUT_USAGE;
 }
 
-/* "n1,n4" as nodes, in the scene's arena; *set stays NULL where nothing was given. */
+/* "n1,n4" as nodes, in the scene's arena; *set stays NULL without --supports. */
 static strut_status read_supports(const strut_arguments *arguments, strut_scene *scene,
                                   strut_node_set **set) {
   const char *text = strut_option_text(arguments, STRUT_OPTION_SUPPORTS);
@@ -89,17 +88,16 @@ static strut_status read_options(const strut_arguments *arguments, strut_setup *
 static strut_status report(const strut_arguments *arguments, const strut_equilibria *all,
                            const strut_model *model) {
   strut_error error = {0};
-  char *json = strut_equilibria_json(all, model), *table = strut_equilibria_table(all, model);
-  strut_status status = json && table ? STRUT_OK : strut_print_out_of_memory();
-  if (!status && arguments->output) {
-    status = strut_directory_create(arguments->output, &error);
-    if (!status) status = strut_file_write_text(arguments->output, "equilibria.json", json, &error);
-    if (status) strut_print_error(&error);
+  if (arguments->output) {
+    strut_status status = strut_directory_create(arguments->output, &error);
+    if (!status)
+      status = strut_file_write_block(arguments->output, "equilibria.json",
+                                      strut_equilibria_json(all, model), &error);
+    if (status) return strut_print_failure(status, &error);
   }
-  if (!status) status = strut_print(arguments->json ? json : table);
-  strut_release(json);
-  strut_release(table);
-  return status;
+  return strut_print_report(arguments, arguments->json
+                                           ? strut_equilibria_json(all, model)
+                                           : strut_equilibria_table(all, model, arguments->all));
 }
 
 static strut_status search(const strut_arguments *arguments, const strut_plot *plot,
@@ -148,13 +146,15 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_equilibria = {
     .name = "equilibria",
     .model = "MODEL",
-    .summary = "finds the shapes in which a model is at rest",
+    .summary = "finds all equilibria, and the energy barriers between stable ones",
     .details =
-        "\nContact nodes are held in turn in place of the ground, and every equilibrium is\n"
-        "looked for from many starts: drawn, mirrored and random ones. What stands up to\n"
-        "that is let go on the real ground, without drive and friction, and the report says\n"
-        "where it comes to rest, and how high the passes between the stable shapes are.\n"
-        "Exit code 3 where nothing is ever at rest.\n",
+        "\nThe search holds pairs of contact nodes in turn in place of the ground and starts from\n"
+        "the drawn shape, mirrored copies and random shapes. Stable shapes are then released on\n"
+        "the real ground, without drive and friction. The table lists what stands there and the\n"
+        "energy barriers between; 'stiffness' is the lowest eigenvalue, 'found' the number of\n"
+        "starts that ended there. --all adds shapes that sink, tip over or are unstable.\n"
+        "Names such as n1-n4-2 give the touching nodes and the rank by energy.\n"
+        "Exit code 3 if nothing ever comes to rest.\n",
     .options = options,
     .run = run,
     .timed = true,

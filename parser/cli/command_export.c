@@ -1,21 +1,90 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_export.h"
+#include "parser/cli/commands.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "engine/output/matrix_market.h"
-#include "parser/cli/export_vtk.h"
-#include "parser/cli/named_shape.h"
+#include "engine/output/vtk.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
+#include "parser/cli/options.h"
 #include "parser/cli/streams.h"
+
+/* ---- a motion or a shape for ParaView ---- */
+
+/* A motion of one frame at rest, in the arena: the shape, its lengths and its elastic forces. */
+static strut_status still_of(const strut_arguments *arguments, const strut_opened *opened,
+                             strut_arena *arena, strut_trajectory *motion, strut_error *error) {
+  const strut_model *model = opened->model;
+  strut_named_shape shape;
+  strut_status status =
+      strut_named_shape_find(arguments, model, &opened->setup.experiment, arena, &shape, error);
+  if (status != STRUT_OK) return status;
+  const strut_member_table *table = &model->members;
+  size_t nodes = model->scene->node_count, members = model->scene->member_count;
+  *motion = (strut_trajectory){.frames = 1, .node_count = nodes, .member_count = members};
+  motion->position = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
+  motion->length = strut_arena_allocate(arena, members, sizeof(double));
+  motion->force = strut_arena_allocate(arena, members, sizeof(double));
+  if (!motion->position || !motion->length || !motion->force)
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (size_t i = 0; i < 2 * nodes; i++) motion->position[i] = shape.q[i];
+  for (size_t i = 0; i < members; i++) {
+    const double *from = shape.q + table->from[i], *to = shape.q + table->to[i];
+    motion->length[i] = hypot(to[0] - from[0], to[1] - from[1]);
+    double elastic = table->stiffness[i] * (motion->length[i] - table->rest[i]);
+    motion->force[i] = elastic < table->slack[i] ? table->slack[i] : elastic;
+  }
+  return STRUT_OK;
+}
+
+static void print_written(const strut_arguments *arguments, const strut_trajectory *motion,
+                          const strut_vtk_written *written) {
+  printf("%zu frame%s in '%s': open structure.pvd with ParaView\n", written->frames,
+         written->frames == 1 ? "" : "s", arguments->output);
+  size_t recorded = motion->recorded > motion->frames ? motion->recorded : motion->frames;
+  if (recorded > written->frames)
+    printf("evenly chosen from %zu recorded: at most %d are written\n", recorded,
+           STRUT_VTK_MOST_FRAMES);
+}
+
+static const char *const no_names[] = {NULL}; /* frames are checked once their number is known */
+
+static strut_status export_vtk(const strut_command *command, const strut_arguments *arguments) {
+  strut_opened opened = {0};
+  strut_arena arena = {0};
+  strut_trajectory still = {0};
+  strut_error error = {0};
+  strut_vtk_written written = {0};
+  strut_status status = strut_check_output_writable(arguments, no_names);
+  if (status == STRUT_OK)
+    status = strut_open_run(command, arguments, STRUT_OPEN_FOR_ANY, STRUT_TRAJECTORY_ROOM, &opened);
+  if (status != STRUT_OK) return status;
+  if (opened.run && strut_option_text(arguments, STRUT_OPTION_AT)) {
+    status = strut_fail(&error, STRUT_USAGE, "--at is for models: a run has its own shapes");
+  } else if (!opened.run) {
+    status = still_of(arguments, &opened, &arena, &still, &error);
+  }
+  const strut_trajectory *motion = opened.run ? &opened.motion : &still;
+  if (status == STRUT_OK)
+    status = strut_vtk_write(arguments->output, opened.model, motion, &written, &error);
+  if (status == STRUT_OK) {
+    if (!arguments->quiet) print_written(arguments, motion, &written);
+  } else {
+    strut_print_error(&error);
+  }
+  strut_arena_free(&arena);
+  strut_opened_free(&opened);
+  return status;
+}
 
 static const strut_option options[] = {
     {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
-    {STRUT_OPTION_FORMAT, "format", "FORMAT", "vtk: the motion of a run, or a shape, for ParaView"},
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "write the files of --format into DIR"},
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_FORMAT, "format", "FORMAT", "vtk: the motion of a run or a shape, for ParaView"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "directory for the files of --format"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -38,9 +107,9 @@ static strut_status export_format(const strut_arguments *arguments, const char *
       strut_option_word(&strut_command_export, arguments, STRUT_OPTION_FORMAT, formats, &format);
   if (status != STRUT_OK) return status;
   if (arguments->output && *arguments->output && !matrices)
-    return strut_export_vtk(&strut_command_export, arguments);
+    return export_vtk(&strut_command_export, arguments);
   fprintf(stderr, "strut export: %s\n",
-          matrices ? "--matrices and --format are two commands" : "where to? give -o DIR");
+          matrices ? "give either --matrices or --format, not both" : "missing -o DIR");
   return STRUT_USAGE;
 }
 
@@ -52,8 +121,8 @@ static strut_status run(const strut_arguments *arguments) {
   if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
   if (!directory || !*directory || arguments->output) {
     fprintf(stderr, "strut export: %s\n",
-            arguments->output ? "-o DIR wants a format: give --format vtk too"
-                              : "where to? give --matrices DIR, or --format vtk -o DIR");
+            arguments->output ? "-o DIR needs --format vtk"
+                              : "missing --matrices DIR, or --format vtk -o DIR");
     return STRUT_USAGE;
   }
   strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
@@ -70,7 +139,7 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_export = {
     .name = "export",
     .model = "RUN|MODEL",
-    .summary = "writes a model's matrices, or a run's motion for ParaView",
+    .summary = "writes the matrices of a model, or a motion for ParaView",
     .details =
         "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files:\n"
         "connectivity, equilibrium, mass, stiffness_elastic,\n"
@@ -79,7 +148,7 @@ const strut_command strut_command_export = {
         "and columns. The tangent stiffness is the sum of the three.\n"
         "With --format vtk, for ParaView: structure.pvd, a .vtp file for every frame of RUN (a\n"
         "directory that 'strut run -o' made) or one for the shape of MODEL, and ground.vtp.\n"
-        "All files or none.\n",
+        "Either all files are written or none.\n",
     .options = options,
     .run = run,
 };

@@ -1,29 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_form.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/form_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/form_report.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_FROM, "from", "WHAT", "densities, lengths or prestress; else as the model says"},
-    {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE", "what every cable pulls with at least"},
-    {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY", "the same as a force density"},
+    {STRUT_OPTION_FROM, "from", "WHAT",
+     "densities, lengths or prestress (default: by what the model gives)"},
+    {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE",
+     "lower bound on the tension of every cable"},
+    {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY",
+     "lower bound on the force density of every cable"},
     {STRUT_OPTION_OBJECTIVE, "objective", "WHAT",
-     "of many prestresses: least largest, sum or squares"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
-    {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print what it holds"},
-    {STRUT_OPTION_JSON, "json", NULL, "print what the form holds as one JSON object instead"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "with -o, print nothing"},
+     "which prestress: minimal largest (default), sum or squares"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print a report"},
+    {STRUT_OPTION_JSON, "json", NULL, "print the report as one JSON object instead of the model"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
@@ -43,7 +44,9 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
     status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_DENSITY,
                                  STRUT_DIM_STIFFNESS, &wanted->least_density);
   if (status == STRUT_OK && (wanted->least_tension < 0 || wanted->least_density < 0)) {
-    fprintf(stderr, "strut form: what cables pull with at least is above 0: they only pull\n");
+    fprintf(
+        stderr,
+        "strut form: --least-tension and --least-density must not be negative: cables only pull\n");
     status = STRUT_USAGE;
   }
   wanted->from = (strut_form_source)(source + 1);
@@ -51,7 +54,7 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
   return status;
 }
 
-/* What is printed: with -o what the form holds, unless nobody wants to know; else the model. */
+/* The text to print: a report with -o, else the model. */
 static char *text_for(const strut_arguments *arguments, const strut_setup *setup,
                       const strut_form *form) {
   if (arguments->json) return strut_form_json(form, &setup->scene);
@@ -86,7 +89,7 @@ static strut_status draw(const strut_plot *plot, const strut_scene *scene, const
   return status;
 }
 
-/* Finds, shows and draws; `drawn` (node_count) is for the positions as they were. */
+/* Finds the form, prints and draws it; `drawn` (node_count) receives the former positions. */
 static strut_status find(const strut_arguments *arguments, const strut_form_options *wanted,
                          const strut_plot *plot, strut_setup *setup, double (*drawn)[2]) {
   const strut_scene *scene = &setup->scene;
@@ -122,14 +125,16 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_form = {
     .name = "form",
     .model = "MODEL",
-    .summary = "finds a shape in equilibrium, and writes the model that holds it",
+    .summary = "finds an equilibrium shape or prestress, and writes that model",
     .details =
-        "\nFrom densities: the shape that the members' force densities make, or the nearest\n"
-        "densities that make one. From lengths: the shape that the rest lengths make. From\n"
-        "prestress: the drawn shape, with rest lengths that hold it under gravity, loads and\n"
-        "on the ground, every cable in tension. Without --from a model with force densities\n"
-        "means densities, one with rest lengths lengths, any other prestress.\n"
-        "The new model, printed or written to FILE, stands still when it is run.\n",
+        "\n--from densities: the shape given by the force densities of the members, or the "
+        "nearest\n"
+        "densities for which one exists. --from lengths: the shape given by the rest lengths.\n"
+        "--from prestress: the drawn shape, with rest lengths that hold it under gravity, loads "
+        "and\n"
+        "ground forces, every cable in tension. By default, densities if the model gives force\n"
+        "densities, lengths if it gives rest lengths, otherwise prestress.\n"
+        "The new model is printed or written to FILE; it stays at rest when run without drives.\n",
     .options = options,
     .run = run,
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_merge.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <sys/resource.h>
@@ -7,12 +7,7 @@
 #include "engine/study/results/merge.h"
 #include "parser/cli/streams.h"
 
-static const strut_option options[] = {
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print nothing if all is well"},
-    {STRUT_OPTION_END, NULL, NULL, NULL},
-};
-
-/* All shards are open at a time, and there may be more of them than is usual. */
+/* All shards are open at once, which may exceed the usual limit of open files. */
 static void allow_many_files(void) {
   struct rlimit limit;
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -35,7 +30,7 @@ static strut_status run(const strut_arguments *arguments) {
     printf("\n");
   }
   if (!merged.failed) return STRUT_OK;
-  fprintf(stderr, "strut: %lld of %lld points failed: the columns status and message say why\n",
+  fprintf(stderr, "strut: %lld of %lld points failed: see the columns status and message\n",
           (long long)merged.failed, (long long)merged.points);
   return STRUT_DIVERGED;
 }
@@ -43,13 +38,12 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_merge = {
     .name = "merge",
     .model = "DIR",
-    .summary = "joins the shards of a study to its table",
+    .summary = "merges the shards of a sweep into one table",
     .details =
-        "\nDIR is what the shards were given as --output. All of them must be there, complete, "
-        "and\n"
-        "of the same study, model and version of strut; DIR/table.csv is then the same, byte for\n"
-        "byte, as that of the study in one piece. What is missing is said otherwise.\n"
-        "\nExit code: 3 where points of the study failed, 4 where shards or points are missing.\n",
-    .options = options,
+        "\nDIR is the --output of the shards. All shards must be present, complete, and of the "
+        "same\n"
+        "study, model and version of strut. DIR/table.csv is then byte for byte the table of an\n"
+        "undivided sweep; otherwise the command reports what is missing.\n"
+        "\nExit code: 3 if points of the study failed, 4 if shards or points are missing.\n",
     .run = run,
 };

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_plot.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 #include "parser/cli/option_values.h"
-#include "parser/cli/plot_options.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"
 #include "parser/yaml/diagnostics.h"
@@ -29,7 +28,13 @@ static const strut_option options[] = {
      "of a map: what is shown; of work-precision: beside the best"},
     {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "of a map: hatched where it says anything but 0"},
     {STRUT_OPTION_LOG, "log", "AXES", "logarithmic: x, y or xy"},
-    {STRUT_OPTION_TITLE, "title", "TEXT", "above the figure"},
+    {STRUT_OPTION_TITLE, "title", "TEXT", "title above the figure"},
+    {STRUT_OPTION_X_LABEL, "x-label", "TEXT", "label of the x axis, instead of the column's name"},
+    {STRUT_OPTION_Y_LABEL, "y-label", "TEXT", "label of the (left) y axis"},
+    {STRUT_OPTION_X_LIMITS, "x-limits", "LOW,HIGH", "range of the x axis, in the column's unit"},
+    {STRUT_OPTION_Y_LIMITS, "y-limits", "LOW,HIGH", "range of the (left) y axis"},
+    {STRUT_OPTION_COLORS, "colors", "SCALE",
+     "colour scale of a map: auto (default), sequential, diverging or grey"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -116,6 +121,34 @@ static bool read_log(const strut_arguments *arguments, strut_table_figure *figur
   return false;
 }
 
+/* Words of --colors, in the order of strut_colours. */
+static const char *const scales[] = {"auto", "sequential", "diverging", "grey", NULL};
+
+/* --x-label and --x-limits, or those of y. */
+static bool read_axis(const strut_arguments *arguments, strut_option_id label,
+                      strut_option_id limits, char letter, bool logarithmic,
+                      strut_table_axis *axis) {
+  const char *text = strut_option_text(arguments, limits);
+  double range[2];
+  axis->label = strut_option_text(arguments, label);
+  if (!text) return true;
+  axis->limited = strut_option_numbers(text, STRUT_DIM_NONE, range, 2) == 2 &&
+                  range[0] < range[1] && (!logarithmic || range[0] > 0);
+  axis->low = range[0];
+  axis->high = range[1];
+  if (!axis->limited)
+    fprintf(stderr,
+            "strut plot: --%c-limits expects two ascending numbers%s, such as 1,10; not '%s'\n",
+            letter, logarithmic ? " above 0" : "", text);
+  return axis->limited;
+}
+
+static bool read_axes(const strut_arguments *arguments, bool log_x, bool log_y, strut_table_axis *x,
+                      strut_table_axis *y) {
+  return read_axis(arguments, STRUT_OPTION_X_LABEL, STRUT_OPTION_X_LIMITS, 'x', log_x, x) &&
+         read_axis(arguments, STRUT_OPTION_Y_LABEL, STRUT_OPTION_Y_LIMITS, 'y', log_y, y);
+}
+
 static strut_status draw_map(const strut_arguments *arguments, const strut_plot *plot,
                              const strut_table *table, strut_error *error) {
   int third = table->column_count > 2 ? 2 : STRUT_NO_COLUMN;
@@ -131,7 +164,13 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
               read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.value) &&
               read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
               read_column(arguments, table, STRUT_OPTION_DOUBT, "doubt", &figure.doubt) &&
-              read_choice(arguments, table, &figure.choice);
+              read_choice(arguments, table, &figure.choice) &&
+              read_axes(arguments, false, false, &figure.x_axis, &figure.y_axis);
+  int colours = STRUT_COLOURS_AUTO;
+  if (good && strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_COLORS, scales,
+                                &colours) != STRUT_OK)
+    return STRUT_USAGE;
+  figure.colours = (strut_colours)colours;
   if (good && figure.value == STRUT_NO_COLUMN) {
     fprintf(stderr, "strut plot: a map needs a third column\n");
     good = false;
@@ -139,8 +178,8 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
   return good ? strut_table_map(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-static strut_status draw_bargains(const strut_arguments *arguments, const strut_plot *plot,
-                                  const strut_table *table, strut_error *error) {
+static strut_status draw_work_precision(const strut_arguments *arguments, const strut_plot *plot,
+                                        const strut_table *table, strut_error *error) {
   strut_table_savings_figure figure = {.title = strut_option_text(arguments, STRUT_OPTION_TITLE),
                                        .width = plot->width,
                                        .y = table->column_count > 1 ? 1 : 0,
@@ -149,7 +188,8 @@ static strut_status draw_bargains(const strut_arguments *arguments, const strut_
   bool good = read_column(arguments, table, STRUT_OPTION_X, "x", &figure.x) &&
               read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
               read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
-              read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.label);
+              read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.label) &&
+              read_axes(arguments, true, true, &figure.x_axis, &figure.y_axis);
   return good ? strut_table_savings(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
@@ -167,24 +207,26 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
       read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
       read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
       read_match(arguments, table, STRUT_OPTION_BAND, "band", &figure.band, &figure.band_value) &&
-      read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure);
+      read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure) &&
+      read_axes(arguments, figure.log_x, figure.log_y, &figure.x_axis, &figure.y_axis);
   return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-/* Kinds of diagrams, with the options that go with one of them only. */
+/* Kinds of diagrams, and the options that only some of them have. */
 static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_table *table,
-                                     strut_error *error) = {draw_curves, draw_map, draw_bargains};
+                                     const strut_table *table, strut_error *error) = {
+    draw_curves, draw_map, draw_work_precision};
 static const struct {
   strut_option_id id;
   const char *name;
   unsigned kinds; /* a bit for each that has it */
 } limited[] = {
-    {STRUT_OPTION_BY, "by", 5},       {STRUT_OPTION_PANELS, "panels", 3},
-    {STRUT_OPTION_BAND, "band", 1},   {STRUT_OPTION_LABEL, "label", 6},
-    {STRUT_OPTION_DOUBT, "doubt", 2}, {STRUT_OPTION_LOG, "log", 1},
-    {STRUT_OPTION_ONLY, "only", 3},   {STRUT_OPTION_DIFFERENCE, "difference", 3},
+    {STRUT_OPTION_BY, "by", 5},         {STRUT_OPTION_PANELS, "panels", 3},
+    {STRUT_OPTION_BAND, "band", 1},     {STRUT_OPTION_LABEL, "label", 6},
+    {STRUT_OPTION_DOUBT, "doubt", 2},   {STRUT_OPTION_LOG, "log", 1},
+    {STRUT_OPTION_ONLY, "only", 3},     {STRUT_OPTION_DIFFERENCE, "difference", 3},
+    {STRUT_OPTION_COLORS, "colors", 2},
 };
 
 static strut_status read_kind(const strut_arguments *arguments, int *kind) {
@@ -192,7 +234,7 @@ static strut_status read_kind(const strut_arguments *arguments, int *kind) {
       strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_KIND, kinds, kind);
   for (size_t i = 0; i < sizeof limited / sizeof *limited && status == STRUT_OK; i++) {
     if (!strut_option_text(arguments, limited[i].id) || limited[i].kinds >> *kind & 1) continue;
-    fprintf(stderr, "strut plot: --kind %s knows no --%s\n", kinds[*kind], limited[i].name);
+    fprintf(stderr, "strut plot: --kind %s has no option --%s\n", kinds[*kind], limited[i].name);
     status = STRUT_USAGE;
   }
   return status;
@@ -207,7 +249,7 @@ static strut_status run(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_plot, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   if (!plot.path) {
-    fprintf(stderr, "strut plot: where to? give --plot FILE\n");
+    fprintf(stderr, "strut plot: missing --plot FILE\n");
     return STRUT_USAGE;
   }
   status = strut_table_read(arguments->model, &table);
@@ -221,7 +263,7 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_plot = {
     .name = "plot",
     .model = "TABLE",
-    .summary = "draws curves, a map or a work-precision diagram of a table",
+    .summary = "draws curves, a map or a work-precision diagram from a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
         "strut writes it, or - for the standard input. Units get prefixes, curves are told\n"

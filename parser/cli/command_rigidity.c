@@ -1,53 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_rigidity.h"
+#include "parser/cli/commands.h"
 
-#include "engine/base/memory.h"
-#include "engine/output/figures/rigidity_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/rigidity_report.h"
-#include "parser/cli/named_shape.h"
 #include "parser/cli/open_model.h"
-#include "parser/cli/plot_options.h"
+#include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 
 static const char *const file_names[] = {"rigidity.json", NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (if not given), start, or an equilibrium"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status write_file(const char *directory, const char *json, strut_error *error) {
-  if (!json) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_status status = strut_directory_create(directory, error);
-  if (status != STRUT_OK) return status;
-  return strut_file_write_text(directory, "rigidity.json", json, error);
-}
-
 static strut_status report(const strut_arguments *arguments, const strut_model *model,
                            const strut_named_shape *shape, const strut_rigidity *rigidity,
                            strut_error *error) {
   strut_status status = STRUT_OK;
-  char *json = NULL, *table = NULL;
-  if (arguments->json || arguments->output)
-    json = strut_rigidity_json(rigidity, model, shape->name);
-  if (!arguments->json) table = strut_rigidity_table(rigidity, model, shape->name);
-  const char *text = arguments->json ? json : table;
-  if (!text) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (status == STRUT_OK && arguments->output) status = write_file(arguments->output, json, error);
-  if (status == STRUT_OK && strut_print(text) != STRUT_OK) status = STRUT_FILE_TROUBLE;
-  strut_release(json);
-  strut_release(table);
-  return status;
+  if (arguments->output) status = strut_directory_create(arguments->output, error);
+  if (arguments->output && status == STRUT_OK)
+    status = strut_file_write_block(arguments->output, "rigidity.json",
+                                    strut_rigidity_json(rigidity, model, shape->name), error);
+  if (status != STRUT_OK) return status;
+  return strut_print_report(arguments, arguments->json
+                                           ? strut_rigidity_json(rigidity, model, shape->name)
+                                           : strut_rigidity_table(rigidity, model, shape->name));
 }
 
-static strut_status look(const strut_arguments *arguments, const strut_plot *plot,
-                         const strut_model *model, const strut_experiment *experiment,
-                         strut_error *error) {
+static strut_status analyse(const strut_arguments *arguments, const strut_plot *plot,
+                            const strut_model *model, const strut_experiment *experiment,
+                            strut_error *error) {
   strut_arena arena = {0};
   strut_named_shape shape;
   strut_rigidity rigidity = {0};
@@ -73,7 +61,7 @@ static strut_status run(const strut_arguments *arguments) {
   status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK) status = look(arguments, &plot, model, &setup.experiment, &error);
+  if (status == STRUT_OK) status = analyse(arguments, &plot, model, &setup.experiment, &error);
   if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   strut_model_free(model);
   strut_setup_free(&setup);
@@ -83,12 +71,12 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_rigidity = {
     .name = "rigidity",
     .model = "MODEL",
-    .summary = "counts states of self-stress and mechanisms, and says which they are",
+    .summary = "computes self-stress states and mechanisms, and classifies them",
     .details =
-        "\nThe rank of the equilibrium matrix with the gap that decides it, states of\n"
-        "self-stress, mechanisms (rigid-body, infinitesimal, finite), super stability, and the\n"
-        "member forces in the shape. Held coordinates are those of the scene; the ground is no\n"
-        "support here.\n",
+        "\nPrints the rank of the equilibrium matrix with its spectral gap, self-stress states,\n"
+        "mechanisms (rigid-body, infinitesimal, finite), super stability, and the\n"
+        "member forces in the shape. Supports are those of the scene; the ground does not\n"
+        "count as one.\n",
     .options = options,
     .run = run,
     .timed = true,

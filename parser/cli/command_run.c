@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_run.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 
@@ -12,7 +12,6 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "parser/cli/fidelity_settings.h"
-#include "parser/cli/interrupt.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/progress.h"
 #include "parser/cli/run_pictures.h"
@@ -21,32 +20,31 @@
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write summary, scene and trajectories into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print the summary as one JSON object"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print no table and show no progress"},
-    {STRUT_OPTION_FORCE, "force", NULL, "run even where the step is above the stability limit"},
+    {STRUT_OPTION_FORCE, "force", NULL, "run even if the step exceeds the stability limit"},
     STRUT_RUN_SETTING_OPTIONS,
     STRUT_FIDELITY_OPTIONS,
     STRUT_RUN_PICTURE_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-/* What -o DIR needs. All zero without it. */
-typedef struct kept {
+/* The files of -o DIR. All zero without it. */
+typedef struct run_files {
   strut_results results;
   char *scene_text; /* the effective scene */
   strut_sink *csv, *hdf5;
-  strut_sink *sinks[3]; /* these, and that of pictures */
+  strut_sink *sinks[3]; /* these two, and that of the pictures */
   size_t sink_count;
-} kept;
+} run_files;
 
-static bool began(strut_status status) {
+static bool has_results(strut_status status) {
   return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
 }
 
 static strut_status begin_results(const strut_arguments *arguments, const strut_setup *setup,
-                                  kept *keep, strut_error *error) {
+                                  run_files *keep, strut_error *error) {
   if (!arguments->output) return STRUT_OK;
   strut_status status = strut_results_begin(&keep->results, arguments->output, error);
   if (status != STRUT_OK) return status;
@@ -60,22 +58,20 @@ static strut_status begin_results(const strut_arguments *arguments, const strut_
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
-/* Adds what is known at the end only, and lets all files appear. */
-static strut_status complete_results(kept *keep, const strut_summary *summary,
+/* Adds the summary and the scene, and makes all files appear. */
+static strut_status complete_results(run_files *keep, const strut_summary *summary,
                                      const strut_scene *scene, strut_error *error) {
   if (!keep->results.stage) return STRUT_OK;
   const char *stage = keep->results.stage;
-  char *json = strut_summary_json(summary, scene, false);
-  if (!json) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_status status = strut_file_write_text(stage, "summary.json", json, error);
-  strut_release(json);
+  strut_status status = strut_file_write_block(stage, "summary.json",
+                                               strut_summary_json(summary, scene, false), error);
   if (status == STRUT_OK) {
     status = strut_file_write_text(stage, "scene.yaml", keep->scene_text, error);
   }
   return status == STRUT_OK ? strut_results_commit(&keep->results, error) : status;
 }
 
-static void free_results(kept *keep) {
+static void free_results(run_files *keep) {
   strut_csv_free(keep->csv);
   strut_hdf5_free(keep->hdf5);
   strut_release(keep->scene_text);
@@ -83,15 +79,15 @@ static void free_results(kept *keep) {
 }
 
 static strut_status simulate(const strut_model *model, const strut_setup *setup,
-                             const strut_arguments *arguments, kept *keep,
+                             const strut_arguments *arguments, run_files *keep,
                              strut_run_pictures *pictures, strut_summary *summary,
                              strut_error *error) {
   const volatile sig_atomic_t *interrupt = strut_interrupt_watch(); /* before there are files */
   strut_status status = begin_results(arguments, setup, keep, error);
   if (status != STRUT_OK) return status;
-  strut_sink *look = strut_run_pictures_sink(pictures, model->scene, &status);
+  strut_sink *pictures_sink = strut_run_pictures_sink(pictures, model->scene, &status);
   if (status != STRUT_OK) return strut_fail(error, status, "out of memory");
-  if (look) keep->sinks[keep->sink_count++] = look;
+  if (pictures_sink) keep->sinks[keep->sink_count++] = pictures_sink;
   strut_progress progress = strut_progress_begin(arguments->quiet);
   progress.span = strut_experiment_span(&setup->experiment, model->scene).duration;
   const strut_run_options run = {
@@ -113,21 +109,17 @@ static strut_status simulate(const strut_model *model, const strut_setup *setup,
 static strut_status print_summary(const strut_arguments *arguments, const strut_summary *summary,
                                   const strut_scene *scene) {
   if (arguments->quiet && !arguments->json) return STRUT_OK;
-  char *text = arguments->json ? strut_summary_json(summary, scene, true)
-                               : strut_summary_table(summary, scene);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
+  return strut_print_block(arguments->json ? strut_summary_json(summary, scene, true)
+                                           : strut_summary_table(summary, scene));
 }
 
-/* A result that is there, but is not what the scene meant. */
-static void warn(const strut_summary *summary) {
+/* Warnings about a result that exists but may not be what was meant. */
+static void print_warnings(const strut_summary *summary) {
   for (size_t i = 0; i < summary->warning_count; i++)
     fprintf(stderr, "strut: warning: %s\n", summary->warnings[i].text);
 }
 
-/* Last, for it takes longest: what was computed is on the screen by then. */
+/* Runs last, as it takes longest: the results are on the screen by then. */
 static strut_status make_film(strut_run_pictures *pictures, const strut_model *model) {
   strut_error error = {0};
   fflush(stdout);
@@ -138,17 +130,17 @@ static strut_status make_film(strut_run_pictures *pictures, const strut_model *m
 
 static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
                               const strut_model *model, strut_run_pictures *pictures) {
-  kept keep = {0};
+  run_files keep = {0};
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
   strut_status status = simulate(model, setup, arguments, &keep, pictures, &summary, &error);
   if (status != STRUT_OK) strut_print_error(&error);
-  if (began(status)) {
-    warn(&summary);
+  if (has_results(status)) {
+    print_warnings(&summary);
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
     if (written != STRUT_OK) strut_print_error(&late);
-    /* That nothing came to be drawn is no news of a run that failed. */
+    /* A failed run is reported as such, not as a missing figure. */
     if (written == STRUT_USAGE && status != STRUT_OK) written = status;
     if (written != STRUT_OK) status = written;
     strut_status printed = print_summary(arguments, &summary, model->scene);
@@ -196,18 +188,19 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_run = {
     .name = "run",
     .model = "MODEL",
-    .summary = "runs the experiment of a model",
+    .summary = "simulates a model",
     .details =
-        "\nThe end prints a short table, or with --json the whole summary. With -o, DIR gets\n"
-        "summary.json, scene.yaml (the scene as it was run: running it gives the same bits),\n"
-        "trajectory.h5 and, as CSV, nodes, members, contacts and energy as far as the scene\n"
-        "records them: all of them or, where something fails, none.\n"
-        "--plot draws the last shape with curves of the last periods (overview), the ways of\n"
-        "the nodes over the last period, exaggerated by --scale (period), shapes at several\n"
-        "instants (snapshots), or curves of all that was recorded (curves); a run that failed,\n"
-        "as far as it came.\n"
-        "--animate makes a film of what the scene records, with the program ffmpeg.\n"
-        "Ctrl-C stops the run and keeps what it has so far; a second one kills.\n",
+        "\nPrints a short table at the end, or with --json the whole summary. With -o, DIR "
+        "receives\n"
+        "summary.json, scene.yaml (the scene as run: running it gives bit-identical results),\n"
+        "trajectory.h5 and, as CSV, nodes, members, contacts and energy, as the scene records\n"
+        "them; either all files are written or none.\n"
+        "--plot draws the final shape with curves of the last periods (overview), node\n"
+        "trajectories over the last period, magnified by --scale (period), shapes at several\n"
+        "instants (snapshots), or curves of everything recorded (curves). A run that diverged is\n"
+        "drawn up to that point.\n"
+        "--animate makes a film of the recorded motion with the program ffmpeg.\n"
+        "Ctrl-C stops the run and keeps the results so far; a second Ctrl-C kills it.\n",
     .options = options,
     .run = run,
 };

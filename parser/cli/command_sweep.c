@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/command_sweep.h"
+#include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,58 +7,45 @@
 #include "engine/output/file.h"
 #include "engine/study/results/shard.h"
 #include "engine/study/results/study_table.h"
-#include "parser/cli/interrupt.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
-#include "parser/cli/sweep_emit.h"
-#include "parser/cli/sweep_figures.h"
-#include "parser/cli/sweep_report.h"
-#include "parser/cli/sweep_shards.h"
-#include "parser/cli/sweep_study.h"
-#include "parser/cli/sweep_texts.h"
+#include "parser/cli/sweep.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "where the results are, and go on"},
-    {STRUT_OPTION_THREADS, "threads", "N", "points at a time; as many as there are processors"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "results directory; an unfinished sweep is resumed"},
+    {STRUT_OPTION_THREADS, "threads", "N", "number of threads (default: one per processor)"},
     {STRUT_OPTION_LANES, "lanes", "N",
-     "points at a time on one processor, 1, 2, 4 or 8; as many as it is good for"},
-    {STRUT_OPTION_RETRY, "retry", NULL, "compute points that failed once more"},
+     "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
+    {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
-     "only every N-th point from K on, counted from 0; or slurm/N"},
+     "only points K, K+N, K+2N, ... with K from 0 to N-1; or slurm/N"},
     {STRUT_OPTION_EMIT, "emit", "KIND",
-     "only print the script for a cluster: slurm or parallel (GNU's)"},
-    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: how many in all"},
-    {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors of a task; 1 if not given"},
-    {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: of a task, such as 12:00:00"},
-    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit slurm: of a task, such as 2G"},
-    {STRUT_OPTION_SET, "set", "NAME=VALUE", "give a parameter another value; may be repeated"},
-    {STRUT_OPTION_COUNT_POINTS, "count", NULL,
-     "only tell how many points and which columns there are"},
-    {STRUT_OPTION_STATUS, "status", NULL, "only tell what is done, missing and failed in DIR"},
+     "only print a cluster script: slurm or parallel (GNU parallel)"},
+    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: number of shards"},
+    {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors per task (default 1)"},
+    {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: time limit per task, such as 12:00:00"},
+    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit slurm: memory per task, such as 2G"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the number of points and the columns"},
+    {STRUT_OPTION_STATUS, "status", NULL, "only print what is done, missing and failed in DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
-    {STRUT_OPTION_QUIET, "quiet", NULL, "print nothing and show no progress"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
 enum { MOST_THREADS = 4096, MOST_LANES = 8 };
 static const char table_name[] = "table.csv";
 
-/* How many points at a time; 0: as is good. */
-typedef struct pace {
+/* Concurrency; 0: automatic. */
+typedef struct concurrency {
   int64_t threads, lanes;
-} pace;
+} concurrency;
 
-/* DIR/name in the study's memory; NULL: memory is out. */
+/* DIR/name in the study's arena, or NULL. */
 static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
   return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
 }
 
-static strut_status complain(strut_status status, const strut_error *error) {
-  if (status != STRUT_OK) strut_print_error(error);
-  return status;
-}
-
-/* Which part of the study is meant, and the file of its slots. */
+/* Finds the shard that --shard names, and the file of its slots. */
 static strut_status find_shard(const strut_arguments *arguments, strut_sweep_study *study,
                                strut_shard *shard, const char **path) {
   const strut_array_task task = {
@@ -72,7 +59,7 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
   strut_error error = {0};
   *shard = (strut_shard){0};
   strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
-  if (status) return complain(status, &error);
+  if (status) return strut_print_failure(status, &error);
   if (shard->count) strut_shard_points(*shard, &study->slots);
   *path = strut_shard_path(arguments->output, *shard, &study->plan.arena);
   return *path ? STRUT_OK : strut_print_out_of_memory();
@@ -89,18 +76,18 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   strut_status status = find_shard(arguments, study, &shard, &path);
   if (status) return status;
   status = strut_shards_find(arguments->output, &found, arena, &error);
-  if (status) return complain(status, &error);
+  if (status) return strut_print_failure(status, &error);
   if (!shard.count && found.count)
     return strut_sweep_print_shards(arguments->output, &found, arena, arguments->json);
   status = strut_slots_read(path, &slots, &there, &error);
-  if (status) return complain(status, &error);
+  if (status) return strut_print_failure(status, &error);
   status = strut_sweep_print_status(slots, arguments->json);
   strut_slots_close(slots);
   return status;
 }
 
 static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               pace at_a_time, strut_slots *slots, strut_sweep_state *state,
+                               concurrency at_a_time, strut_slots *slots, strut_sweep_state *state,
                                strut_error *error) {
   strut_sweep_progress progress = strut_sweep_progress_begin(&study->plan, arguments->quiet);
   const strut_sweep_options how = {.threads = (int)at_a_time.threads,
@@ -112,42 +99,43 @@ static strut_status run_points(const strut_arguments *arguments, strut_sweep_stu
   strut_status status = strut_sweep_texts_write(arguments, study, error);
   if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
   strut_sweep_progress_end(&progress);
+  strut_sweep_print_warnings(state);
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
   if (status == STRUT_INTERRUPTED)
-    strut_fail(error, status,
-               "interrupted with %lld of %lld points done; the same command goes on from there",
+    strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
                (long long)state->done, (long long)state->points);
   return status;
 }
 
-/* Points that failed are no reason to stop, but the exit code tells of them. */
-static strut_status finish(const strut_arguments *arguments, strut_sweep_study *study,
-                           strut_shard shard, strut_slots *slots, const strut_sweep_state *state) {
+/* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
+static strut_status complete(const strut_arguments *arguments, strut_sweep_study *study,
+                             strut_shard shard, strut_slots *slots,
+                             const strut_sweep_state *state) {
   strut_error error = {0};
   strut_slots *const sources[] = {slots};
-  const char *table = shard.count ? "one shard: 'strut merge' makes the table of all"
+  const char *table = shard.count ? "one shard: 'strut merge' writes the table of all"
                                   : inside(study, arguments->output, table_name);
   if (!table) return strut_print_out_of_memory();
   strut_status status =
       shard.count ? STRUT_OK
                   : strut_study_table_write(arguments->output, table_name, sources, 1, &error);
-  if (status) return complain(status, &error);
+  if (status) return strut_print_failure(status, &error);
   if (!shard.count) status = strut_sweep_figures_draw(&study->plan, arguments->output, table);
   if (status) return status;
   if (!arguments->quiet || arguments->json)
     status = strut_sweep_print_end(state, table, arguments->json);
   if (status || !state->failed) return status;
   fprintf(stderr,
-          "strut: %lld of %lld points failed; the table's columns status and message say "
-          "why\n",
+          "strut: %lld of %lld points failed: see the table's columns status and "
+          "message\n",
           (long long)state->failed, (long long)state->points);
   return STRUT_DIVERGED;
 }
 
 static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *study,
-                          pace at_a_time) {
+                          concurrency at_a_time) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_error error = {0};
@@ -163,34 +151,34 @@ static strut_status sweep(const strut_arguments *arguments, strut_sweep_study *s
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
   if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
   if (!status && !shard.count && strut_slots_missing(slots) > 0)
-    strut_file_remove(arguments->output, table_name); /* it would be another sweep's */
+    strut_file_remove(arguments->output, table_name); /* outdated */
   if (!status) status = run_points(arguments, study, at_a_time, slots, &state, &error);
-  complain(status, &error);
-  if (!status) status = finish(arguments, study, shard, slots, &state);
+  strut_print_failure(status, &error);
+  if (!status) status = complete(arguments, study, shard, slots, &state);
   strut_slots_close(slots);
   return status;
 }
 
 static strut_status run(const strut_arguments *arguments) {
   strut_sweep_study study = {0};
-  pace at_a_time = {0};
+  concurrency at_a_time = {0};
   strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
                                              1, MOST_THREADS, &at_a_time.threads);
   if (!status)
     status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_LANES, 1,
                                   MOST_LANES, &at_a_time.lanes);
   if (status) return status;
-  if (arguments->retry &&
-      (arguments->tally || arguments->status || strut_option_text(arguments, STRUT_OPTION_EMIT))) {
-    fputs("strut sweep: --retry is for computing, not for --count, --status or --emit\n", stderr);
+  if (arguments->retry && (arguments->count_points || arguments->status ||
+                           strut_option_text(arguments, STRUT_OPTION_EMIT))) {
+    fputs("strut sweep: --retry cannot be combined with --count, --status or --emit\n", stderr);
     return STRUT_USAGE;
   }
-  if (!arguments->output && !arguments->tally) {
-    fputs("strut sweep: -o DIR is missing, where the results go\n", stderr);
+  if (!arguments->output && !arguments->count_points) {
+    fputs("strut sweep: missing -o DIR, the results directory\n", stderr);
     return STRUT_USAGE;
   }
   status = strut_sweep_study_open(arguments, &study);
-  if (!status && arguments->tally)
+  if (!status && arguments->count_points)
     status = strut_sweep_print_count(&study.plan, arguments->json);
   else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
     status = strut_sweep_emit(arguments, study.plan.study->name);
@@ -205,19 +193,16 @@ static strut_status run(const strut_arguments *arguments) {
 const strut_command strut_command_sweep = {
     .name = "sweep",
     .model = "STUDY",
-    .summary = "runs a model at many points",
+    .summary = "simulates a model at many parameter values",
     .details =
-        "\nA study is a file that names a model, axes over its parameters and what to keep of "
-        "each\n"
-        "run ('strut keys' explains it). DIR gets table.csv, a row for each point, and "
-        "points.slots,\n"
-        "where results are as soon as a point is done: whatever stops the program, the same "
-        "command\n"
-        "goes on where it was, and the table has the same bytes in the end, whatever the number "
-        "of\n"
-        "threads. Remove points.slots to begin anew.\n"
-        "A point that fails is a row that says why; the exit code is 3 then, and only --retry\n"
-        "computes it again. Ctrl-C stops soon.\n",
+        "\nSTUDY is a file that names a model, axes over its parameters and what to keep of each "
+        "run\n"
+        "(see 'strut keys'). DIR receives table.csv, one row per point, and points.slots, which\n"
+        "stores every result as soon as its point is finished. After any interruption the same\n"
+        "command resumes; the final table is the same byte for byte, whatever the number of\n"
+        "threads. Remove points.slots to start afresh.\n"
+        "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
+        "recomputes it. Ctrl-C stops after a moment.\n",
     .options = options,
     .run = run,
 };

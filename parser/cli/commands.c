@@ -1,46 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of commands: a new one is one file and one line here. */
+/* The table of commands: a new one is one file, one line here and one in the header. */
 #include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/cli/command_check.h"
-#include "parser/cli/command_compare.h"
-#include "parser/cli/command_equilibria.h"
-#include "parser/cli/command_export.h"
-#include "parser/cli/command_form.h"
-#include "parser/cli/command_keys.h"
-#include "parser/cli/command_merge.h"
-#include "parser/cli/command_modes.h"
-#include "parser/cli/command_path.h"
-#include "parser/cli/command_plot.h"
-#include "parser/cli/command_rigidity.h"
-#include "parser/cli/command_run.h"
-#include "parser/cli/command_sweep.h"
-#include "parser/cli/command_tradeoff.h"
-#include "parser/cli/command_view.h"
-#include "parser/cli/command_write.h"
 #include "parser/yaml/diagnostics.h"
 
+static strut_status print_help(const strut_arguments *arguments);
+
+static const strut_command help_command = {
+    .name = "help",
+    .model = "COMMAND",
+    .model_optional = true,
+    .summary = "explains the program, or one of its commands",
+    .run = print_help,
+};
+
 static const strut_command *const commands[] = {
-    &strut_command_run,
-    &strut_command_check,
-    &strut_command_equilibria,
-    &strut_command_modes,
-    &strut_command_form,
-    &strut_command_path,
-    &strut_command_rigidity,
-    &strut_command_compare,
-    &strut_command_merge,
-    &strut_command_sweep,
-    &strut_command_tradeoff,
-    &strut_command_view,
-    &strut_command_export,
-    &strut_command_plot,
-    &strut_command_write,
-    &strut_command_keys,
-    NULL,
+    &strut_command_run,      &strut_command_check,    &strut_command_equilibria,
+    &strut_command_modes,    &strut_command_form,     &strut_command_path,
+    &strut_command_rigidity, &strut_command_compare,  &strut_command_merge,
+    &strut_command_sweep,    &strut_command_tradeoff, &strut_command_view,
+    &strut_command_export,   &strut_command_plot,     &strut_command_write,
+    &strut_command_keys,     &help_command,           NULL,
 };
 
 static const char *command_name_at(const void *context, size_t i) {
@@ -60,15 +43,30 @@ const strut_command *strut_command_find(const char *name) {
 }
 
 void strut_program_help(void) {
-  printf("strut %s: structures of bars, springs and cables, described in YAML\n\n", STRUT_VERSION);
-  printf("usage: strut COMMAND [OPTION]... [MODEL]\n\nCommands:\n");
+  int width = 0;
   for (size_t i = 0; commands[i]; i++) {
-    printf("  %-8s %s\n", commands[i]->name, commands[i]->summary);
+    int length = (int)strlen(commands[i]->name);
+    if (length > width) width = length;
   }
   printf(
-      "\n'strut COMMAND --help' explains one of them; 'strut --version' prints the version.\n"
-      "MODEL is a file in strut's language ('strut keys' explains it), or - for the standard "
-      "input.\n\n"
-      "Exit code: 0 done, 1 wrong use, 2 the scene is not valid, 3 the computation failed,\n"
-      "4 trouble with files or memory, 130 interrupted.\n");
+      "strut %s: planar structures of bars, springs and cables, described in YAML\n\n"
+      "usage: strut COMMAND [OPTION]... [MODEL]\n\nCommands:\n",
+      STRUT_VERSION);
+  for (size_t i = 0; commands[i]; i++)
+    printf("  %-*s  %s\n", width, commands[i]->name, commands[i]->summary);
+  printf(
+      "\n'strut help COMMAND' explains a command; 'strut --version' prints the version.\n"
+      "MODEL is a file in strut's language (see 'strut keys'), or - for standard input.\n\n"
+      "Exit codes: 0 success, 1 wrong usage, 2 invalid scene, 3 computation failed,\n"
+      "4 file or memory trouble, 130 interrupted.\n");
+}
+
+static strut_status print_help(const strut_arguments *arguments) {
+  const strut_command *command = arguments->model ? strut_command_find(arguments->model) : NULL;
+  if (arguments->model && !command) return STRUT_USAGE;
+  if (command)
+    strut_command_help(command);
+  else
+    strut_program_help();
+  return STRUT_OK;
 }

@@ -1,16 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What the program can do: its commands by name, and the help of the whole.
+ * The program's commands, one file command_NAME.c each, and the table that finds them by name.
  */
 #ifndef STRUT_PARSER_CLI_COMMANDS_H
 #define STRUT_PARSER_CLI_COMMANDS_H
 
 #include "parser/cli/options.h"
 
+extern const strut_command strut_command_check;
+extern const strut_command strut_command_compare;
+extern const strut_command strut_command_equilibria;
+extern const strut_command strut_command_export;
+extern const strut_command strut_command_form;
+extern const strut_command strut_command_keys;
+extern const strut_command strut_command_merge;
+extern const strut_command strut_command_modes;
+extern const strut_command strut_command_path;
+extern const strut_command strut_command_plot;
+extern const strut_command strut_command_rigidity;
+extern const strut_command strut_command_run;
+extern const strut_command strut_command_sweep;
+extern const strut_command strut_command_tradeoff;
+extern const strut_command strut_command_view;
+extern const strut_command strut_command_write;
+
 /** The command of that name, or NULL with the reason and a suggestion on stderr. */
 const strut_command *strut_command_find(const char *name);
 
-/** The help of the program as a whole, on stdout. */
+/** Prints the help of the whole program on stdout. */
 void strut_program_help(void);
 
 #endif

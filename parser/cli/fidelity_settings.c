@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/fidelity_settings.h"
 
+#include <stdio.h>
+
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 #include "parser/language/keys.h"
 
-/* Reads an option whose words are those of a key: the word's index, as the reader takes it too. */
+/* Reads an option whose words are those of a key: the word's index, as the reader stores it too. */
 static strut_status read_word(const strut_command *command, const strut_arguments *arguments,
                               strut_option_id id, int key, int *word) {
   enum { MOST = 8, LONGEST = 24 };
@@ -13,7 +15,17 @@ static strut_status read_word(const strut_command *command, const strut_argument
   const char *words[MOST + 1] = {0};
   for (int i = 0; i < MOST; i++)
     if (!(words[i] = strut_word_at(strut_key_at(key)->words, i, text[i], LONGEST))) break;
-  return strut_option_word(command, arguments, id, words, word);
+  const char *given = strut_option_text(arguments, id);
+  const strut_spelling *other =
+      given ? strut_spelling_find(strut_key_at(key)->section, strut_key_at(key)->name, given)
+            : NULL;
+  if (!other || other->kind == STRUT_SPELLING_MISTAKE)
+    return strut_option_word(command, arguments, id, words, word);
+  if (other->kind == STRUT_SPELLING_FORMER)
+    fprintf(stderr, "strut %s: note: '%s' is now called '%s'\n", command->name, other->other,
+            other->current);
+  *word = strut_word_find(strut_key_at(key)->words, other->current);
+  return STRUT_OK;
 }
 
 static strut_status refuse(const char *option, const char *needs) {
@@ -49,7 +61,7 @@ static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
   if (other && !damped)
     return refuse("damping-law", law == STRUT_DAMPING_HUNT_CROSSLEY
                                      ? "hunt_crossley needs ground.dissipation in the model"
-                                     : "printed needs ground.damping in the model");
+                                     : "approach_only needs ground.damping in the model");
   scene->ground.damping_law = law;
   return STRUT_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The program strut: finds the command, lets it run, and says with its exit code how it went. */
+/* The program strut: finds the command, runs it, and returns its exit code. */
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Below a table; never into JSON or a file, which are the same every time. */
+/* Below a table; never in JSON or a file, which must not change from run to run. */
 static void print_time(double taken) {
   printf("\n  took %s\n", strut_quantity_of(taken, 3, "s").text);
 }
@@ -36,30 +36,17 @@ static strut_status run_command(const strut_command *command, int argc, char **a
   return status;
 }
 
-/* strut help [COMMAND] */
-static strut_status help(int argc, char **argv) {
-  if (argc <= 1) {
-    strut_program_help();
-    return STRUT_OK;
-  }
-  const strut_command *command = strut_command_find(argv[1]);
-  if (!command) return STRUT_USAGE;
-  strut_command_help(command);
-  return STRUT_OK;
-}
-
 static strut_status run_program(int argc, char **argv) {
   const char *first = argc > 1 ? argv[1] : NULL;
   if (!first) {
-    fprintf(stderr, "strut: a command is missing; 'strut help' lists them\n");
+    fprintf(stderr, "strut: missing COMMAND; 'strut help' lists the commands\n");
     return STRUT_USAGE;
   }
-  if (strcmp(first, "--version") == 0) {
+  if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0) {
     printf("strut %s\n", STRUT_VERSION);
     return STRUT_OK;
   }
-  bool asked = strcmp(first, "help") == 0 || strcmp(first, "--help") == 0;
-  if (asked || strcmp(first, "-h") == 0) return help(argc - 1, argv + 1);
+  if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) first = "help";
   const strut_command *command = strut_command_find(first);
   return command ? run_command(command, argc - 1, argv + 1) : STRUT_USAGE;
 }

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
@@ -122,4 +123,119 @@ strut_status strut_try_file(const char *path) {
   if (status != STRUT_OK) strut_print_error(&error);
   strut_file_abandon(&file);
   return status;
+}
+
+/* ---- the shape that --at names ---- */
+
+strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
+                                    const strut_experiment *experiment, strut_arena *arena,
+                                    strut_named_shape *shape, strut_error *error) {
+  const char *name = strut_option_text(arguments, STRUT_OPTION_AT);
+  strut_rest_state stand = {0};
+  strut_status status =
+      strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
+  if (status != STRUT_OK) return status;
+  *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
+  return STRUT_OK;
+}
+
+/* ---- runs ---- */
+
+static bool is_directory(const char *path) {
+  struct stat found;
+  if (strcmp(path, "-") == 0) return false; /* the standard input */
+  return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+/* directory/name in the arena, or NULL. */
+static char *inside(strut_arena *arena, const char *directory, const char *name) {
+  size_t length = strlen(directory);
+  bool slash = length > 0 && directory[length - 1] == '/';
+  return strut_arena_format(arena, "%s%s%s", directory, slash ? "" : "/", name);
+}
+
+/* Checks for the files that every run writes. */
+static strut_status check_files(const char *directory, const char *scene, const char *trajectory,
+                                strut_error *error) {
+  struct stat found;
+  bool described = stat(scene, &found) == 0, recorded = stat(trajectory, &found) == 0;
+  if (!described) {
+    return strut_fail(error, STRUT_FILE_TROUBLE,
+                      "'%s' holds no run: it has no scene.yaml ('strut run MODEL -o DIR' "
+                      "writes one)",
+                      directory);
+  }
+  if (recorded) return STRUT_OK;
+  return strut_fail(error, STRUT_FILE_TROUBLE,
+                    "'%s' holds no recorded motion: it has no trajectory.h5", directory);
+}
+
+static strut_status read_motion(const char *directory, size_t room, strut_opened *opened,
+                                strut_error *error) {
+  strut_status status =
+      strut_trajectory_read(directory, &opened->setup.scene, room, &opened->motion, error);
+  if (status != STRUT_OK) return status;
+  if (opened->motion.position && opened->motion.frames > 0) return STRUT_OK;
+  return strut_fail(
+      error, STRUT_FILE_TROUBLE,
+      opened->motion.frames == 0
+          ? "the run in '%s' ended before anything was recorded"
+          : "the run in '%s' recorded no positions: add 'position' to the channels of "
+            "'output' in its scene",
+      directory);
+}
+
+/* Reads the run in a directory. Messages about its scene are printed by strut_open_model. */
+static strut_status open_directory(const strut_arguments *arguments, size_t room,
+                                   strut_arena *arena, strut_opened *opened, strut_error *error) {
+  const char *directory = arguments->model;
+  char *scene = inside(arena, directory, "scene.yaml");
+  char *trajectory = inside(arena, directory, "trajectory.h5");
+  char *summary = inside(arena, directory, "summary.json");
+  if (!scene || !trajectory || !summary) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = check_files(directory, scene, trajectory, error);
+  if (status != STRUT_OK) return status;
+  strut_arguments inner = *arguments;
+  inner.model = scene;
+  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->setup);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&opened->setup.scene, &opened->model, error);
+  if (status == STRUT_OK) status = read_motion(directory, room, opened, error);
+  size_t length = 0;
+  struct stat found;
+  if (status == STRUT_OK && stat(summary, &found) == 0)
+    status = strut_file_read(summary, &opened->summary, &length, error);
+  return status;
+}
+
+strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
+                            strut_open_purpose purpose, size_t room, strut_opened *opened) {
+  strut_error error = {0};
+  strut_arena arena = {0};
+  *opened = (strut_opened){.run = is_directory(arguments->model)};
+  if (opened->run && arguments->override_count > 0) {
+    fprintf(stderr, "strut %s: --set needs a model, not the finished run '%s'\n", command->name,
+            arguments->model);
+    return STRUT_USAGE;
+  }
+  strut_status status;
+  if (opened->run) {
+    status = open_directory(arguments, room, &arena, opened, &error);
+  } else {
+    status = strut_open_model(arguments, purpose, &opened->setup);
+    if (status == STRUT_OK)
+      status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
+  }
+  if (status != STRUT_OK && error.status != STRUT_OK) strut_print_error(&error);
+  if (status != STRUT_OK) strut_opened_free(opened);
+  strut_arena_free(&arena);
+  return status;
+}
+
+void strut_opened_free(strut_opened *opened) {
+  strut_release(opened->summary);
+  strut_trajectory_free(&opened->motion);
+  strut_model_free(opened->model);
+  strut_setup_free(&opened->setup);
+  *opened = (strut_opened){0};
 }

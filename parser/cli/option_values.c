@@ -5,6 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/output/draw/canvas.h"
+#include "engine/output/file.h"
+#include "parser/cli/streams.h"
 #include "parser/expression/expression.h"
 #include "parser/yaml/diagnostics.h"
 
@@ -97,4 +100,56 @@ strut_status strut_option_word(const strut_command *command, const strut_argumen
   if (near) fprintf(stderr, "; did you mean '%s'?", near);
   fputc('\n', stderr);
   return STRUT_USAGE;
+}
+
+/* ---- --plot and --width ---- */
+
+static const double POINTS = 72.0 / 0.0254;                                      /* in a metre */
+static const double PAGE = 0.18, COLUMN = 0.088, NARROWEST = 0.04, WIDEST = 1.0; /* [m] */
+
+static strut_status read_width(const strut_command *command, const strut_arguments *arguments,
+                               strut_plot *plot) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_WIDTH);
+  double width = PAGE;
+  if (!text) return STRUT_OK;
+  if (!plot->path) {
+    fprintf(stderr, "strut %s: --width needs --plot FILE\n", command->name);
+    return STRUT_USAGE;
+  }
+  if (strcmp(text, "column") == 0) {
+    width = COLUMN;
+  } else if (strcmp(text, "page") != 0) {
+    strut_status status =
+        strut_option_number(command, arguments, STRUT_OPTION_WIDTH, STRUT_DIM_LENGTH, &width);
+    if (status != STRUT_OK) return status;
+  }
+  if (!(width >= NARROWEST && width <= WIDEST)) {
+    fprintf(stderr, "strut %s: --width %s: expected a width between 40 mm and 1 m\n", command->name,
+            text);
+    return STRUT_USAGE;
+  }
+  plot->width = width * POINTS;
+  return STRUT_OK;
+}
+
+/* Checks that the file can be created. */
+static strut_status try_path(const char *path) {
+  strut_file file;
+  strut_error error = {0};
+  strut_status status = strut_canvas_check_name(path, &error);
+  if (status == STRUT_OK) status = strut_file_open_path(&file, path, &error);
+  if (status == STRUT_OK) {
+    strut_file_abandon(&file);
+  } else {
+    strut_print_error(&error);
+  }
+  return status;
+}
+
+strut_status strut_plot_read(const strut_command *command, const strut_arguments *arguments,
+                             double usual, strut_plot *plot) {
+  *plot = (strut_plot){.path = strut_option_text(arguments, STRUT_OPTION_PLOT),
+                       .width = usual > 0 ? usual : PAGE * POINTS};
+  strut_status status = read_width(command, arguments, plot);
+  return status == STRUT_OK && plot->path ? try_path(plot->path) : status;
 }

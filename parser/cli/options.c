@@ -10,14 +10,19 @@
 
 enum { MOST_OPTIONS = 48, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
 
-static const strut_option help_option = {STRUT_OPTION_HELP, "help", NULL, "print this help"};
+/* Every command has these, after its own. */
+static const strut_option common_options[] = {
+    {STRUT_OPTION_QUIET, "quiet", NULL, "print no report or progress, only warnings and errors"},
+    {STRUT_OPTION_HELP, "help", NULL, "print this help"},
+};
+enum { COMMON_OPTIONS = sizeof common_options / sizeof common_options[0] };
 
-/* The i-th option of a command, with --help as the last; NULL after it. */
+/* The i-th option of a command, the common ones last; NULL after them. */
 static const strut_option *option_at(const strut_command *command, size_t i) {
   size_t count = 0;
   while (command->options && command->options[count].id != STRUT_OPTION_END) count++;
   if (i < count) return &command->options[i];
-  return i == count ? &help_option : NULL;
+  return i < count + COMMON_OPTIONS ? &common_options[i - count] : NULL;
 }
 
 static const char *option_name_at(const void *context, size_t i) {
@@ -25,12 +30,12 @@ static const char *option_name_at(const void *context, size_t i) {
   return option ? option->name : NULL;
 }
 
-static strut_status wrong(const strut_command *command) {
+static strut_status usage_error(const strut_command *command) {
   fprintf(stderr, "'strut %s --help' lists the options\n", command->name);
   return STRUT_USAGE;
 }
 
-/* `word` begins with its dashes; a name that getopt took as an abbreviation is the suggestion. */
+/* `word` starts with its dashes. `meant`: the option it abbreviates, or NULL to look for one. */
 static strut_status unknown_option(const strut_command *command, const char *word,
                                    const char *meant) {
   int length = (int)strcspn(word, "=");
@@ -40,11 +45,11 @@ static strut_status unknown_option(const strut_command *command, const char *wor
   fprintf(stderr, "strut %s: unknown option '%.*s'", command->name, length, word);
   if (meant) fprintf(stderr, "; did you mean '--%s'?", meant);
   fputc('\n', stderr);
-  return wrong(command);
+  return usage_error(command);
 }
 
-/* getopt has refused argv[optind - 1], or a letter in it. */
-static strut_status refuse(const strut_command *command, int code, char **argv) {
+/* Reports why getopt rejected argv[optind - 1], or a letter in it. */
+static strut_status report_rejected(const strut_command *command, int code, char **argv) {
   const char *word = argv[optind - 1];
   bool letter = strncmp(word, "--", 2) != 0;
   if (code == ':' && letter) {
@@ -59,57 +64,60 @@ static strut_status refuse(const strut_command *command, int code, char **argv) 
   } else {
     return unknown_option(command, word, NULL);
   }
-  return wrong(command);
+  return usage_error(command);
 }
 
 /* One --set or --vary: splits NAME=VALUE in place. */
-static strut_status take_override(const strut_command *command, int id, char *text,
-                                  strut_arguments *to) {
+static strut_status add_override(const strut_command *command, int id, char *text,
+                                 strut_arguments *to) {
   char *equals = strchr(text, '=');
   bool varied = id == STRUT_OPTION_VARY;
   if (!equals || equals == text) {
     fprintf(stderr, "strut %s: --%s expects NAME=%s, not '%s'\n", command->name,
             varied ? "vary" : "set", varied ? "RANGE" : "VALUE", text);
-    return wrong(command);
+    return usage_error(command);
   }
   *equals = '\0';
-  if (varied)
+  if (varied) {
     to->varied[to->varied_count++] = (strut_override){text, equals + 1};
-  else
+  } else {
+    to->override_model[to->override_count] = to->model_count;
     to->overrides[to->override_count++] = (strut_override){text, equals + 1};
+  }
   return STRUT_OK;
 }
 
-static strut_status take_model(const strut_command *command, const char *text,
-                               strut_arguments *to) {
+static strut_status add_model(const strut_command *command, const char *text, strut_arguments *to) {
   if (!command->model || (to->model && !command->many)) {
-    fprintf(stderr, "strut %s: what is '%s' for?\n", command->name, text);
-    return wrong(command);
+    fprintf(stderr, "strut %s: unexpected argument '%s'\n", command->name, text);
+    return usage_error(command);
   }
   if (!to->model) to->model = text;
   to->models[to->model_count++] = text;
   return STRUT_OK;
 }
 
-static strut_status take(const strut_command *command, int id, strut_arguments *to) {
+/* Stores one option or positional argument, with its value in optarg. */
+static strut_status store_option(const strut_command *command, int id, strut_arguments *to) {
   if (id >= (int)STRUT_OPTION_TEXTS && id < (int)STRUT_OPTION_TEXTS_END) {
     to->texts[id - (int)STRUT_OPTION_TEXTS] = optarg;
     return STRUT_OK;
   }
   switch (id) {
-    case POSITIONAL: return take_model(command, optarg, to);
+    case POSITIONAL: return add_model(command, optarg, to);
     case STRUT_OPTION_SET:
-    case STRUT_OPTION_VARY: return take_override(command, id, optarg, to);
+    case STRUT_OPTION_VARY: return add_override(command, id, optarg, to);
     case STRUT_OPTION_OUTPUT: to->output = optarg; break;
     case STRUT_OPTION_JSON: to->json = true; break;
     case STRUT_OPTION_QUIET: to->quiet = true; break;
     case STRUT_OPTION_FORCE: to->force = true; break;
     case STRUT_OPTION_STUCK: to->stuck = true; break;
-    case STRUT_OPTION_OWN_MODEL: to->own = true; break;
+    case STRUT_OPTION_OWN_MODEL: to->own_model = true; break;
+    case STRUT_OPTION_ALL: to->all = true; break;
     case STRUT_OPTION_CSV: to->csv = true; break;
     case STRUT_OPTION_NO_MOTION: to->no_motion = true; break;
     case STRUT_OPTION_NO_STATES: to->no_states = true; break;
-    case STRUT_OPTION_COUNT_POINTS: to->tally = true; break;
+    case STRUT_OPTION_COUNT_POINTS: to->count_points = true; break;
     case STRUT_OPTION_STATUS: to->status = true; break;
     case STRUT_OPTION_RETRY: to->retry = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
@@ -118,7 +126,7 @@ static strut_status take(const strut_command *command, int id, strut_arguments *
   return STRUT_OK;
 }
 
-/* The table as getopt wants it. "-" hands out positional arguments in order, ":" stays silent. */
+/* The table in getopt's form. "-" returns positional arguments in order, ":" suppresses messages. */
 static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTIONS + 3],
                         struct option rows[MOST_OPTIONS + 1]) {
   char *at = letters;
@@ -135,8 +143,8 @@ static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTI
   *at = '\0';
 }
 
-/* The word in which getopt found a long option, to be compared with the name it found. */
-static bool abbreviated(char **argv, const struct option *row) {
+/* Did getopt accept an abbreviation of the long option it found? */
+static bool is_abbreviated(char **argv, const struct option *row) {
   const char *word = argv[optind - 1];
   if (row->has_arg && optarg == word) word = argv[optind - 2];
   size_t length = strcspn(word, "=");
@@ -150,9 +158,11 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   fill_getopt(command, letters, rows);
   *arguments = (strut_arguments){0};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
+  arguments->override_model = strut_allocate((size_t)argc, sizeof *arguments->override_model);
   arguments->varied = strut_allocate((size_t)argc, sizeof *arguments->varied);
   arguments->models = strut_allocate((size_t)argc, sizeof *arguments->models);
-  if (!arguments->overrides || !arguments->varied || !arguments->models) {
+  if (!arguments->overrides || !arguments->override_model || !arguments->varied ||
+      !arguments->models) {
     fprintf(stderr, "strut %s: out of memory\n", command->name);
     return STRUT_NO_MEMORY;
   }
@@ -162,21 +172,21 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
     int row = -1, id = getopt_long(argc, argv, letters, rows, &row);
     if (id == -1) break;
     if (id == '?' || id == ':') {
-      status = refuse(command, id, argv);
-    } else if (row >= 0 && abbreviated(argv, &rows[row])) {
+      status = report_rejected(command, id, argv);
+    } else if (row >= 0 && is_abbreviated(argv, &rows[row])) {
       const char *word = argv[optind - (rows[row].has_arg && optarg == argv[optind - 1] ? 2 : 1)];
       status = unknown_option(command, word, rows[row].name);
     } else {
-      status = take(command, id, arguments);
+      status = store_option(command, id, arguments);
     }
   }
-  for (; status == STRUT_OK && optind < argc; optind++) { /* behind "--" */
-    status = take_model(command, argv[optind], arguments);
+  for (; status == STRUT_OK && optind < argc; optind++) { /* after "--" */
+    status = add_model(command, argv[optind], arguments);
   }
   bool missing = command->model && !command->model_optional && !arguments->model;
   if (status == STRUT_OK && missing && !arguments->help) {
-    fprintf(stderr, "strut %s: %s is missing\n", command->name, command->model);
-    status = wrong(command);
+    fprintf(stderr, "strut %s: missing %s\n", command->name, command->model);
+    status = usage_error(command);
   }
   return status;
 }
@@ -187,6 +197,7 @@ const char *strut_option_text(const strut_arguments *arguments, strut_option_id 
 
 void strut_arguments_free(strut_arguments *arguments) {
   strut_release(arguments->overrides);
+  strut_release(arguments->override_model);
   strut_release(arguments->varied);
   strut_release(arguments->models);
   *arguments = (strut_arguments){0};
@@ -204,7 +215,7 @@ static void print_option(const strut_option *option) {
 
 void strut_command_help(const strut_command *command) {
   printf("usage: strut %s", command->name);
-  if (command->options) printf(" [OPTION]...");
+  printf(" [OPTION]...");
   if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
   printf("\n\nstrut %s: %s.\n", command->name, command->summary);
   if (command->details) printf("%s", command->details);

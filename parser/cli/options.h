@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Commands and their options: one table per command, from which the reading of the command line
- * and the help both come.
+ * Commands and their options: one table per command defines both the parsing of the command line
+ * and the help text.
  *
- * Only whole names are options: an abbreviation that works today would forbid a new option
- * tomorrow.
+ * Abbreviated option names are rejected: accepting one today could make a new option ambiguous.
  */
 #ifndef STRUT_PARSER_CLI_OPTIONS_H
 #define STRUT_PARSER_CLI_OPTIONS_H
@@ -15,7 +14,7 @@
 #include "engine/base/status.h"
 #include "parser/read/read_scene.h"
 
-/** What an option sets in the arguments below; also its letter where it has one. */
+/** Names an option; its value is the option's letter where it has one. */
 typedef enum strut_option_id {
   STRUT_OPTION_END = 0,
   STRUT_OPTION_HELP = 'h',
@@ -26,13 +25,14 @@ typedef enum strut_option_id {
   STRUT_OPTION_FORCE,
   STRUT_OPTION_STUCK,
   STRUT_OPTION_OWN_MODEL,
+  STRUT_OPTION_ALL,
   STRUT_OPTION_CSV,
   STRUT_OPTION_NO_MOTION,
   STRUT_OPTION_NO_STATES,
   STRUT_OPTION_VARY,
-  STRUT_OPTION_COUNT_POINTS, /* how many points a study has */
-  STRUT_OPTION_STATUS,       /* how far a study is */
-  STRUT_OPTION_RETRY,        /* of a study's points that failed */
+  STRUT_OPTION_COUNT_POINTS,
+  STRUT_OPTION_STATUS,
+  STRUT_OPTION_RETRY,
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -42,7 +42,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_SEED,
   STRUT_OPTION_MATRICES,
   STRUT_OPTION_LOAD,
-  STRUT_OPTION_OVER, /* what a path is followed over */
+  STRUT_OPTION_OVER, /* the parameter of a path */
   STRUT_OPTION_UNTIL,
   STRUT_OPTION_STEPS,
   STRUT_OPTION_FROM,
@@ -69,6 +69,11 @@ typedef enum strut_option_id {
   STRUT_OPTION_LABEL,
   STRUT_OPTION_DOUBT,
   STRUT_OPTION_TITLE,
+  STRUT_OPTION_X_LABEL,
+  STRUT_OPTION_Y_LABEL,
+  STRUT_OPTION_X_LIMITS,
+  STRUT_OPTION_Y_LIMITS,
+  STRUT_OPTION_COLORS, /* of a map */
   STRUT_OPTION_ACCURACY,
   STRUT_OPTION_INTEGRATOR,
   STRUT_OPTION_STEP,
@@ -96,49 +101,51 @@ typedef enum strut_option_id {
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
-/** One row of a command's table; the last has the id STRUT_OPTION_END. */
+/** One row of a command's option table, which ends with STRUT_OPTION_END. */
 typedef struct strut_option {
   strut_option_id id;
   const char *name;     /* without the two dashes */
-  const char *argument; /* what the help calls it; NULL: it takes none */
+  const char *argument; /* placeholder in the help; NULL: takes no argument */
   const char *help;
 } strut_option;
 
-/** A command line as read. Texts belong to argv. Zero-initialise. */
+/** A parsed command line. Texts belong to argv. Zero-initialise. */
 typedef struct strut_arguments {
-  const char *model;   /* the first; NULL where the command takes none or none is given */
-  const char **models; /* (model_count) all that are given: several where the command takes many */
+  const char *model;   /* the first positional argument, or NULL */
+  const char **models; /* (model_count) all positional arguments */
   size_t model_count;
   const char *output;
-  bool help, json, quiet, force, stuck, own, csv, no_motion, no_states, tally, status, retry;
+  bool help, json, quiet, force, stuck, own_model, csv, no_motion, no_states;
+  bool all, count_points, status, retry;
   const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
-  strut_override *overrides;                                      /* (override_count) */
+  strut_override *overrides;                                      /* (override_count) of --set */
+  size_t *override_model; /* (override_count) how many models stand before each */
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
 } strut_arguments;
 
-/** A command: the whole of what the program knows about it. */
+/** A command: how it is called, explained and run. */
 typedef struct strut_command {
   const char *name;
-  const char *model;           /* its one argument, such as "MODEL"; NULL: none */
+  const char *model;           /* its one argument, such as "MODEL", or NULL */
   bool model_optional, many;   /* many: one or more of them */
   const char *summary;         /* half a sentence for the list of commands */
   const char *details;         /* lines for its own help; may be NULL */
-  const strut_option *options; /* besides --help, which every command has */
+  const strut_option *options; /* besides --quiet and --help, which every command has; or NULL */
   strut_status (*run)(const strut_arguments *arguments);
-  bool timed; /* the time it took stands below its table */
+  bool timed; /* print the elapsed time below the report */
 } strut_command;
 
-/** Reads argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
+/** Parses argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
                                   strut_arguments *arguments);
 void strut_arguments_free(strut_arguments *arguments);
 
-/** What was given for an option that is kept as text, or NULL. */
+/** The value given for an option that is kept as text, or NULL. */
 const char *strut_option_text(const strut_arguments *arguments, strut_option_id id);
 
-/** The help of a command on stdout. */
+/** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);
 
 #endif

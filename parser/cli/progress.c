@@ -1,18 +1,62 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* TIOCGWINSZ is not in POSIX 2008; without it COLUMNS tells. */
+#define _DEFAULT_SOURCE 1
 #include "parser/cli/progress.h"
 
+#include <langinfo.h>
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "parser/cli/terminal.h"
+/* ---- the terminal ---- */
+
+static bool says_utf8(const char *name) {
+  for (; *name; name++)
+    if (strncasecmp(name, "utf-8", 5) == 0 || strncasecmp(name, "utf8", 4) == 0) return true;
+  return false;
+}
+
+/* The name of the locale of letters; a locale that is not installed still has one. */
+static const char *locale_name(void) {
+  static const char *const variables[] = {"LC_ALL", "LC_CTYPE", "LANG"};
+  for (size_t i = 0; i < sizeof variables / sizeof variables[0]; i++) {
+    const char *value = getenv(variables[i]);
+    if (value && *value) return value;
+  }
+  return "C";
+}
+
+bool strut_terminal_unicode(void) {
+  locale_t locale = newlocale(LC_CTYPE_MASK, "", (locale_t)0);
+  if (locale == (locale_t)0) return says_utf8(locale_name());
+  bool unicode = says_utf8(nl_langinfo_l(CODESET, locale));
+  freelocale(locale);
+  return unicode;
+}
+
+int strut_terminal_columns(int descriptor, int usual) {
+#ifdef TIOCGWINSZ
+  struct winsize size = {0};
+  if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return (int)size.ws_col;
+#else
+  (void)descriptor;
+#endif
+  const char *text = getenv("COLUMNS");
+  long columns = text ? strtol(text, NULL, 10) : 0;
+  return columns > 0 && columns < 10000 ? (int)columns : usual;
+}
+
+/* ---- progress ---- */
 
 enum { WIDTH = 30, USUAL = 80, PARTS = 8, BAR_ROOM = 3 * WIDTH + 1, TEXT = 96, LEAST = 8 };
 
-/* A run shorter than this needs no bar [s]. */
+/* Runs shorter than this show no bar [s]. */
 static const double PATIENCE = 0.5;
 
 static double now(void) {
@@ -46,7 +90,7 @@ void strut_progress_time(char *text, size_t size, double seconds) {
   }
 }
 
-/* "46.2 of 110 s, ", in the unit of the whole; nothing where no time passes. */
+/* "46.2 of 110 s, ", in the unit of the whole; empty where no time passes. */
 static void write_simulated(char *text, size_t size, double fraction, double span) {
   static const char *const units[] = {"s", "ms", "us"};
   int unit = 0;
@@ -56,7 +100,6 @@ static void write_simulated(char *text, size_t size, double fraction, double spa
   snprintf(text, size, "%.1f of %.5g %s, ", fraction * span, span, units[unit]);
 }
 
-/* A bar of so many columns: in blocks down to an eighth of one, or in ASCII. */
 void strut_progress_bar(char *bar, int width, double fraction, bool unicode) {
   double part = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
   int done = (int)(part * width * PARTS);
@@ -76,31 +119,34 @@ void strut_progress_bar(char *bar, int width, double fraction, bool unicode) {
 void strut_progress_phase(void *context, const char *name) {
   strut_progress *progress = context;
   progress->phase = name;
-  progress->phase_start = now();
 }
 
 void strut_progress_show(void *context, double fraction) {
   strut_progress *progress = context;
   char bar[BAR_ROOM], left[32], simulated[48], text[TEXT];
-  double elapsed = now() - (progress->phase ? progress->phase_start : progress->start);
+  double elapsed = now() - progress->start;
   if (now() - progress->start < PATIENCE) return;
   strut_progress_time(left, sizeof left,
                       fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
   write_simulated(simulated, sizeof simulated, fraction, progress->span);
   double percent = floor(100.0 * fraction);
-  int length =
-      progress->phase
-          ? snprintf(text, sizeof text, " %3.0f %%, %s left: %s", percent, left, progress->phase)
-          : snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
+  int length;
+  if (progress->phase) { /* nobody knows how many parts follow: no time left is shown */
+    strut_progress_time(left, sizeof left, elapsed);
+    length = snprintf(text, sizeof text, " %s: %.0f %%, %s so far", progress->phase, percent, left);
+  } else {
+    length = snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
+  }
   int room = progress->columns - 1 - length; /* the last column would break the line */
   if (room < LEAST) {
-    length = snprintf(text, sizeof text, " %3.0f %%, %s left", percent, left);
+    length = snprintf(text, sizeof text, " %3.0f %%, %s %s", percent, left,
+                      progress->phase ? "so far" : "left");
     room = progress->columns - 1 - length;
   }
   int width = room > WIDTH ? WIDTH : room > 0 ? room : 0;
   strut_progress_bar(bar, width, fraction, progress->unicode);
   const char *on = progress->colour ? "\033[36m" : "", *off = progress->colour ? "\033[0m" : "";
-  int blank = room - width < 6 ? room - width : 6; /* over what a longer line has left */
+  int blank = room - width < 6 ? room - width : 6; /* erase the rest of a longer line */
   fprintf(stderr, "\r%s%s%s%.*s", on, bar, off, progress->columns - 1, text);
   if (progress->colour) {
     fprintf(stderr, "\033[K");

@@ -6,8 +6,29 @@
 #define STRUT_PARSER_CLI_RUN_PICTURES_H
 
 #include "engine/output/figures/run_figure.h"
-#include "parser/cli/plot_options.h"
-#include "parser/cli/run_film.h"
+#include "engine/output/film/film.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/options.h"
+
+/** Rows for the table of options. */
+#define STRUT_RUN_FILM_OPTIONS                                                                     \
+  {STRUT_OPTION_ANIMATE, "animate", "FILE", "make a film: FILE ends with .mp4, .webm or .gif"},    \
+      {STRUT_OPTION_SPEED, "speed", "SPEED",                                                       \
+       "speed of the film, such as 1/10 or 5 (default 1, real time)"},                             \
+  {                                                                                                \
+    STRUT_OPTION_FPS, "fps", "NUMBER", "frames per second (default 30; gif: 25)"                   \
+  }
+
+/**
+ * Reads them before anything is computed, and finds out whether the film can be made: ffmpeg is
+ * there, FILE can be written. STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr.
+ */
+strut_status strut_run_film_read(const strut_command *command, const strut_arguments *arguments,
+                                 strut_film *film);
+/** Makes the film, with a progress bar unless `quiet`, and reports it unless `silent`. */
+strut_status strut_run_film_make(strut_film *film, const strut_model *model,
+                                 const strut_trajectory *motion, bool quiet, bool silent,
+                                 strut_error *error);
 
 enum { STRUT_MOST_TIMES = 100 };
 
@@ -16,35 +37,34 @@ typedef struct strut_run_pictures {
   strut_plot plot;
   strut_run_figure figure;
   strut_film film;
-  bool quiet, silent; /* no bar; nothing on stdout besides what was asked for */
+  bool quiet, silent; /* no progress bar; no report of the film on stdout */
   double times[STRUT_MOST_TIMES];
   strut_trajectory motion;
-  strut_sink *sink; /* that fills the motion; NULL where nothing is drawn */
+  strut_sink *sink; /* fills the motion; NULL if nothing is drawn */
 } strut_run_pictures;
 
 /** Rows for the table of options. */
 #define STRUT_RUN_PICTURE_OPTIONS                                                                  \
   STRUT_PLOT_OPTIONS,                                                                              \
-      {STRUT_OPTION_DRAW, "draw", "WHAT", "overview (if not given), period, snapshots or curves"}, \
-      {STRUT_OPTION_SCALE, "scale", "X,Y", "draw the motion of a period so many times"},           \
+      {STRUT_OPTION_DRAW, "draw", "WHAT", "overview (default), period, snapshots or curves"},      \
+      {STRUT_OPTION_SCALE, "scale", "X,Y", "magnification of the motion in the figure period"},    \
       {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},   \
       STRUT_RUN_FILM_OPTIONS
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *pictures);
-/** Whether the run will have what is to be drawn; STRUT_USAGE. Before anything is computed; the
-    experiment must outlive the pictures. */
+/** Checks before the run that it will record what is to be drawn; STRUT_USAGE if not. */
 strut_status strut_run_pictures_check(strut_run_pictures *pictures,
                                       const strut_experiment *experiment, const strut_model *model,
                                       strut_error *error);
-/** The sink that the run has to have besides its others, or NULL; *status is its trouble. */
+/** The sink that collects the motion, or NULL where none is needed or *status is an error. */
 strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_scene *scene,
                                     strut_status *status);
-/** Draws what was asked for, after the run. The film is not in it. */
+/** Draws the figure after the run, if one was requested. */
 strut_status strut_run_pictures_draw(strut_run_pictures *pictures, const strut_model *model,
                                      const strut_summary *summary, strut_error *error);
-/** Makes the film, where one was asked for, and says what it is. */
+/** Makes the film, if one was requested, and reports what it made. */
 strut_status strut_run_pictures_film(strut_run_pictures *pictures, const strut_model *model,
                                      strut_error *error);
 void strut_run_pictures_free(strut_run_pictures *pictures);

@@ -52,12 +52,13 @@ strut_status strut_run_settings_apply(const strut_command *command,
   if (status != STRUT_OK) return status;
   if (strut_option_text(arguments, STRUT_OPTION_STEADY)) {
     if (!(e->periods > 0.0))
-      return refuse("--steady looks from period to period: the run must be given in periods");
+      return refuse("--steady compares periods: the run must be given in periods");
     e->steady.wanted = true;
     e->steady.tolerance = steady;
   }
   if (by_hand && strut_option_text(arguments, STRUT_OPTION_ACCURACY))
-    return refuse("--accuracy chooses the method and the step: give it or those, not both");
+    return refuse(
+        "--accuracy chooses method and step: give either --accuracy, or --integrator and --step");
   if (by_hand) e->accuracy = 0.0;
   if (e->accuracy > 1.0) return refuse("--accuracy must be at most 1, that is 100%");
   return STRUT_OK;

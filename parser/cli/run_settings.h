@@ -5,23 +5,24 @@
 #ifndef STRUT_PARSER_CLI_RUN_SETTINGS_H
 #define STRUT_PARSER_CLI_RUN_SETTINGS_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/cli/options.h"
 
-/** Rows of a command's table of options. */
+/** Rows for a table of options. */
 #define STRUT_RUN_SETTING_OPTIONS                                                                  \
   {STRUT_OPTION_ACCURACY, "accuracy", "X",                                                         \
-   "choose method and step so that the velocity is right to X, such as 1%"},                       \
+   "choose method and step for a relative error of the velocity of X, such as 1%"},                \
       {STRUT_OPTION_BUDGET, "budget", "N",                                                         \
-       "work that --accuracy may take, in fine runs by a fixed step; 20 if not given"},            \
-      {STRUT_OPTION_INTEGRATOR, "integrator", "NAME", "the method, instead of the file's"},        \
-      {STRUT_OPTION_STEP, "step", "TIME", "the time step, instead of the file's"},                 \
-      {STRUT_OPTION_TOLERANCE, "tolerance", "X", "of the method adaptive"}, {                      \
+       "limit on the work of --accuracy, in units of one fine fixed-step run (default 20)"},       \
+      {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",                                              \
+       "integration method, instead of that of the file"},                                         \
+      {STRUT_OPTION_STEP, "step", "TIME", "time step, instead of that of the file"},               \
+      {STRUT_OPTION_TOLERANCE, "tolerance", "X", "error tolerance of the method adaptive"}, {      \
     STRUT_OPTION_STEADY, "steady", "TOLERANCE",                                                    \
-        "stop when the motion repeats itself within TOLERANCE, such as 0.5%"                       \
+        "stop once the motion repeats within TOLERANCE, such as 0.5%"                              \
   }
 
-/** Puts the options into the experiment. STRUT_USAGE with the reason on stderr. */
+/** Applies the options to the scene. STRUT_USAGE with the reason on stderr. */
 strut_status strut_run_settings_apply(const strut_command *command,
                                       const strut_arguments *arguments, strut_experiment *e);
 

@@ -3,20 +3,25 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "engine/base/memory.h"
+
 void strut_streams_open(void) {
-  /* The wrong way round on purpose: using a closed stream stays an error. */
+  /* Reversed on purpose: using a closed stream must stay an error. */
   static const int modes[] = {O_WRONLY, O_RDONLY, O_RDONLY};
   for (int i = 0; i < 3; i++) {
     if (fcntl(i, F_GETFD) == -1 && errno == EBADF && open("/dev/null", modes[i]) != i) break;
   }
 }
 
-static void complain_of_output(int reason) {
+static void print_output_error(int reason) {
   fprintf(stderr, "strut: error: cannot write to the standard output: %s\n",
           reason ? strerror(reason) : "an earlier write failed");
 }
@@ -24,8 +29,21 @@ static void complain_of_output(int reason) {
 strut_status strut_print(const char *text) {
   errno = 0;
   if (fputs(text, stdout) >= 0 && fflush(stdout) == 0) return STRUT_OK;
-  complain_of_output(errno);
+  print_output_error(errno);
   return STRUT_FILE_TROUBLE;
+}
+
+strut_status strut_print_block(char *text) {
+  strut_status status = text ? strut_print(text) : strut_print_out_of_memory();
+  strut_release(text);
+  return status;
+}
+
+strut_status strut_print_report(const strut_arguments *arguments, char *text) {
+  bool suppressed = arguments->quiet && !arguments->json && !arguments->csv;
+  if (!suppressed || !text) return strut_print_block(text);
+  strut_release(text);
+  return STRUT_OK;
 }
 
 int strut_streams_close(strut_status status) {
@@ -38,8 +56,8 @@ int strut_streams_close(strut_status status) {
     failed = true;
     reason = errno;
   }
-  if (!failed || code != 0) return code; /* what failed has been told */
-  complain_of_output(reason);
+  if (!failed || code != 0) return code; /* that failure has been reported */
+  print_output_error(reason);
   return strut_status_exit_code(STRUT_FILE_TROUBLE);
 }
 
@@ -48,8 +66,56 @@ void strut_print_error(const strut_error *error) {
           error->message[0] ? error->message : strut_status_text(error->status));
 }
 
+strut_status strut_print_failure(strut_status status, const strut_error *error) {
+  if (status != STRUT_OK) strut_print_error(error);
+  return status;
+}
+
+strut_status strut_print_usage_error(const strut_command *command, const char *format, ...) {
+  va_list values;
+  va_start(values, format);
+  fprintf(stderr, "strut %s: ", command->name);
+  vfprintf(stderr, format, values);
+  fputc('\n', stderr);
+  va_end(values);
+  return STRUT_USAGE;
+}
+
 strut_status strut_print_out_of_memory(void) {
   strut_error error = {STRUT_NO_MEMORY, ""};
   strut_print_error(&error);
   return STRUT_NO_MEMORY;
+}
+
+/* ---- interrupts ---- */
+
+/* One press may arrive twice: timeout(1), for one, signals the program and then its whole group. */
+enum { SAME_PRESS = 300 /* [ms] */ };
+
+/* A signal handler has no context: the only variables of the program that live outside of main. */
+static volatile sig_atomic_t interrupted, first_time;
+
+static int milliseconds(void) {
+  struct timespec time = {0, 0};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return (int)(time.tv_sec % 1000000 * 1000 + time.tv_nsec / 1000000);
+}
+
+static void note(int signal_number) {
+  int time = milliseconds();
+  if (!interrupted) {
+    interrupted = 1;
+    first_time = time;
+  } else if (time < first_time || time - first_time > SAME_PRESS) {
+    signal(signal_number, SIG_DFL);
+    raise(signal_number); /* takes effect when the handler returns */
+  }
+}
+
+const volatile sig_atomic_t *strut_interrupt_watch(void) {
+  struct sigaction action = {.sa_handler = note, .sa_flags = SA_RESTART};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  return &interrupted;
 }

@@ -1,24 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The standard streams, from their state at the start to the last byte that must arrive.
+ * Standard streams: reports on stdout, messages on stderr, and whether all of it was written.
  */
 #ifndef STRUT_PARSER_CLI_STREAMS_H
 #define STRUT_PARSER_CLI_STREAMS_H
 
-#include "engine/base/status.h"
+#include <signal.h>
 
-/** Takes the place of streams that are closed, so that no file of results lands in it. */
+#include "parser/cli/options.h"
+
+/** Opens /dev/null for standard streams that are closed, so that no file of results gets their place. */
 void strut_streams_open(void);
 /**
- * Makes sure that all of stdout has been written and returns the program's exit code: that of
- * `status`, or of file trouble instead of 0, with a message on stderr.
+ * Flushes stdout and returns the program's exit code: that of `status`, or of file trouble instead of
+ * 0 where not everything could be written, with a message on stderr.
  */
 int strut_streams_close(strut_status status);
-/** Prints a text on stdout; a failure is told on stderr and returned as STRUT_FILE_TROUBLE. */
+/** Prints a text on stdout; a failure is reported on stderr and returned as STRUT_FILE_TROUBLE. */
 strut_status strut_print(const char *text);
+/** Prints a block of strut_allocate and releases it; NULL is reported as out of memory. */
+strut_status strut_print_block(char *text);
+/** As strut_print_block, but --quiet suppresses the text unless it is JSON or CSV. */
+strut_status strut_print_report(const strut_arguments *arguments, char *text);
 /** Prints a sentence on stderr as the program's error. */
 void strut_print_error(const strut_error *error);
-/** The same for memory, which has nothing else to say; returns STRUT_NO_MEMORY. */
+/** Prints the error unless `status` is STRUT_OK; returns `status`. */
+strut_status strut_print_failure(strut_status status, const strut_error *error);
+/** Reports on stderr that memory is out; returns STRUT_NO_MEMORY. */
 strut_status strut_print_out_of_memory(void);
+/** Prints "strut COMMAND: MESSAGE" on stderr; returns STRUT_USAGE. */
+strut_status strut_print_usage_error(const strut_command *command, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/** From now on SIGINT and SIGTERM set the flag that is returned; a moment later they kill. */
+const volatile sig_atomic_t *strut_interrupt_watch(void);
 
 #endif

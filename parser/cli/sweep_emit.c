@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/sweep_emit.h"
+#include "parser/cli/sweep.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -8,16 +8,15 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/cluster/parallel_script.h"
-#include "engine/study/cluster/slurm_script.h"
+#include "engine/study/cluster/cluster_script.h"
 #include "engine/study/results/shard.h"
-#include "parser/cli/command_sweep.h"
+#include "parser/cli/commands.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 
 enum { MOST_CPUS = 4096 };
 
-/* Further words of the command line, for every shard: the parameters. */
+/* The settings of the command line, for every shard. */
 static const char *const *words_of(const strut_arguments *arguments, strut_arena *arena,
                                    size_t *count) {
   const char **words =
@@ -32,7 +31,7 @@ static const char *const *words_of(const strut_arguments *arguments, strut_arena
   return words;
 }
 
-/* What only the machine knows: where this program is, and where we are. */
+/* The paths of this program and of the current directory. */
 static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   ssize_t length = readlink("/proc/self/exe", program, PATH_MAX - 1);
   if (length > 0)
@@ -46,23 +45,8 @@ static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   return STRUT_FILE_TROUBLE;
 }
 
-/* The script with what only the machine knows filled in. */
-static strut_status write_script(const strut_slurm_script *script, bool slurm, char **text,
-                                 strut_error *error) {
-  const strut_parallel_script parallel = {.program = script->program,
-                                          .folder = script->folder,
-                                          .study = script->study,
-                                          .output = script->output,
-                                          .words = script->words,
-                                          .word_count = script->word_count,
-                                          .shards = script->shards,
-                                          .cpus = script->cpus};
-  return slurm ? strut_slurm_script_write(script, text, error)
-               : strut_parallel_script_write(&parallel, text, error);
-}
-
-static strut_status print_script(const strut_arguments *arguments, strut_slurm_script *script,
-                                 bool slurm, strut_arena *arena) {
+static strut_status print_script(const strut_arguments *arguments, strut_cluster_script *script,
+                                 strut_cluster cluster, strut_arena *arena) {
   strut_error error = {0};
   char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
   strut_status status = find_places(program, folder);
@@ -71,7 +55,7 @@ static strut_status print_script(const strut_arguments *arguments, strut_slurm_s
   script->folder = folder;
   script->words = words_of(arguments, arena, &script->word_count);
   if (!script->words) return strut_print_out_of_memory();
-  status = write_script(script, slurm, &text, &error);
+  status = strut_cluster_script_write(cluster, script, &text, &error);
   if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
   if (status == STRUT_NO_MEMORY) strut_print_error(&error);
   if (status == STRUT_OK) status = strut_print(text);
@@ -79,11 +63,11 @@ static strut_status print_script(const strut_arguments *arguments, strut_slurm_s
   return status;
 }
 
-/* What can be known before the numbers are read. */
+/* Checks what does not depend on numbers. */
 static strut_status check(const strut_arguments *arguments, bool slurm) {
   const char *wrong = NULL;
   if (strcmp(arguments->model, "-") == 0)
-    wrong = "--emit needs a file that the tasks can read, not the standard input";
+    wrong = "--emit needs a file that the tasks can read, not standard input";
   else if (!slurm && (strut_option_text(arguments, STRUT_OPTION_TIME) ||
                       strut_option_text(arguments, STRUT_OPTION_MEMORY)))
     wrong = "--time and --memory are for --emit slurm";
@@ -97,12 +81,12 @@ static strut_status check(const strut_arguments *arguments, bool slurm) {
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
   static const char *const kinds[] = {"slurm", "parallel", NULL};
   const strut_command *command = &strut_command_sweep;
-  strut_slurm_script script = {.name = name,
-                               .study = arguments->model,
-                               .output = arguments->output,
-                               .time = strut_option_text(arguments, STRUT_OPTION_TIME),
-                               .memory = strut_option_text(arguments, STRUT_OPTION_MEMORY),
-                               .cpus = 1};
+  strut_cluster_script script = {.name = name,
+                                 .study = arguments->model,
+                                 .output = arguments->output,
+                                 .time = strut_option_text(arguments, STRUT_OPTION_TIME),
+                                 .memory = strut_option_text(arguments, STRUT_OPTION_MEMORY),
+                                 .cpus = 1};
   int kind = 0;
   strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
   if (status == STRUT_OK) status = check(arguments, kind == 0);
@@ -114,7 +98,7 @@ strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name
         strut_option_integer(command, arguments, STRUT_OPTION_CPUS, 1, MOST_CPUS, &script.cpus);
   if (status != STRUT_OK) return status;
   strut_arena arena = {0};
-  status = print_script(arguments, &script, kind == 0, &arena);
+  status = print_script(arguments, &script, (strut_cluster)kind, &arena);
   strut_arena_free(&arena);
   return status;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/sweep_figures.h"
+#include "parser/cli/sweep.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/output/ownership.h"
 #include "engine/study/sweep/study_runs.h"
 #include "parser/cli/streams.h"
@@ -15,7 +15,7 @@ static const double PAGE = 510.24; /* 180 mm [pt] */
 
 static bool of_runs(const strut_study_figure *f) { return f->kind >= STRUT_FIGURE_MOTION; }
 
-/* What a figure is drawn of: the table, or what runs recorded. */
+/* The source of a figure: the table, or the recorded runs. */
 typedef struct source {
   const strut_sweep_plan *plan;
   bool runs;
@@ -33,12 +33,12 @@ static bool holds_texts(const source *s, size_t i) {
   return s->runs && i >= axes ? i == axes : s->plan->columns[i].word;
 }
 
-/* What tells rows apart: numbers that runs recorded do not. */
+/* Columns that may split rows into series; recorded numbers may not. */
 static bool tells_apart(const source *s, size_t i) {
   return !s->runs || i <= s->plan->axis_columns;
 }
 
-/* May the figure name this column? NULL is none. */
+/* Checks that the figure may use this column; NULL: not given. */
 static strut_status check_column(const source *s, const strut_study_figure *figure,
                                  const char *name, bool number, strut_error *error) {
   const char *other = NULL;
@@ -76,8 +76,8 @@ static strut_status check_match(const source *s, const strut_study_figure *figur
 static strut_status check_figure(const source *s, const strut_study_figure *f, strut_error *error) {
   if (s->runs && !s->plan->study->trajectories)
     return strut_fail(error, STRUT_BAD_SCENE,
-                      "figure '%.60s' of the study draws what runs recorded: the study lacks "
-                      "'trajectories: yes'",
+                      "figure '%.60s' of the study needs recorded runs: add "
+                      "'trajectories: yes' to the study",
                       f->name);
   strut_status status = check_column(s, f, f->x, true, error);
   if (!status) status = check_column(s, f, f->y, true, error);

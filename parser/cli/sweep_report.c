@@ -1,24 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/sweep_report.h"
+#include "parser/cli/sweep.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "parser/cli/streams.h"
 
 enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300, MOST_FAILURES = 20, MOST_GAPS = 20 };
 
-/* Between two lines where there is no terminal, and before the first bar [s]. */
-static const double NOW_AND_THEN = 30.0, PATIENCE = 0.5;
+/* Between two lines without a terminal, and before the first bar [s]. */
+static const double REPORT_INTERVAL = 30.0, PATIENCE = 0.5;
 
 strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet) {
   return (strut_sweep_progress){.bar = strut_progress_begin(quiet), .plan = plan, .quiet = quiet};
 }
 
 /* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
-static void tell_row(const strut_sweep_plan *plan, const strut_slot *row, char *text, size_t room) {
+static void format_row(const strut_sweep_plan *plan, const strut_slot *row, char *text,
+                       size_t room) {
   size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
   *text = '\0';
   for (size_t i = 0; i < plan->column_count && i < most && used < room; i++) {
@@ -35,7 +37,7 @@ static void tell_row(const strut_sweep_plan *plan, const strut_slot *row, char *
 }
 
 /* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
-static void tell_state(const strut_sweep_state *state, char *text, size_t room) {
+static void format_state(const strut_sweep_state *state, char *text, size_t room) {
   char left[32], failed[40] = "";
   double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
   strut_progress_time(left, sizeof left,
@@ -50,10 +52,10 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
   strut_progress *bar = &progress->bar;
   char text[TEXT], row[TEXT], all[2 * TEXT + 8], blocks[BAR_ROOM];
   if (progress->quiet || state->seconds < PATIENCE) return;
-  if (!bar->wanted && state->seconds - progress->told < NOW_AND_THEN) return;
+  if (!bar->wanted && state->seconds - progress->told < REPORT_INTERVAL) return;
   progress->told = state->seconds;
-  tell_state(state, text, sizeof text);
-  tell_row(progress->plan, state->row, row, sizeof row);
+  format_state(state, text, sizeof text);
+  format_row(progress->plan, state->row, row, sizeof row);
   snprintf(all, sizeof all, "%s; %s", text, row);
   if (!bar->wanted) {
     fprintf(stderr, "strut: %s\n", all);
@@ -173,6 +175,26 @@ strut_status strut_sweep_print_status(strut_slots *slots, bool json) {
   return print_buffer(&b);
 }
 
+void strut_sweep_print_warnings(const strut_sweep_state *state) {
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n", (long long)w->runs,
+            (long long)state->computed, (long long)w->point, w->text);
+  }
+}
+
+static void add_warnings(strut_buffer *b, const strut_sweep_state *state) {
+  strut_buffer_add(b, ", \"warnings\": [");
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    strut_buffer_add(b, "%s{\"code\": \"%s\", \"runs\": %lld, \"point\": %lld, \"text\": ",
+                     i ? ", " : "", w->code, (long long)w->runs, (long long)w->point);
+    add_string(b, w->text);
+    strut_buffer_add(b, "}");
+  }
+  strut_buffer_add(b, "]");
+}
+
 strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json) {
   strut_buffer b = {0};
   char time[32];
@@ -182,11 +204,58 @@ strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *t
                      (long long)state->points, (long long)state->failed,
                      (long long)state->computed);
     add_string(&b, table);
+    add_warnings(&b, state);
     strut_buffer_add(&b, "}\n");
   } else {
-    strut_buffer_add(&b, "%lld points, %lld failed; %lld computed now, in %s\n%s\n",
+    strut_buffer_add(&b, "%lld points, %lld failed; %lld computed in %s\n%s\n",
                      (long long)state->points, (long long)state->failed, (long long)state->computed,
                      time, table);
   }
   return print_buffer(&b);
+}
+
+/* ---- shards ---- */
+
+static strut_status add_shard(strut_buffer *b, const char *directory, strut_shard shard,
+                              strut_arena *arena, bool json) {
+  strut_error error = {0};
+  strut_slots *slots = NULL;
+  strut_slots_plan plan;
+  char *path = strut_shard_path(directory, shard, arena);
+  if (!path) return strut_print_out_of_memory();
+  strut_status status = strut_slots_read(path, &slots, &plan, &error);
+  if (status != STRUT_OK) {
+    strut_print_error(&error);
+    return status;
+  }
+  long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
+  strut_buffer_add(b,
+                   json ? "{\"shard\": %lld, \"points\": %lld, \"done\": %lld, \"missing\": %lld, "
+                          "\"failed\": %lld}"
+                        : "shard %lld: %lld points: %lld done, %lld missing, %lld of the done "
+                          "failed\n",
+                   (long long)shard.index, (long long)plan.count, (long long)plan.count - missing,
+                   missing, failed);
+  strut_slots_close(slots);
+  return STRUT_OK;
+}
+
+strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
+                                      strut_arena *arena, bool json) {
+  strut_buffer b = {0};
+  strut_status status = STRUT_OK;
+  if (json) strut_buffer_add(&b, "{\"shard_count\": %lld, \"shards\": [", (long long)found->count);
+  for (int64_t i = 0; i < found->count && status == STRUT_OK; i++) {
+    if (json && i) strut_buffer_add(&b, ", ");
+    if (found->there[i])
+      status = add_shard(&b, directory, (strut_shard){i, found->count}, arena, json);
+    else
+      strut_buffer_add(&b, json ? "{\"shard\": %lld, \"done\": 0}" : "shard %lld: not started\n",
+                       (long long)i);
+  }
+  if (json) strut_buffer_add(&b, "]}\n");
+  char *text = strut_buffer_take(&b);
+  if (status == STRUT_OK) status = text ? strut_print(text) : strut_print_out_of_memory();
+  strut_release(text);
+  return status;
 }

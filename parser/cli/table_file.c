@@ -7,7 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/streams.h"
-#include "parser/expression/number.h"
+#include "parser/expression/expression.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/diagnostics.h"
 
@@ -75,7 +75,7 @@ static void read_quoted(reader *r) {
   keep(r, copy);
   for (;;) {
     if (r->at >= r->end) {
-      strut_diagnose(&r->diagnostics, begin, "a quoted cell that nothing closes");
+      strut_diagnose(&r->diagnostics, begin, "unterminated quoted cell");
       return;
     }
     bool quote = *r->at == '"';
@@ -126,7 +126,7 @@ static void read_lines(reader *r) {
     uint32_t line = r->line;
     size_t before = r->cell_count, count = read_line(r);
     if (count == 1 && r->cell[before] && !*r->cell[before] && columns > 1) {
-      r->cell_count = before; /* an empty line says nothing */
+      r->cell_count = before; /* skip an empty line */
       continue;
     }
     if (count != columns && !r->failed)
@@ -151,7 +151,7 @@ static bool name_column(reader *r, size_t i) {
   return column->name && column->unit;
 }
 
-/* A number, or nothing at all. */
+/* A number, or NAN for an empty cell. */
 static bool read_number(const char *text, double *value) {
   static const char *const nothing[] = {"", "nan", "NaN", "null", "none", "-"};
   for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)

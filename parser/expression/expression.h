@@ -22,10 +22,17 @@ typedef struct strut_quantity {
   bool varies; /* it is made of columns of the motion: it has no value yet */
 } strut_quantity;
 
+/** A part of the text that is being read. */
+typedef struct strut_piece {
+  const char *text;
+  size_t length;
+} strut_piece;
+
 /** Where an expression went wrong: code point offset and length within the text, and why. */
 typedef struct strut_expression_error {
   size_t offset, length;
   char message[300];
+  strut_piece parameter; /* the parameter that is called like a unit, if that is why */
 } strut_expression_error;
 
 /**
@@ -55,12 +62,6 @@ STRUT_API bool strut_expression_evaluate(const char *text, const strut_scope *sc
 typedef struct strut_refusal {
   char text[300];
 } strut_refusal;
-
-/** A part of the text that is being read. */
-typedef struct strut_piece {
-  const char *text;
-  size_t length;
-} strut_piece;
 
 /**
  * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node" or "member"
@@ -98,6 +99,17 @@ STRUT_API bool strut_expression_compile(const char *text, const strut_scope *sco
 /** True for the names that no parameter may have: pi and the functions. */
 STRUT_API bool strut_expression_reserved(const char *name, size_t length);
 
+/** Longest literal that is read, in bytes. */
+enum { STRUT_NUMBER_MOST = 1000 };
+
+/** Bytes of the literal that text begins with; 0 where it begins with none. */
+size_t strut_number_scan(const char *text, size_t left);
+/**
+ * The literal that fills text[0..length), times 10^decimal, rounded once: "96.51" with -3 has the
+ * bits of 0.09651. False: not a literal, or neither zero nor representable.
+ */
+STRUT_API bool strut_number_read_scaled(const char *text, size_t length, int decimal,
+                                        double *value);
 /**
  * Reads a strict decimal number that fills text[0..length): the reader of every number literal. A
  * literal has no sign. False also where the value is beyond the range of a double.

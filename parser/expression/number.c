@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/expression/number.h"
-
+/* Number literals, correctly rounded in any locale, and the units behind them. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -9,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "parser/expression/expression.h"
+#include "parser/expression/expression_parts.h"
 
 enum { EXPONENT_MOST = 99999, FAST_POWER = 22 };
 
@@ -108,4 +107,143 @@ bool strut_number_read_scaled(const char *text, size_t length, int decimal, doub
 
 bool strut_number_read(const char *text, size_t length, double *value) {
   return strut_number_read_scaled(text, length, 0, value);
+}
+
+enum { UNIT_POWER_MOST = 12 };
+
+/* The unit so far: up / down * 10^decimal. */
+typedef struct unit_product {
+  int decimal;
+  double up, down;
+  strut_dimension dimension;
+  bool bare; /* nothing but percent */
+} unit_product;
+
+static void multiply(unit_product *product, const strut_unit *unit, int power) {
+  float times = (float)power;
+  product->decimal += unit->decimal * power;
+  for (int i = 0; i < power; i++) product->up *= unit->rest;
+  for (int i = 0; i > power; i--) product->down *= unit->rest;
+  product->dimension.kg += times * unit->dimension.kg;
+  product->dimension.m += times * unit->dimension.m;
+  product->dimension.s += times * unit->dimension.s;
+  product->dimension.angle += times * unit->dimension.angle;
+  if (!strut_dimension_equal(unit->dimension, STRUT_DIM_NONE)) product->bare = false;
+}
+
+/* An optional ^ and whole number behind a unit. */
+static bool read_power(strut_expression_reader *r, int *power) {
+  *power = 1;
+  size_t resume = r->at;
+  if (strut_expression_peek(r) != '^') {
+    r->at = resume;
+    return true;
+  }
+  r->at++;
+  char c = strut_expression_peek(r);
+  size_t begin = r->at;
+  if (c == '-' || c == '+') r->at++;
+  size_t digits = r->at;
+  int value = 0;
+  for (; r->at < r->length && r->text[r->at] >= '0' && r->text[r->at] <= '9'; r->at++)
+    if (value <= UNIT_POWER_MOST) value = value * 10 + (r->text[r->at] - '0');
+  size_t end = r->at;
+  if (end < r->length && (r->text[end] == '.' || strut_expression_word(r, end))) end++;
+  if (r->at == digits || end != r->at || value > UNIT_POWER_MOST)
+    return strut_expression_fail(r, begin, end, "the power of a unit is a whole number such as 2");
+  *power = c == '-' ? -value : value;
+  return true;
+}
+
+static const strut_unit *unit_here(const strut_expression_reader *r, size_t *length) {
+  *length = strut_expression_word(r, r->at);
+  if (!*length && r->at < r->length && r->text[r->at] == '%') *length = 1;
+  return *length ? strut_unit_find(r->text + r->at, *length) : NULL;
+}
+
+/* True where the word of that length at `at` is a function with its parenthesis: min( is no unit. */
+static bool is_call(const strut_expression_reader *r, size_t length) {
+  strut_expression_reader ahead = *r;
+  ahead.at += length;
+  return strut_expression_peek(&ahead) == '(';
+}
+
+/*
+ * Whether one more unit follows: 1 or -1 with r at its word (behind * or /), 0 with r unmoved. A
+ * word that a parameter has too is refused: both readings would be sensible. 2: refused.
+ */
+static int read_joint(strut_expression_reader *r, size_t *length) {
+  size_t resume = r->at;
+  char c = strut_expression_peek(r);
+  bool operation = c == '*' || c == '/';
+  if (operation) {
+    r->at++;
+    strut_expression_peek(r);
+  }
+  const strut_unit *unit = strut_expression_word(r, r->at) ? unit_here(r, length) : NULL;
+  if (!unit || is_call(r, *length)) {
+    r->at = resume;
+    return 0;
+  }
+  strut_quantity ignored;
+  if (operation && strut_expression_lookup(r, r->text + r->at, *length, &ignored) != 0) {
+    strut_expression_fail(r, r->at, r->at + *length,
+                          "'%.*s' is a unit and a parameter; rename the parameter, or write "
+                          "'%c (%.*s)' for it",
+                          (int)*length, r->text + r->at, c, (int)*length, r->text + r->at);
+    r->error->parameter = (strut_piece){r->text + r->at, *length};
+    return 2;
+  }
+  return c == '/' ? -1 : 1;
+}
+
+static bool read_unit(strut_expression_reader *r, unit_product *product) {
+  size_t length;
+  const strut_unit *unit = unit_here(r, &length);
+  if (!unit) return strut_expression_unknown_unit(r, r->at, length);
+  for (int sign = 1;; unit = strut_unit_find(r->text + r->at, length)) {
+    int power;
+    r->at += length;
+    if (!read_power(r, &power)) return false;
+    multiply(product, unit, sign * power);
+    sign = read_joint(r, &length);
+    if (sign == 2) return false;
+    if (sign == 0) return true;
+  }
+}
+
+/* Refuses what looks like a number and is none, right behind a literal that is one. */
+static bool check_end(strut_expression_reader *r, size_t begin) {
+  char c = r->at < r->length ? r->text[r->at] : '\0';
+  size_t word = strut_expression_word(r, r->at), end = r->at + (word ? word : 1);
+  if (c == '.')
+    return strut_expression_fail(r, begin, end,
+                                 "a number has one decimal point and digits after it");
+  if (c == '_') return strut_expression_fail(r, begin, end, "digits cannot be grouped with '_'");
+  if ((c == 'x' || c == 'X') && r->at == begin + 1 && r->text[begin] == '0')
+    return strut_expression_fail(r, begin, end, "hexadecimal numbers are not allowed");
+  if ((c == 'e' || c == 'E') && word == 1)
+    return strut_expression_fail(r, begin, end, "the exponent of this number has no digits");
+  return true;
+}
+
+bool strut_expression_literal(strut_expression_reader *r, strut_quantity *quantity) {
+  size_t begin = r->at, scanned = strut_number_scan(r->text + begin, r->length - begin);
+  if (!scanned) return strut_expression_unexpected(r, "a number");
+  r->at += scanned;
+  if (!check_end(r, begin)) return false;
+  size_t end = r->at;
+  unit_product product = {0, 1, 1, STRUT_DIM_NONE, true};
+  char c = strut_expression_peek(r);
+  if ((c == '%' || strut_expression_word(r, r->at)) && !read_unit(r, &product)) return false;
+  if (!strut_number_read_scaled(r->text + begin, scanned, product.decimal, &quantity->value))
+    return strut_expression_fail(r, begin, end, "this number is beyond the range of numbers");
+  if (product.up != 1) quantity->value *= product.up;
+  if (product.down != 1) quantity->value /= product.down;
+  if (!isfinite(quantity->value))
+    return strut_expression_fail(r, begin, r->at, "this number is beyond the range of numbers");
+  quantity->dimension = product.dimension;
+  quantity->bare = product.bare;
+  quantity->varies = false;
+  return true;
 }

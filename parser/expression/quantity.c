@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/expression/quantity.h"
+#include "parser/expression/expression_parts.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -88,7 +88,7 @@ static bool agree(strut_quantity *a, strut_quantity b, const char *what, strut_r
   }
   if (strut_dimension_equal(a->dimension, b.dimension)) return true;
   char first[64], second[64];
-  return refuse(reason, "%s joins %s and %s, expected one dimension", what,
+  return refuse(reason, "%s joins %s and %s, expected equal dimensions", what,
                 strut_dimension_name(a->dimension, first, sizeof first),
                 strut_dimension_name(b.dimension, second, sizeof second));
 }

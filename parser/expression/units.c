@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
+#include "engine/base/vec.h"
+
 #define ENERGY                                                                                     \
   { 1, 2, -2, 0 }
 #define FORCE                                                                                      \
@@ -42,7 +43,7 @@ static const strut_unit units[] = {
     {"Pa", 1, PRESSURE, 1, 0},
     {"W", 1, POWER, 1, 0},
     {"cm", 1e-2, LENGTH, 1, -2},
-    {"deg", PI / 180, ANGLE, PI / 180, 0},
+    {"deg", STRUT_PI / 180, ANGLE, STRUT_PI / 180, 0},
     {"g", 1e-3, MASS, 1, -3},
     {"h", 3600, TIME, 3600, 0},
     {"kHz", 1e3, FREQUENCY, 1, 3},
@@ -68,7 +69,7 @@ static const strut_unit units[] = {
     {"rad", 1, ANGLE, 1, 0},
     {"s", 1, TIME, 1, 0},
     {"t", 1e3, MASS, 1, 3},
-    {"turn", 2 * PI, ANGLE, 2 * PI, 0},
+    {"turn", 2 * STRUT_PI, ANGLE, 2 * STRUT_PI, 0},
     {"uN", 1e-6, FORCE, 1, -6},
     {"um", 1e-6, LENGTH, 1, -6},
     {"us", 1e-6, TIME, 1, -6},

@@ -6,15 +6,31 @@
 #include <stdio.h>
 #include <string.h>
 
-static const strut_key table[] = {
-#define STRUT_KEY_ROW(room, id, name, type, measure, range, ...)                                   \
-  {STRUT_ROOM_##room,   name,       STRUT_TYPE_##type, STRUT_MEASURE_##measure,                    \
-   STRUT_RANGE_##range, __VA_ARGS__},
-    STRUT_KEY_TABLE(STRUT_KEY_ROW)
-#undef STRUT_KEY_ROW
-};
+#include "engine/scene/study.h"
 
-/* First key of each room, and one more that ends the last; a test compares it with the table. */
+/* clang-format off */
+#define STRUT_LIMITS_ANY {STRUT_RANGE_ANY, 0.0, 0.0}
+#define STRUT_LIMITS_NOT_NEGATIVE {STRUT_RANGE_NOT_NEGATIVE, 0.0, 0.0}
+#define STRUT_LIMITS_ABOVE_ZERO {STRUT_RANGE_ABOVE_ZERO, 0.0, 0.0}
+#define STRUT_LIMITS_WHOLE(least, most) {STRUT_RANGE_WHOLE, least, most}
+
+/* A field of a type that is not listed does not compile. */
+#define STRUT_KIND_OF(lvalue) _Generic((lvalue), \
+  double: STRUT_FIELD_DOUBLE, int32_t: STRUT_FIELD_INT32, uint32_t: STRUT_FIELD_UINT32, \
+  int64_t: STRUT_FIELD_INT64, uint64_t: STRUT_FIELD_UINT64, bool: STRUT_FIELD_BOOL, \
+  double *: STRUT_FIELD_DOUBLE_PAIR, bool *: STRUT_FIELD_BOOL_PAIR, const char *: STRUT_FIELD_TEXT)
+#define STRUT_FIELD_OF_BY_HAND {STRUT_FIELD_BY_HAND, 0, 0}
+#define STRUT_FIELD_OF_FIELD(object, member) \
+  {STRUT_KIND_OF(((object *)0)->member), offsetof(object, member), sizeof(object)}
+
+#define STRUT_KEY_ROW(section, id, name, type, measure, range, fallback, need, set, words, field, \
+                      description) \
+  {STRUT_SECTION_##section, name, STRUT_TYPE_##type, STRUT_MEASURE_##measure, \
+   STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, STRUT_FIELD_OF_##field, description},
+static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
+/* clang-format on */
+
+/* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_NODE_POSITION,
                             STRUT_KEY_MEMBER_GROUP,
@@ -45,28 +61,101 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_FIGURE_KIND,
                             STRUT_KEY_COUNT};
 
-static const char *const room_names[] = {
+static const char *const section_names[] = {
     "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
     "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
     "initial", "settle", "equilibria", "solver",    "run",      "measure", "quantity",
     "steady",  "output", "study",      "range",     "variant",  "check",   "figure"};
 
-_Static_assert(sizeof first / sizeof first[0] == STRUT_ROOM_COUNT + 1, "one for each room");
-_Static_assert(sizeof room_names / sizeof room_names[0] == STRUT_ROOM_COUNT, "one for each room");
+_Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
+_Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
+               "one for each section");
 
 const strut_key *strut_key_at(int key) {
   assert(key >= 0 && key < STRUT_KEY_COUNT);
   return &table[key];
 }
 
-int strut_section_first(strut_section room) { return first[room]; }
-int strut_section_size(strut_section room) { return first[room + 1] - first[room]; }
-const char *strut_section_name(strut_section room) { return room_names[room]; }
+int strut_section_first(strut_section section) {
+  assert((unsigned)section < STRUT_SECTION_COUNT);
+  return first[section];
+}
+int strut_section_size(strut_section section) { return first[section + 1] - first[section]; }
+const char *strut_section_name(strut_section section) { return section_names[section]; }
 
-int strut_key_find(strut_section room, const char *name) {
-  for (int key = first[room]; key < first[room + 1]; key++)
+int strut_key_find(strut_section section, const char *name) {
+  for (int key = first[section]; key < first[section + 1]; key++)
     if (strcmp(table[key].name, name) == 0) return key;
   return -1;
+}
+
+int strut_rest_key(strut_rest_kind kind) {
+  static const int keys[] = {STRUT_KEY_MEMBER_REST_LENGTH_RATIO, STRUT_KEY_MEMBER_REST_LENGTH,
+                             STRUT_KEY_MEMBER_PRETENSION, STRUT_KEY_MEMBER_FORCE_DENSITY};
+  assert((unsigned)kind < sizeof keys / sizeof keys[0]);
+  return keys[kind];
+}
+
+strut_section strut_wave_section(strut_signal_kind kind) {
+  assert(kind >= STRUT_SINE && kind <= STRUT_RAMP);
+  return (strut_section)(STRUT_SECTION_SINE + (kind - STRUT_SINE));
+}
+
+bool strut_key_is_bound(const strut_key *key) {
+  return key->field.kind != STRUT_FIELD_BY_HAND && key->measure != STRUT_MEASURE_CONTEXT;
+}
+
+/* Former names stay readable for one version of strut at least; docs and models use the current ones. */
+static const strut_spelling spellings[] = {
+    {STRUT_SECTION_GROUND, "damping_law", "printed", "approach_only", STRUT_SPELLING_FORMER},
+    {STRUT_SECTION_STEADY, NULL, "floor", "absolute_tolerance", STRUT_SPELLING_FORMER},
+    {STRUT_SECTION_STEADY, NULL, "successive", "repetitions", STRUT_SPELLING_FORMER},
+    {STRUT_SECTION_MEMBER, "kind", "strut", "bar", STRUT_SPELLING_SYNONYM},
+    {STRUT_SECTION_MEMBER, "kind", "string", "cable", STRUT_SPELLING_SYNONYM},
+    {STRUT_SECTION_SCENE, NULL, "elements", "members", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SCENE, NULL, "points", "nodes", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SCENE, NULL, "forces", "loads", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "coordinates", "position", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "pos", "position", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "support", "fixed", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "type", "kind", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "EA", "axial_stiffness", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "prestress", "pretension", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "length", "rest_length", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_GROUND, NULL, "angle", "slope", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_FRICTION, NULL, "coefficient", "mu", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "timestep", "step", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "time_step", "step", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "dt", "step", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_SOLVER, NULL, "method", "integrator", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_RUN, NULL, "time", "duration", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_RUN, NULL, "length", "duration", STRUT_SPELLING_MISTAKE}};
+
+const strut_spelling *strut_spelling_find(strut_section section, const char *key,
+                                          const char *text) {
+  for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
+    const strut_spelling *s = &spellings[i];
+    if (s->section != section || !s->key != !key || (key && strcmp(s->key, key) != 0)) continue;
+    if (strcmp(s->other, text) == 0) return s;
+  }
+  return NULL;
+}
+
+int strut_spelling_index(const strut_spelling *spelling) {
+  int index = (int)(spelling - spellings);
+  assert(index >= 0 && (index < 32 || spelling->kind != STRUT_SPELLING_FORMER));
+  return index;
+}
+
+const char *strut_key_current(strut_section section, const char *name) {
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, name);
+  return spelling && spelling->kind != STRUT_SPELLING_MISTAKE ? spelling->current : name;
+}
+
+strut_section strut_section_find(const char *name) {
+  int section = 0;
+  while (section < STRUT_SECTION_COUNT && strcmp(section_names[section], name) != 0) section++;
+  return (strut_section)section;
 }
 
 strut_dimension strut_measure_dimension(strut_measure measure) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The language as one table: which mapping (room) has which keys, of which type, dimension, range
- * and default. The reader, its messages and the reference page all come from it.
+ * The language as one table: which mapping (section) has which keys, of which type, dimension, range
+ * and default, and in which field of which struct the value is kept. The reader, its messages, the
+ * writer and the reference page all come from it.
  */
 #ifndef STRUT_PARSER_LANGUAGE_KEYS_H
 #define STRUT_PARSER_LANGUAGE_KEYS_H
@@ -10,40 +11,41 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/experiment.h"
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
 /** The mappings of the language. */
 typedef enum strut_section {
-  STRUT_ROOM_SCENE,
-  STRUT_ROOM_NODE,
-  STRUT_ROOM_MEMBER,
-  STRUT_ROOM_GROUND,
-  STRUT_ROOM_FRICTION,
-  STRUT_ROOM_CONTACT,
-  STRUT_ROOM_ACTUATOR,
-  STRUT_ROOM_LOAD,
-  STRUT_ROOM_SIGNAL,
-  STRUT_ROOM_SINE,
-  STRUT_ROOM_HALF_SINE,
-  STRUT_ROOM_SQUARE,
-  STRUT_ROOM_RAMP,
-  STRUT_ROOM_CONFIGURATION,
-  STRUT_ROOM_INITIAL,
-  STRUT_ROOM_SETTLE,
-  STRUT_ROOM_EQUILIBRIA,
-  STRUT_ROOM_SOLVER,
-  STRUT_ROOM_RUN,
-  STRUT_ROOM_MEASURE,
-  STRUT_ROOM_QUANTITY,
-  STRUT_ROOM_STEADY,
-  STRUT_ROOM_OUTPUT,
-  STRUT_ROOM_STUDY,
-  STRUT_ROOM_RANGE,
-  STRUT_ROOM_VARIANT,
-  STRUT_ROOM_CHECK,
-  STRUT_ROOM_FIGURE,
-  STRUT_ROOM_COUNT
+  STRUT_SECTION_SCENE,
+  STRUT_SECTION_NODE,
+  STRUT_SECTION_MEMBER,
+  STRUT_SECTION_GROUND,
+  STRUT_SECTION_FRICTION,
+  STRUT_SECTION_CONTACT,
+  STRUT_SECTION_ACTUATOR,
+  STRUT_SECTION_LOAD,
+  STRUT_SECTION_SIGNAL,
+  STRUT_SECTION_SINE,
+  STRUT_SECTION_HALF_SINE,
+  STRUT_SECTION_SQUARE,
+  STRUT_SECTION_RAMP,
+  STRUT_SECTION_CONFIGURATION,
+  STRUT_SECTION_INITIAL,
+  STRUT_SECTION_SETTLE,
+  STRUT_SECTION_EQUILIBRIA,
+  STRUT_SECTION_SOLVER,
+  STRUT_SECTION_RUN,
+  STRUT_SECTION_MEASURE,
+  STRUT_SECTION_QUANTITY,
+  STRUT_SECTION_STEADY,
+  STRUT_SECTION_OUTPUT,
+  STRUT_SECTION_STUDY,
+  STRUT_SECTION_RANGE,
+  STRUT_SECTION_VARIANT,
+  STRUT_SECTION_CHECK,
+  STRUT_SECTION_FIGURE,
+  STRUT_SECTION_COUNT
 } strut_section;
 
 typedef enum strut_key_type {
@@ -68,7 +70,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_KEEP,          /* a list of the key's words and of quantities */
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
-  STRUT_TYPE_MAP,           /* the keys of the room that has the key's name */
+  STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
   STRUT_TYPE_THINGS         /* a mapping from names to what `words` says */
 } strut_key_type;
 
@@ -92,39 +94,110 @@ typedef enum strut_measure {
 typedef enum strut_key_range {
   STRUT_RANGE_ANY,
   STRUT_RANGE_NOT_NEGATIVE,
-  STRUT_RANGE_ABOVE_ZERO
+  STRUT_RANGE_ABOVE_ZERO,
+  STRUT_RANGE_WHOLE /* a whole number from least to most */
 } strut_key_range;
 
-/** One line of the table. */
+typedef struct strut_key_limits {
+  strut_key_range range;
+  double least, most; /* of WHOLE */
+} strut_key_limits;
+
+typedef enum strut_key_need {
+  STRUT_OPTIONAL, /* written only where it differs from the default */
+  STRUT_WRITTEN,  /* may be left out, but is always written */
+  STRUT_REQUIRED
+} strut_key_need;
+
+/** How a field keeps its value. */
+typedef enum strut_field_kind {
+  STRUT_FIELD_BY_HAND, /* no field: the section's reader and writer have code for the key */
+  STRUT_FIELD_DOUBLE,
+  STRUT_FIELD_INT32,
+  STRUT_FIELD_UINT32, /* enumerations and bits too */
+  STRUT_FIELD_INT64,
+  STRUT_FIELD_UINT64,
+  STRUT_FIELD_BOOL,
+  STRUT_FIELD_DOUBLE_PAIR,
+  STRUT_FIELD_BOOL_PAIR,
+  STRUT_FIELD_TEXT /* const char *; of a WORD, the word itself */
+} strut_field_kind;
+
+/** Where a key's value is kept in the object of its section. */
+typedef struct strut_field {
+  strut_field_kind kind;
+  size_t offset, object_size;
+} strut_field;
+
+/** The object of the section `ground`: its line, and the contact that every node starts from. */
+typedef struct strut_ground_section {
+  strut_ground ground;
+  strut_contact contact;
+} strut_ground_section;
+
+/** One row of the table. */
 typedef struct strut_key {
-  strut_section room;
+  strut_section section;
   const char *name;
   strut_key_type type;
   strut_measure measure;
-  strut_key_range range;
-  bool required;
-  int set; /* of the keys with the same set (not 0) a mapping has one */
-  const char *fallback, *words, *description;
+  strut_key_limits limits;
+  const char *fallback; /* the default, as the reference page shows it */
+  strut_key_need need;
+  int set; /* a mapping may give only one of the keys with the same set (not 0) */
+  const char *words;
+  strut_field field;
+  const char *description;
 } strut_key;
 
-/** STRUT_KEY_MEMBER_STIFFNESS and so on: the keys of one room follow each other. */
+/** STRUT_KEY_MEMBER_STIFFNESS, ...; the keys of one section follow each other. */
 enum {
-#define STRUT_KEY_ENUM(room, id, ...) STRUT_KEY_##room##_##id,
+#define STRUT_KEY_ENUM(section, id, ...) STRUT_KEY_##section##_##id,
   STRUT_KEY_TABLE(STRUT_KEY_ENUM)
 #undef STRUT_KEY_ENUM
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 24 }; /* of one room */
+enum { STRUT_MOST_KEYS = 24 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
-/** First key and number of keys of a room. */
-STRUT_API int strut_section_first(strut_section room);
-STRUT_API int strut_section_size(strut_section room);
-/** The key of that name in a room, or -1. */
-STRUT_API int strut_key_find(strut_section room, const char *name);
+/** First key and number of keys of a section. */
+STRUT_API int strut_section_first(strut_section section);
+STRUT_API int strut_section_size(strut_section section);
+/** The key of that name in a section, or -1. */
+STRUT_API int strut_key_find(strut_section section, const char *name);
+typedef enum strut_spelling_kind {
+  STRUT_SPELLING_SYNONYM, /* accepted */
+  STRUT_SPELLING_FORMER,  /* a former name, accepted with a note */
+  STRUT_SPELLING_MISTAKE  /* not accepted: what a message suggests for it */
+} strut_spelling_kind;
+
+/** Another spelling of a key, or of a word of a key. */
+typedef struct strut_spelling {
+  strut_section section;
+  const char *key; /* the key whose word it is; NULL: a key itself */
+  const char *other, *current;
+  strut_spelling_kind kind;
+} strut_spelling;
+
+/** The other spelling of a key (`key` NULL) or of a word, or NULL. */
+STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
+                                                    const char *text);
+/** Its number: below 32 for former names. */
+STRUT_API int strut_spelling_index(const strut_spelling *spelling);
+/** The current name of a key: `name` itself, unless it is a former one. */
+STRUT_API const char *strut_key_current(strut_section section, const char *name);
+/** The section of that name, or STRUT_SECTION_COUNT. */
+STRUT_API strut_section strut_section_find(const char *name);
 /** "node", "half_sine", ... */
-STRUT_API const char *strut_section_name(strut_section room);
+STRUT_API const char *strut_section_name(strut_section section);
+
+/** The key of a member that gives its rest length in this way. */
+STRUT_API int strut_rest_key(strut_rest_kind kind);
+/** The section of a wave: sine, half_sine, square or ramp. */
+STRUT_API strut_section strut_wave_section(strut_signal_kind kind);
+/** True for a key whose value is kept in a field without code of its own. */
+STRUT_API bool strut_key_is_bound(const strut_key *key);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */
@@ -139,5 +212,14 @@ STRUT_API int strut_word_find(const char *words, const char *word);
 int strut_switch_find(const char *text);
 /** The i-th word, copied into buffer, or NULL after the last. */
 STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size_t size);
+
+/** Room for strut_dimension_suffix. */
+enum { STRUT_SUFFIX_TEXT = 120 };
+
+/** "force", "kinetic", "time" */
+const char *strut_column_word(strut_column_kind kind);
+strut_column_owner strut_column_owner_of(strut_column_kind kind);
+/** "com", "energy", "work", "losses"; NULL for others. */
+const char *strut_column_group(strut_column_owner owner);
 
 #endif

@@ -14,7 +14,7 @@ typedef struct comparison {
   bool failed; /* memory was out */
 } comparison;
 
-/* A text of the arena that grows by pieces: values are short. */
+/* Joins three texts in the arena; values are short. */
 static const char *join(comparison *c, const char *a, const char *b, const char *d) {
   const char *text = a && b && d ? strut_arena_format(c->arena, "%s%s%s", a, b, d) : NULL;
   if (!text) c->failed = true;
@@ -62,7 +62,7 @@ static void add(comparison *c, const char *where, const strut_tree *was, const s
       .where = where, .was = was ? flat(c, was) : NULL, .is = is ? flat(c, is) : NULL};
 }
 
-/* What a scene is called is no difference of the structure. */
+/* Names and descriptions do not count as differences. */
 static bool is_label(const char *where) {
   return strcmp(where, "name") == 0 || strcmp(where, "description") == 0 ||
          strcmp(where, "source") == 0;

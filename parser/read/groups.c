@@ -4,18 +4,19 @@
 
 #include "parser/read/reader.h"
 
-static const strut_section rooms[] = {STRUT_ROOM_MEMBER, STRUT_ROOM_NODE, STRUT_ROOM_CONTACT};
+static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
+                                         STRUT_SECTION_CONTACT};
 
-enum { ROOMS = 3 };
+enum { SECTIONS = 3 };
 
 static const char *group_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   return i < reader->group_count ? reader->groups[i].name : NULL;
 }
 
-static size_t room_index(strut_section room) {
+static size_t section_index(strut_section section) {
   size_t i = 0;
-  while (rooms[i] != room) i++;
+  while (sections[i] != section) i++;
   return i;
 }
 
@@ -32,8 +33,8 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
                       strut_owner owner) {
   strut_group_item item = {.key = {-1, -1, -1}};
   int found = -1;
-  for (size_t r = 0; r < ROOMS; r++) {
-    item.key[r] = strut_key_find(rooms[r], key->text);
+  for (size_t r = 0; r < SECTIONS; r++) {
+    item.key[r] = strut_key_named(reader, sections[r], key);
     if (found < 0) found = item.key[r];
   }
   if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {
@@ -43,11 +44,11 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     return;
   }
   if (found < 0) {
-    int meant = strut_unknown_key(reader, key, rooms, ROOMS, owner);
+    int meant = strut_unknown_key(reader, key, sections, SECTIONS, owner);
     group->broken = true;
     if (meant < 0) return;
-    for (size_t r = 0; r < ROOMS; r++)
-      item.key[r] = strut_key_find(rooms[r], strut_key_at(meant)->name);
+    for (size_t r = 0; r < SECTIONS; r++)
+      item.key[r] = strut_key_find(sections[r], strut_key_at(meant)->name);
     item.slot = (strut_slot){.state = STRUT_BROKEN, .key = key, .value = key->next};
     group->items[group->count++] = item;
     return;
@@ -62,7 +63,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
   if (item.slot.state == STRUT_GIVEN && strut_key_at(found)->type == STRUT_TYPE_MAP) {
     item.nested = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *item.nested);
     if (!item.nested) return;
-    strut_read_fields(reader, STRUT_ROOM_FRICTION, key->next,
+    strut_read_fields(reader, STRUT_SECTION_FRICTION, key->next,
                       (strut_owner){"the friction of group", group->name}, item.nested);
   }
   group->items[group->count++] = item;
@@ -108,7 +109,7 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   return count;
 }
 
-/* Does every name in `group:` name a group? Says so where not. */
+/* Does every name in `group:` name a group? Unknown ones are reported. */
 static bool check_names(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner) {
   bool fine = true,
@@ -128,33 +129,33 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
 
 /* True where the fields have the key, or another one of its set, already. */
 static bool taken(strut_fields *fields, int key) {
-  int first = strut_section_first(fields->room), set = strut_key_at(key)->set;
+  int first = strut_section_first(fields->section), set = strut_key_at(key)->set;
   if (strut_slot_of(fields, key)->state != STRUT_ABSENT) return true;
-  for (int i = 0; set && i < strut_section_size(fields->room); i++)
+  for (int i = 0; set && i < strut_section_size(fields->section); i++)
     if (strut_key_at(first + i)->set == set && fields->slot[i].state != STRUT_ABSENT) return true;
   return false;
 }
 
 static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
                         strut_owner owner) {
-  size_t room = room_index(fields->room);
+  size_t section = section_index(fields->section);
   group->used = true;
   for (size_t i = 0; i < group->count; i++) {
     strut_group_item *item = &group->items[i];
-    int key = item->key[room];
+    int key = item->key[section];
     if (key >= 0) {
       if (taken(fields, key)) continue;
       *strut_slot_of(fields, key) = item->slot;
       strut_slot_of(fields, key)->from = item;
       if (item->slot.state == STRUT_BROKEN || (item->nested && item->nested->broken))
         fields->broken = true;
-    } else if (!item->refused[room]) {
-      item->refused[room] = true;
+    } else if (!item->refused[section]) {
+      item->refused[section] = true;
       if (item->slot.state == STRUT_BROKEN) continue;
       strut_report_error(reader, item->slot.key->place,
                          "group '%s' gives '%s' to %s, but a %s has no '%s'", group->name,
                          item->slot.key->text, strut_owner_text(reader, owner),
-                         strut_section_name(fields->room), item->slot.key->text);
+                         strut_section_name(fields->section), item->slot.key->text);
     }
   }
   if (group->broken) fields->broken = true;
@@ -174,7 +175,7 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   while (count > 0) apply_group(reader, fields, groups[--count], owner);
   if (fine) return;
   reader->groups_unknown = true;
-  fields->broken = true; /* what the unknown group would have given is not missing */
+  fields->broken = true; /* the unknown group may have given what seems to be missing */
   strut_suppress_missing(fields);
 }
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters: evaluated on demand, in any order; --set; circles. See reader.h. */
+/* Parameters: evaluated on demand, in any order; values from --set; cycles. See reader.h. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/expression/quantity.h"
+#include "parser/expression/expression_parts.h"
 #include "parser/read/reader.h"
 
 const char *strut_parameter_name(const void *context, size_t i) {
@@ -26,7 +26,7 @@ static strut_place asking_place(strut_reader *reader) {
   return reader->asking->place;
 }
 
-/* Where to report about parameters as a whole. */
+/* The place for messages about the parameters as a whole. */
 static strut_place section_place(strut_reader *reader) {
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   return slot->key ? slot->key->place : strut_root_place(reader);
@@ -36,8 +36,8 @@ static const char *stacked_name(strut_reader *reader, size_t i) {
   return reader->parameter_stack[i]->name;
 }
 
-/* Reports the circle that leads back to p, which is being read, where p has its expression. */
-static void report_circle(strut_reader *reader, const strut_parameter_state *p) {
+/* Reports the cycle that leads back to p, at the place of p's expression. */
+static void report_cycle(strut_reader *reader, const strut_parameter_state *p) {
   size_t first = 0;
   bool given = p->set && !p->set->known && p->set->place.line;
   while (reader->parameter_stack[first] != p) first++;
@@ -46,9 +46,9 @@ static void report_circle(strut_reader *reader, const strut_parameter_state *p) 
                      strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
 }
 
-/* Reports about what was given from outside: where a study gives it, else where it is declared. */
-static void object(strut_reader *reader, const strut_setting *set, strut_place declared,
-                   const char *message) {
+/* Reports a wrong setting: where the study gives it, or, for --set, where the parameter is declared. */
+static void report_setting(strut_reader *reader, const strut_setting *set, strut_place declared,
+                           const char *message) {
   if (set->place.line)
     strut_report_error(reader, set->place, "in '%s' of the study: %s",
                        strut_sanitised_text(reader, set->name), message);
@@ -76,11 +76,11 @@ static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
   reader->asking_set = p->name;
   bool fine = strut_expression_evaluate(p->set->text, &scope, &p->quantity, &error);
   reader->asking_set = before;
-  if (!fine && error.message[0]) object(reader, p->set, p->key->place, error.message);
+  if (!fine && error.message[0]) report_setting(reader, p->set, p->key->place, error.message);
   return fine;
 }
 
-/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" where it is none. */
+/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" where there is none. */
 static const char *unit_of(const char *text) {
   const char *rest = text + strspn(text, "+-.0123456789eE");
   if (rest == text) return "";
@@ -89,7 +89,8 @@ static const char *unit_of(const char *text) {
   return letters && !strpbrk(rest, "+-() ,#") ? rest : "";
 }
 
-/* A plain number is in SI units, whatever the file has it in: worth a word where that may be missed. */
+/* Notes that a number without unit is in SI units, where it differs from the declared value by more
+   than a factor of 100: then a unit was probably forgotten. */
 static void note_scale(strut_reader *reader, const strut_parameter_state *p,
                        const strut_quantity *declared) {
   double times = fabs(p->quantity.value / declared->value);
@@ -104,7 +105,8 @@ static void note_scale(strut_reader *reader, const strut_parameter_state *p,
 }
 
 /* Does what is given fit what the file declares? A bare value takes the declared dimension. */
-static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_quantity *declared) {
+static bool adopt_dimension(strut_reader *reader, strut_parameter_state *p,
+                            const strut_quantity *declared) {
   char expected[200], found[80], message[320];
   if (declared->bare) return true;
   if (p->quantity.bare) {
@@ -116,11 +118,11 @@ static bool adopt(strut_reader *reader, strut_parameter_state *p, const strut_qu
   snprintf(message, sizeof message, "expected %s, found %s",
            strut_expected_number(declared->dimension, expected, sizeof expected),
            strut_dimension_name(p->quantity.dimension, found, sizeof found));
-  object(reader, p->set, p->key->place, message);
+  report_setting(reader, p->set, p->key->place, message);
   return false;
 }
 
-static void resolve(strut_reader *reader, strut_parameter_state *p) {
+static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
   if (p->state != STRUT_UNREAD) return;
   if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
     strut_report_error(reader, p->key->place, "parameters depend on each other more than %d deep",
@@ -134,7 +136,7 @@ static void resolve(strut_reader *reader, strut_parameter_state *p) {
   bool fine = evaluate(reader, p, &declared);
   if (p->set) {
     fine = evaluate_set(reader, p) && fine;
-    fine = fine && adopt(reader, p, &declared);
+    fine = fine && adopt_dimension(reader, p, &declared);
   } else if (fine) {
     p->quantity = declared;
   }
@@ -142,7 +144,8 @@ static void resolve(strut_reader *reader, strut_parameter_state *p) {
   reader->parameter_depth--;
 }
 
-static int look_up(void *context, const char *name, size_t length, strut_quantity *quantity) {
+static int look_up_parameter(void *context, const char *name, size_t length,
+                             strut_quantity *quantity) {
   strut_reader *reader = context;
   char text[65];
   if (length >= sizeof text) return 0;
@@ -153,12 +156,12 @@ static int look_up(void *context, const char *name, size_t length, strut_quantit
   p->used = true;
   if (p->text) {
     strut_report_error(reader, asking_place(reader),
-                       "parameter '%s' is a text and has no value here", p->name);
+                       "parameter '%s' is a text, expected a number here", p->name);
     return -1;
   }
-  resolve(reader, p);
+  resolve_parameter(reader, p);
   if (p->state == STRUT_READING) {
-    report_circle(reader, p);
+    report_cycle(reader, p);
     p->state = STRUT_FAILED;
   }
   if (p->state == STRUT_FAILED) return -1;
@@ -167,12 +170,12 @@ static int look_up(void *context, const char *name, size_t length, strut_quantit
 }
 
 strut_scope strut_parameter_scope(strut_reader *reader) {
-  return (strut_scope){look_up, strut_parameter_name, reader, !strut_hints_left(reader),
+  return (strut_scope){look_up_parameter, strut_parameter_name, reader, !strut_hints_left(reader),
                        strut_diagnostics_full(reader->diagnostics)};
 }
 
-/* An identifier that is not taken: it must be able to stand in an expression. */
-static bool name_fits(strut_reader *reader, const strut_tree *key) {
+/* A parameter's name must be an identifier, and no function: expressions refer to it. */
+static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
   const char *c = key->text;
   size_t length = strlen(c);
   if (!strut_read_name(reader, key, "parameter")) return false;
@@ -194,10 +197,11 @@ static bool name_fits(strut_reader *reader, const strut_tree *key) {
   return true;
 }
 
-static void declare(strut_reader *reader, const strut_tree *key, strut_parameter_state *p) {
+static void declare_parameter(strut_reader *reader, const strut_tree *key,
+                              strut_parameter_state *p) {
   const strut_tree *value = key->next;
   *p = (strut_parameter_state){.name = key->text, .key = key, .value = value};
-  bool fine = name_fits(reader, key);
+  bool fine = check_parameter_name(reader, key);
   fine = strut_read_scalar(reader, value, key->text, (strut_owner){"the parameters", NULL},
                            "an expression or a quoted text") &&
          fine;
@@ -205,7 +209,7 @@ static void declare(strut_reader *reader, const strut_tree *key, strut_parameter
   p->state = fine ? (p->text ? STRUT_READ : STRUT_UNREAD) : STRUT_FAILED;
 }
 
-static void set(strut_reader *reader, const strut_setting *setting) {
+static void apply_setting(strut_reader *reader, const strut_setting *setting) {
   strut_parameter_state *p = strut_parameter_find(reader, setting->name);
   char message[300];
   if (!p) {
@@ -213,7 +217,7 @@ static void set(strut_reader *reader, const strut_setting *setting) {
         message, sizeof message, "the scene has no parameter '%s'%s",
         strut_sanitised_text(reader, setting->name),
         strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
-    object(reader, setting, section_place(reader), message);
+    report_setting(reader, setting, section_place(reader), message);
   } else if (p->set) {
     strut_report_error(reader, setting->place.line ? setting->place : p->key->place,
                        "%s%s is given twice", setting->place.line ? "" : "--set ", p->name);
@@ -230,16 +234,17 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
                                              sizeof *reader->parameters);
   if (!reader->parameters) return;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
-    declare(reader, key, &reader->parameters[reader->parameter_count]);
+    declare_parameter(reader, key, &reader->parameters[reader->parameter_count]);
     strut_add_name(reader, &reader->parameter_names, key->text, reader->parameter_count++);
   }
-  for (size_t i = 0; known && i < count; i++) set(reader, &settings[i]);
-  for (size_t i = 0; i < reader->parameter_count; i++) resolve(reader, &reader->parameters[i]);
+  for (size_t i = 0; known && i < count; i++) apply_setting(reader, &settings[i]);
+  for (size_t i = 0; i < reader->parameter_count; i++)
+    resolve_parameter(reader, &reader->parameters[i]);
 }
 
 void strut_keep_parameters(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  if (reader->failed) return; /* nobody will see the scene */
+  if (reader->failed) return; /* the scene will be discarded */
   scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
                                             sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
@@ -260,6 +265,6 @@ void strut_report_idle_settings(strut_reader *reader) {
     if (!p->set || p->used) continue;
     char message[120];
     snprintf(message, sizeof message, "nothing in the scene uses parameter '%s'", p->name);
-    object(reader, p->set, p->key->place, message);
+    report_setting(reader, p->set, p->key->place, message);
   }
 }

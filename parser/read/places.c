@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a finding of the check to its place in the text. See reader.h. */
+/* The place in the text of each finding of the scene's check. See reader.h. */
 #include <string.h>
 
 #include "parser/read/reader.h"
@@ -17,7 +17,8 @@ static strut_group_item *group_item(strut_reader *reader, const strut_tree *map,
   return NULL;
 }
 
-/* Own key's value, else the group's, else the thing's name. False: said there before. */
+/* The value of the thing's own key, else of its group's, else the thing's name. False: the group's
+   value has a finding already. */
 static bool thing_place(strut_reader *reader, const strut_source *source, const char *key,
                         strut_place *place) {
   bool map = source->value->kind == STRUT_TREE_MAP;
@@ -30,10 +31,10 @@ static bool thing_place(strut_reader *reader, const strut_source *source, const 
   return first;
 }
 
-/* The value of a key in a mapping that there is once, else the key of the whole section. */
+/* The value of a key of the ground, the solver, ..., else the key of the whole section. */
 static strut_place field_place(strut_reader *reader, strut_fields *fields, const char *key,
                                int section) {
-  int found = key ? strut_key_find(fields->room, key) : -1;
+  int found = key ? strut_key_find(fields->section, key) : -1;
   const strut_slot *slot = found < 0 ? NULL : strut_slot_of(fields, found);
   if (slot && slot->value) return slot->value->place;
   const strut_tree *whole = strut_slot_of(&reader->top, section)->key;
@@ -52,7 +53,7 @@ static bool node_place(strut_reader *reader, const strut_finding *finding, strut
   return true;
 }
 
-/* Own key, group's key, ground's key, or what names the contact. */
+/* The contact's own key, its group's, the ground's, or the name of the contact. */
 static bool contact_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *source = &reader->contact_source[finding->index];
   *place = field_place(reader, &reader->ground, finding->key, STRUT_KEY_SCENE_GROUND);
@@ -60,7 +61,7 @@ static bool contact_place(strut_reader *reader, const strut_finding *finding, st
   strut_place before = *place, mine;
   bool fresh = thing_place(reader, source, finding->key, &mine);
   bool ground = mine.line == source->key->place.line && mine.column == source->key->place.column &&
-                finding->key && strut_key_find(STRUT_ROOM_GROUND, finding->key) >= 0;
+                finding->key && strut_key_find(STRUT_SECTION_GROUND, finding->key) >= 0;
   *place = ground ? before : mine;
   return fresh;
 }
@@ -74,7 +75,7 @@ static bool signal_place(strut_reader *reader, const strut_finding *finding, str
   return true;
 }
 
-/* Findings about the things of which there are many. */
+/* Findings about nodes, members, contacts, actuators, loads and configurations. */
 static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *sources[] = {[STRUT_ON_NODE] = reader->node_source,
                                    [STRUT_ON_MEMBER] = reader->member_source,
@@ -90,7 +91,7 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
   return thing_place(reader, source, finding->key, place);
 }
 
-/* Findings about the mappings of which there is one. */
+/* Findings about the ground, the initial state, the solver and other single mappings. */
 static bool single_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const char *key = finding->key;
   strut_fields *fields = &reader->top;
@@ -99,7 +100,7 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
   switch (finding->subject) {
     case STRUT_ON_GROUND:
       fields = &reader->ground, section = STRUT_KEY_SCENE_GROUND;
-      broken = key && strcmp(key, "slope") == 0 /* on its own */
+      broken = key && strcmp(key, "slope") == 0 /* does not depend on other keys */
                    ? strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state != STRUT_GIVEN
                    : fields->broken;
       break;
@@ -126,8 +127,9 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
       broken = fields->broken || reader->run.broken;
       break;
     default:
-      broken = key && strut_key_find(STRUT_ROOM_SCENE, key) >= 0 &&
-               strut_slot_of(fields, strut_key_find(STRUT_ROOM_SCENE, key))->state == STRUT_BROKEN;
+      broken =
+          key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
+          strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;
   }
   if (!broken) *place = field_place(reader, fields, key, section);
   return !broken;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shapes with a name, which of them a run begins in, and how equilibria are looked for.
+/* Named shapes, the one in which a run starts, and the search for equilibria.
    See reader.h. */
 #include <math.h>
 #include <string.h>
@@ -70,12 +70,12 @@ static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner 
 }
 
 /*
- * Is the key one of a configuration, not a node that is called so? Where there is such a node, two
- * scalars behind `contacts` are its position, and so is all but a mapping behind `shape`.
+ * Is this a key of a configuration rather than a node of that name? If there is such a node, a list of
+ * two scalars for `contacts` is its position, and so is anything but a mapping for `shape`.
  */
 static bool is_key(strut_reader *reader, const strut_tree *key) {
   const strut_tree *value = key->next;
-  if (strut_key_find(STRUT_ROOM_CONFIGURATION, key->text) < 0) return false;
+  if (strut_key_find(STRUT_SECTION_CONFIGURATION, key->text) < 0) return false;
   if (strut_name_map_find(&reader->node_names, key->text) < 0) return true;
   if (strcmp(key->text, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)->name) == 0)
     return value->kind == STRUT_TREE_MAP;
@@ -84,7 +84,7 @@ static bool is_key(strut_reader *reader, const strut_tree *key) {
            value->first->next->kind == STRUT_TREE_SCALAR);
 }
 
-/* Reports nodes that stand beside `contacts` or `shape`; true where there are none. */
+/* Reports nodes beside `contacts` or `shape`; true if there are none. */
 static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner owner) {
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
@@ -104,7 +104,7 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
                       strut_configuration *configuration) {
   strut_fields fields;
   if (!keys_only(reader, map, owner)) return false;
-  strut_read_fields(reader, STRUT_ROOM_CONFIGURATION, map, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_CONFIGURATION, map, owner, &fields);
   const strut_slot *contacts = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_CONTACTS);
   const strut_slot *shape = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
   bool fine = !fields.broken;
@@ -201,26 +201,12 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   return index;
 }
 
-/* A whole number from 0 to `most`; `fallback` where it is absent or was reported. */
-static double whole(strut_reader *reader, int key, double most, double fallback) {
-  const strut_slot *slot = strut_slot_of(&reader->search, key);
-  if (slot->state != STRUT_GIVEN) return fallback;
-  if (slot->number[0] == floor(slot->number[0]) && slot->number[0] <= most)
-    return slot->number[0] + 0.0; /* -0 is 0 */
-  strut_report_error(reader, slot->value->place,
-                     "'%s' of %s must be a whole number up to %.0f, found %g",
-                     strut_key_at(key)->name, search_owner.kind, most, slot->number[0]);
-  reader->search.broken = true;
-  return fallback;
-}
-
 void strut_read_search(strut_reader *reader) {
   strut_search *search = &reader->experiment->search;
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_ROOM_EQUILIBRIA,
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
                           search_owner.kind, &reader->search))
     return;
-  search->starts = (int64_t)whole(reader, STRUT_KEY_EQUILIBRIA_STARTS, STRUT_MOST_STARTS, 0.0);
-  search->seed = (uint64_t)whole(reader, STRUT_KEY_EQUILIBRIA_SEED, STRUT_MOST_SEED, 1.0);
+  strut_store_fields(reader, &reader->search, &reader->scene->arena, search, sizeof *search);
   const strut_slot *supports = strut_slot_of(&reader->search, STRUT_KEY_EQUILIBRIA_SUPPORTS);
   if (supports->state == STRUT_GIVEN &&
       !read_sets(reader, supports, search_owner, &search->supports, &search->support_count))

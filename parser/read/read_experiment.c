@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The initial state; solver, run and output. See reader.h. */
-#include <math.h>
 #include <string.h>
 
 #include "parser/read/reader.h"
 
-static void take_start(strut_reader *reader, int32_t node, const double pair[2],
-                       const strut_tree *value) {
+static void store_start(strut_reader *reader, int32_t node, const double pair[2],
+                        const strut_tree *value) {
   (void)value;
   memcpy(reader->scene->nodes[node].start, pair, 2 * sizeof *pair);
 }
 
-static void take_velocity(strut_reader *reader, int32_t node, const double pair[2],
-                          const strut_tree *value) {
+static void store_velocity(strut_reader *reader, int32_t node, const double pair[2],
+                           const strut_tree *value) {
   memcpy(reader->scene->nodes[node].velocity, pair, 2 * sizeof *pair);
   if (reader->velocity_source) reader->velocity_source[node] = value;
 }
@@ -32,19 +31,11 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
         strut_found(reader, slot->value));
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_SETTLE, slot->value, owner, &reader->settle);
-  settle->speed = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_SPEED, settle->speed);
-  settle->acceleration =
-      strut_number_or(&reader->settle, STRUT_KEY_SETTLE_ACCELERATION, settle->acceleration);
-  settle->limit = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_LIMIT, settle->limit);
-  settle->evaluations = strut_number_or(&reader->settle, STRUT_KEY_SETTLE_EVALUATIONS, 0.0);
-  const strut_slot *perturb = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_PERTURB);
-  settle->perturb = perturb->state == STRUT_GIVEN && perturb->word == 1;
-  const strut_slot *friction = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_FRICTION);
-  settle->friction = friction->state == STRUT_GIVEN && friction->word == 1;
+  strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
+  strut_store_fields(reader, &reader->settle, &reader->scene->arena, settle, sizeof *settle);
 }
 
-/* Positions and velocities: the general first, then what is said of single nodes. */
+/* Positions and velocities: of all nodes first, then of single ones. */
 static void read_state(strut_reader *reader, int32_t configuration) {
   strut_scene *scene = reader->scene;
   const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
@@ -56,7 +47,7 @@ static void read_state(strut_reader *reader, int32_t configuration) {
   if (positions->state == STRUT_GIVEN)
     strut_read_node_pairs(reader, positions->value,
                           (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
-                          take_start);
+                          store_start);
   if (velocity->state == STRUT_GIVEN)
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
@@ -66,10 +57,10 @@ static void read_state(strut_reader *reader, int32_t configuration) {
                                                   sizeof *reader->velocity_source);
   strut_read_node_pairs(reader, velocities->value,
                         (strut_owner){"'velocities' of the initial state", NULL},
-                        STRUT_DIM_VELOCITY, take_velocity);
+                        STRUT_DIM_VELOCITY, store_velocity);
 }
 
-/* An equilibrium says where every node is, and that it rests. */
+/* An equilibrium determines all positions, and that the structure is at rest. */
 static void read_equilibrium(strut_reader *reader) {
   static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
                                STRUT_KEY_INITIAL_SETTLE};
@@ -87,8 +78,8 @@ static void read_equilibrium(strut_reader *reader) {
 }
 
 void strut_read_initial(strut_reader *reader) {
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_ROOM_INITIAL, "the initial state",
-                          &reader->initial))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_SECTION_INITIAL,
+                          "the initial state", &reader->initial))
     return;
   read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
@@ -107,7 +98,7 @@ static const char *driver_name(const void *context, size_t i) {
   return i < reader->named_count ? reader->named[i].name : NULL;
 }
 
-/* What `of` names: an actuator, a load or a signal. */
+/* The signal of the actuator or load that `of` names, or the signal of that name. */
 static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
   const strut_scene *scene = reader->scene;
   int32_t a = strut_name_map_find(&reader->actuator_names, value->text);
@@ -169,7 +160,7 @@ static void read_of(strut_reader *reader) {
   }
 }
 
-/* A window: in periods where the run is, else in seconds; skipped where that is unknown. */
+/* The length of a window: in periods if the run is in periods, otherwise in seconds. */
 static void read_last(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
                       double *last) {
   const strut_slot *slot = strut_slot_of(fields, key);
@@ -178,7 +169,8 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
   if (slot->state != STRUT_GIVEN) return;
   if (!periods->key && !duration->key) {
     fields->broken = true;
-    if (reader->purpose == STRUT_FOR_STATICS) /* else what is missing is about to be said */
+    if (reader->purpose ==
+        STRUT_FOR_STATICS) /* otherwise the missing length of the run is reported */
       strut_report_error(reader, slot->key->place,
                          "'last' of %s needs a run with a duration or periods", owner.kind);
     return;
@@ -204,35 +196,21 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
         strut_found(reader, slot->value));
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_STEADY, slot->value, owner, &reader->steady);
-  steady->tolerance =
-      strut_number_or(&reader->steady, STRUT_KEY_STEADY_TOLERANCE, steady->tolerance);
-  steady->floor = strut_number_or(&reader->steady, STRUT_KEY_STEADY_FLOOR, steady->floor);
-  double successive =
-      strut_number_or(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE, steady->successive);
-  const strut_slot *shooting = strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SHOOTING);
-  steady->shooting = shooting->state == STRUT_GIVEN && shooting->word == 1;
-  bool whole = successive == floor(successive) && successive >= 2.0 && successive <= 16.0;
-  if (whole)
-    steady->successive = (int32_t)successive;
-  else
-    strut_report_error(reader,
-                       strut_slot_of(&reader->steady, STRUT_KEY_STEADY_SUCCESSIVE)->value->place,
-                       "expected a whole number from 2 to 16 for 'successive' of the steady state");
+  strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
+  strut_store_fields(reader, &reader->steady, &reader->scene->arena, steady, sizeof *steady);
 }
 
 static void read_run(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
   strut_owner owner = {"the measurement", NULL};
-  reader->measure = (strut_fields){.room = STRUT_ROOM_MEASURE};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_ROOM_RUN, "the run", &reader->run))
+  reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, "the run", &reader->run))
     return;
   read_of(reader);
-  e->duration = strut_number_or(&reader->run, STRUT_KEY_RUN_DURATION, 0.0);
-  e->periods = strut_number_or(&reader->run, STRUT_KEY_RUN_PERIODS, 0.0);
+  strut_store_fields(reader, &reader->run, &reader->scene->arena, e, sizeof *e);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
-    strut_read_fields(reader, STRUT_ROOM_MEASURE, measure->value,
+    strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
                       (strut_owner){"the measurement", NULL}, &reader->measure);
     const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
     if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
@@ -250,8 +228,8 @@ static void read_run(strut_reader *reader) {
 }
 
 /*
- * Settling keeps the file's step, whatever step, method or accuracy the run is given later: it then
- * ends in the same bits. Below zero: by the stability limit.
+ * Settling uses the file's step even if the run is later given another step, method or accuracy, so that
+ * it always ends in the same bits. A step below zero is chosen by the stability limit.
  */
 static void choose_settling_step(strut_reader *reader) {
   strut_settle *settle = &reader->experiment->settle;
@@ -262,35 +240,17 @@ static void choose_settling_step(strut_reader *reader) {
   settle->step = given > 0.0 ? given : -1.0;
 }
 
-static void read_integrator(strut_reader *reader) {
-  const strut_slot *slot = strut_slot_of(&reader->solver, STRUT_KEY_SOLVER_INTEGRATOR);
-  char name[32];
-  if (slot->state != STRUT_GIVEN) return;
-  if (strut_word_at(strut_key_at(STRUT_KEY_SOLVER_INTEGRATOR)->words, slot->word, name,
-                    sizeof name))
-    reader->experiment->integrator = strut_keep_text(reader, name);
-}
-
 void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
   read_run(reader);
-  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_ROOM_SOLVER, "the solver",
-                         &reader->solver)) {
-    e->step = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_STEP, 0.0);
-    e->tolerance = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_TOLERANCE, e->tolerance);
-    e->refine = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE, 0.0);
-    e->refine_time = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_REFINE_TIME, 0.0);
-    e->accuracy = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_ACCURACY, 0.0);
-    e->budget = strut_number_or(&reader->solver, STRUT_KEY_SOLVER_BUDGET, e->budget);
-    read_integrator(reader);
-  }
+  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, "the solver",
+                         &reader->solver))
+    strut_store_fields(reader, &reader->solver, &reader->scene->arena, e, sizeof *e);
   choose_settling_step(reader);
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_ROOM_OUTPUT, "the output",
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, "the output",
                           &reader->output))
     return;
-  e->output_every = strut_number_or(&reader->output, STRUT_KEY_OUTPUT_EVERY, 0.0);
+  strut_store_fields(reader, &reader->output, &reader->scene->arena, e, sizeof *e);
   read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, (strut_owner){"the output", NULL},
             &e->output_last);
-  const strut_slot *channels = strut_slot_of(&reader->output, STRUT_KEY_OUTPUT_CHANNELS);
-  if (channels->state == STRUT_GIVEN) e->channels = (unsigned)channels->word;
 }

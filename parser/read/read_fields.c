@@ -6,57 +6,91 @@
 #include "parser/read/reader.h"
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
-  assert(strut_key_at(key)->room == fields->room);
-  return &fields->slot[key - strut_section_first(fields->room)];
-}
-
-double strut_number_or(strut_fields *fields, int key, double fallback) {
-  const strut_slot *slot = strut_slot_of(fields, key);
-  return slot->state == STRUT_GIVEN ? slot->number[0] : fallback;
+  assert(strut_key_at(key)->section == fields->section);
+  return &fields->slot[key - strut_section_first(fields->section)];
 }
 
 void strut_suppress_missing(strut_fields *fields) {
-  for (int i = 0; i < strut_section_size(fields->room); i++)
+  for (int i = 0; i < strut_section_size(fields->section); i++)
     if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
 }
 
-/* The keys of some rooms, one after the other, for suggestions. */
-typedef struct rooms_context {
-  const strut_section *rooms;
+/* The keys of some sections, one after the other, for suggestions. */
+typedef struct sections_context {
+  const strut_section *sections;
   size_t count;
-} rooms_context;
+} sections_context;
 
-static int key_of_rooms(const rooms_context *rooms, size_t i) {
-  for (size_t r = 0; r < rooms->count; r++) {
-    size_t size = (size_t)strut_section_size(rooms->rooms[r]);
-    if (i < size) return strut_section_first(rooms->rooms[r]) + (int)i;
+static int key_of_sections(const sections_context *sections, size_t i) {
+  for (size_t r = 0; r < sections->count; r++) {
+    size_t size = (size_t)strut_section_size(sections->sections[r]);
+    if (i < size) return strut_section_first(sections->sections[r]) + (int)i;
     i -= size;
   }
   return -1;
 }
 
-static const char *name_of_rooms(const void *context, size_t i) {
-  int key = key_of_rooms(context, i);
+static const char *name_of_sections(const void *context, size_t i) {
+  int key = key_of_sections(context, i);
   return key < 0 ? NULL : strut_key_at(key)->name;
 }
 
-int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *rooms,
+/* What was probably meant by a key that no section has; NULL: nothing is near. */
+static const char *nearest_key(strut_reader *reader, const char *text,
+                               const sections_context *context) {
+  for (size_t i = 0; i < context->count; i++) {
+    const strut_spelling *spelling = strut_spelling_find(context->sections[i], NULL, text);
+    if (spelling) return spelling->current;
+  }
+  if (strlen(text) > 64 || !strut_hints_left(reader)) return NULL;
+  return strut_did_you_mean(text, name_of_sections, context);
+}
+
+/* Advice for keys that YAML made of something else: `mass:1 kg`, and `1,5 kg` within braces. */
+static const char *punctuation_advice(const strut_tree *key) {
+  bool number = key->text[0] >= '0' && key->text[0] <= '9';
+  if (key->quoted || !strut_is_null(key->next)) return NULL;
+  if (strut_lacks_space(key)) return "; write a space after the colon";
+  return number ? "; within {...} a comma separates keys, and the decimal mark is a point" : NULL;
+}
+
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner) {
-  rooms_context context = {rooms, count};
-  const char *near = strlen(key->text) > 64 || !strut_hints_left(reader)
-                         ? NULL
-                         : strut_did_you_mean(key->text, name_of_rooms, &context);
-  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s",
+  sections_context context = {sections, count};
+  const char *advice = punctuation_advice(key);
+  const char *near = advice ? NULL : nearest_key(reader, key->text, &context);
+  strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s%s",
                      strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
-                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-  for (int i = 0; near && key_of_rooms(&context, (size_t)i) >= 0; i++) {
-    int meant = key_of_rooms(&context, (size_t)i);
-    if (strcmp(strut_key_at(meant)->name, near) == 0) return meant;
+                     advice ? advice : "", near ? "; did you mean '" : "", near ? near : "",
+                     near ? "'?" : "");
+  for (int i = 0; key_of_sections(&context, (size_t)i) >= 0; i++) {
+    int meant = key_of_sections(&context, (size_t)i);
+    const char *name = strut_key_at(meant)->name;
+    if (near ? strcmp(name, near) == 0 : strut_lacks_space_after(key, name)) return meant;
   }
   return -1;
 }
 
-/* The words of a key, each with its end, for suggestions. */
+/* A former name is noted where it is met first. */
+static void note_spelling(strut_reader *reader, const strut_spelling *spelling, strut_place place) {
+  if (spelling->kind != STRUT_SPELLING_FORMER) return;
+  unsigned bit = 1u << strut_spelling_index(spelling);
+  if (reader->spellings & bit) return;
+  reader->spellings |= bit;
+  strut_note(reader->diagnostics, place, "'%s' is now called '%s'", spelling->other,
+             spelling->current);
+}
+
+int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key) {
+  int found = strut_key_find(section, key->text);
+  if (found >= 0) return found;
+  const strut_spelling *spelling = strut_spelling_find(section, NULL, key->text);
+  if (!spelling || spelling->kind == STRUT_SPELLING_MISTAKE) return -1;
+  note_spelling(reader, spelling, key->place);
+  return strut_key_find(section, spelling->current);
+}
+
+/* The words of a key, for suggestions. */
 typedef struct words_context {
   char word[32][24];
   int count;
@@ -72,6 +106,14 @@ static bool read_word(strut_reader *reader, const strut_key *key, const strut_tr
   char expected[400];
   if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
     return true; /* scenes of a study are read by the million */
+  const strut_spelling *other = value->kind == STRUT_TREE_SCALAR
+                                    ? strut_spelling_find(key->section, key->name, value->text)
+                                    : NULL;
+  if (other && other->kind != STRUT_SPELLING_MISTAKE) {
+    note_spelling(reader, other, value->place);
+    *word = strut_word_find(key->words, other->current);
+    return true;
+  }
   bool may_switch = value->kind == STRUT_TREE_SCALAR && !value->quoted;
   if (may_switch && strcmp(key->words, "no|yes") == 0 &&
       (*word = strut_switch_find(value->text)) >= 0)
@@ -99,7 +141,7 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
     if (!read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
-      strut_report_error(reader, item->place, "'%s' stands twice in '%s' of %s", item->text,
+      strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
                          key->name, strut_owner_text(reader, owner));
       fine = false;
     } else {
@@ -118,15 +160,17 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
   return read_words(reader, &in_list, value, owner, bits);
 }
 
-static bool refuse(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
+static bool refuse_value(strut_reader *reader, int key, const strut_tree *value,
+                         strut_owner owner) {
   char expected[300];
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
                      strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                     strut_owner_text(reader, owner), strut_found(reader, value));
+                     strut_owner_text(reader, owner), strut_found(reader, value),
+                     strut_lacks_space(value) ? "; write a space after the colon" : "");
   return false;
 }
 
-/* Is the value of a shape that the type allows? What is inside is somebody else's to read. */
+/* Is the value a scalar, list or mapping, as the type requires? Its content is not looked at. */
 static bool shape_fits(strut_key_type type, const strut_tree *value) {
   bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
   switch (type) {
@@ -151,7 +195,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_TEXT:
     case STRUT_TYPE_NAME:
     case STRUT_TYPE_EXPRESSION: return scalar;
-    default: return true; /* numbers and words say it themselves */
+    default: return true; /* the readers of numbers and words report it */
   }
 }
 
@@ -164,7 +208,7 @@ static bool read_version(strut_reader *reader, const strut_tree *value) {
   return false;
 }
 
-/* The value proper; false where it has been reported. */
+/* Reads the value; false if it was reported. */
 static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
                        strut_owner owner, strut_slot *slot) {
   strut_dimension dimension = strut_measure_dimension(key->measure);
@@ -172,10 +216,14 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
     case STRUT_TYPE_VERSION: return read_version(reader, value);
     case STRUT_TYPE_NUMBER:
       if (key->measure == STRUT_MEASURE_CONTEXT) return true;
-      return strut_read_number(reader, value, key->name, owner, dimension, key->range,
+      if (key->limits.range == STRUT_RANGE_WHOLE)
+        return strut_read_number(reader, value, key->name, owner, dimension, STRUT_RANGE_ANY,
+                                 &slot->number[0]) &&
+               strut_check_whole(reader, value, key, owner, slot->number[0]);
+      return strut_read_number(reader, value, key->name, owner, dimension, key->limits.range,
                                &slot->number[0]);
     case STRUT_TYPE_PAIR:
-      if (key->room == STRUT_ROOM_SCENE) return true; /* its parameters are not read yet */
+      if (key->section == STRUT_SECTION_SCENE) return true; /* its parameters are not read yet */
       return strut_read_pair(reader, value, key->name, owner, dimension, slot->number);
     case STRUT_TYPE_WORD: return read_word(reader, key, value, owner, &slot->word);
     case STRUT_TYPE_WORDS: return read_words(reader, key, value, owner, &slot->word);
@@ -189,14 +237,58 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
   const strut_key *k = strut_key_at(key);
   *slot = (strut_slot){.key = key_tree, .value = value};
   bool fine = shape_fits(k->type, value) ? read_typed(reader, k, value, owner, slot)
-                                         : refuse(reader, key, value, owner);
+                                         : refuse_value(reader, key, value, owner);
   slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
+}
+
+static const char *store_text(strut_reader *reader, strut_arena *arena, const strut_key *key,
+                              const strut_slot *slot) {
+  char word[40] = "";
+  if (key->type == STRUT_TYPE_WORD) strut_word_at(key->words, slot->word, word, sizeof word);
+  const char *text = key->type == STRUT_TYPE_WORD ? word : slot->value->text;
+  const char *copy = strut_arena_text(arena, text, strlen(text));
+  if (copy) return copy;
+  reader->out_of_memory = true;
+  return "";
+}
+
+static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
+                        const strut_slot *slot, void *field) {
+  bool word = key->type == STRUT_TYPE_WORD || key->type == STRUT_TYPE_WORDS;
+  double number = word ? (double)slot->word : slot->number[0];
+  switch (key->field.kind) {
+    case STRUT_FIELD_DOUBLE: *(double *)field = number; break;
+    case STRUT_FIELD_INT32: *(int32_t *)field = (int32_t)number; break;
+    case STRUT_FIELD_UINT32: *(uint32_t *)field = (uint32_t)number; break;
+    case STRUT_FIELD_INT64: *(int64_t *)field = (int64_t)number; break;
+    case STRUT_FIELD_UINT64: *(uint64_t *)field = (uint64_t)number; break;
+    case STRUT_FIELD_BOOL: *(bool *)field = slot->word == 1; break;
+    case STRUT_FIELD_DOUBLE_PAIR: memcpy(field, slot->number, sizeof slot->number); break;
+    case STRUT_FIELD_BOOL_PAIR:
+      for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
+      break;
+    case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
+    default: assert(false);
+  }
+}
+
+void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
+                        void *object, size_t object_size) {
+  int first = strut_section_first(fields->section);
+  if (strut_diagnostics_full(reader->diagnostics)) return; /* the object will not be used */
+  for (int i = 0; i < strut_section_size(fields->section); i++) {
+    const strut_key *key = strut_key_at(first + i);
+    if (fields->slot[i].state != STRUT_GIVEN || !strut_key_is_bound(key)) continue;
+    assert(key->field.object_size == object_size);
+    store_value(reader, arena, key, &fields->slot[i], (char *)object + key->field.offset);
+  }
+  (void)object_size;
 }
 
 /* Another key of the same set that the mapping itself gives, or NULL. */
 static const strut_tree *rival(const strut_fields *fields, int key) {
-  int first = strut_section_first(fields->room), set = strut_key_at(key)->set;
-  for (int i = 0; set && i < strut_section_size(fields->room); i++)
+  int first = strut_section_first(fields->section), set = strut_key_at(key)->set;
+  for (int i = 0; set && i < strut_section_size(fields->section); i++)
     if (first + i != key && strut_key_at(first + i)->set == set && fields->slot[i].key)
       return fields->slot[i].key;
   return NULL;
@@ -204,16 +296,16 @@ static const strut_tree *rival(const strut_fields *fields, int key) {
 
 static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const strut_tree *key_tree,
                              strut_owner owner) {
-  int key = strut_key_find(fields->room, key_tree->text);
+  int key = strut_key_named(reader, fields->section, key_tree);
   if (key < 0) {
-    int meant = strut_unknown_key(reader, key_tree, &fields->room, 1, owner);
+    int meant = strut_unknown_key(reader, key_tree, &fields->section, 1, owner);
     fields->broken = true;
     if (meant >= 0 && strut_slot_of(fields, meant)->state == STRUT_ABSENT)
       strut_slot_of(fields, meant)->state = STRUT_BROKEN;
     return;
   }
   strut_slot *slot = strut_slot_of(fields, key);
-  const strut_tree *other = rival(fields, key);
+  const strut_tree *other = slot->key ? slot->key : rival(fields, key); /* or by its former name */
   strut_read_slot(reader, key, key_tree, key_tree->next, owner, slot);
   if (other) {
     strut_report_error(reader, key_tree->place, "%s gives both '%s' and '%s', expected one of them",
@@ -223,8 +315,8 @@ static void read_pair_of_map(strut_reader *reader, strut_fields *fields, const s
   if (slot->state == STRUT_BROKEN) fields->broken = true;
 }
 
-/* Of friction: `mu` says both coefficients. */
-static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+/* `mu` sets both coefficients, so that neither may be given beside it. */
+static void check_coefficients(strut_reader *reader, strut_fields *fields, strut_owner owner) {
   const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
@@ -236,28 +328,30 @@ static void check_rivals(strut_reader *reader, strut_fields *fields, strut_owner
   fields->broken = true;
 }
 
-void strut_read_fields(strut_reader *reader, strut_section room, const strut_tree *map,
+void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
                        strut_owner owner, strut_fields *fields) {
-  *fields = (strut_fields){.room = room, .map = map};
+  *fields = (strut_fields){.section = section, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, map->place, "expected a mapping {key: value, ...} for %s, found %s",
-                       strut_owner_text(reader, owner), strut_found(reader, map));
+    strut_report_error(reader, map->place,
+                       "expected a mapping {key: value, ...} for %s, found %s%s",
+                       strut_owner_text(reader, owner), strut_found(reader, map),
+                       strut_lacks_space(map) ? "; write a space after the colon" : "");
     fields->broken = true;
     strut_suppress_missing(fields);
     return;
   }
   for (const strut_tree *k = map->first; k; k = k->next->next)
     read_pair_of_map(reader, fields, k, owner);
-  if (room == STRUT_ROOM_FRICTION) check_rivals(reader, fields, owner);
+  if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields, owner);
 }
 
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place) {
-  int first = strut_section_first(fields->room);
-  for (int i = 0; i < strut_section_size(fields->room); i++) {
+  int first = strut_section_first(fields->section);
+  for (int i = 0; i < strut_section_size(fields->section); i++) {
     char expected[300];
     strut_slot *slot = &fields->slot[i];
-    if (slot->state != STRUT_ABSENT || !strut_key_at(first + i)->required) continue;
+    if (slot->state != STRUT_ABSENT || strut_key_at(first + i)->need != STRUT_REQUIRED) continue;
     if (!reader->holes)
       strut_report_error(reader, place, "%s lacks '%s', expected %s",
                          strut_owner_text(reader, owner), strut_key_at(first + i)->name,
@@ -267,13 +361,13 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
   }
 }
 
-bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
+bool strut_read_section(strut_reader *reader, int key, strut_section section, const char *owner,
                         strut_fields *fields) {
   const strut_slot *slot = strut_slot_of(&reader->top, key);
-  *fields = (strut_fields){.room = room, .broken = slot->state == STRUT_BROKEN};
+  *fields = (strut_fields){.section = section, .broken = slot->state == STRUT_BROKEN};
   if (fields->broken) strut_suppress_missing(fields);
   if (slot->state != STRUT_GIVEN) return false;
-  strut_read_fields(reader, room, slot->value, (strut_owner){owner, NULL}, fields);
+  strut_read_fields(reader, section, slot->value, (strut_owner){owner, NULL}, fields);
   return true;
 }
 

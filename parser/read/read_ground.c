@@ -4,81 +4,80 @@
 
 #include "parser/read/reader.h"
 
-/* Friction of one contact while layers of keys are laid over each other. */
+/* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
 typedef struct friction_layers {
   strut_friction friction;
-  bool any, law, statics, kinetics, stick, width; /* given so far */
-  bool broken;
+  unsigned given;         /* one bit for each key that some layer gave */
+  bool any, broken;       /* there is a layer; one could not be read */
   const strut_tree *last; /* the mapping of the top layer, */
-  strut_owner owner;      /* and whose it is */
+  strut_owner owner;      /* and what messages call it */
 } friction_layers;
 
-static void add_layer(friction_layers *f, strut_fields *fields, strut_owner owner) {
-  const struct {
-    int key;
-    bool *given_first, *given_second;
-    double *first, *second;
-  } values[] = {
-      {STRUT_KEY_FRICTION_MU, &f->statics, &f->kinetics, &f->friction.mu_static,
-       &f->friction.mu_kinetic},
-      {STRUT_KEY_FRICTION_MU_STATIC, &f->statics, NULL, &f->friction.mu_static, NULL},
-      {STRUT_KEY_FRICTION_MU_KINETIC, &f->kinetics, NULL, &f->friction.mu_kinetic, NULL},
-      {STRUT_KEY_FRICTION_STICK_VELOCITY, &f->stick, NULL, &f->friction.stick_velocity, NULL},
-      {STRUT_KEY_FRICTION_WIDTH, &f->width, NULL, &f->friction.width, NULL}};
+static unsigned key_bit(int key) {
+  return 1u << (key - strut_section_first(STRUT_SECTION_FRICTION));
+}
+
+static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fields,
+                      strut_owner owner) {
   f->any = true;
   f->last = fields->map;
   f->owner = owner;
   if (fields->broken) f->broken = true;
-  for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
-    const strut_slot *slot = strut_slot_of(fields, values[i].key);
-    if (slot->state != STRUT_GIVEN) continue;
-    *values[i].first = slot->number[0];
-    *values[i].given_first = true;
-    if (values[i].second) *values[i].second = slot->number[0];
-    if (values[i].second) *values[i].given_second = true;
-  }
-  const strut_slot *law = strut_slot_of(fields, STRUT_KEY_FRICTION_LAW);
-  if (law->state == STRUT_GIVEN) {
-    f->friction.law = (strut_friction_law)law->word;
-    f->law = true;
-  }
+  strut_store_fields(reader, fields, &reader->scene->arena, &f->friction, sizeof f->friction);
+  for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
+    if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
+  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
+  if (mu->state != STRUT_GIVEN) return;
+  f->friction.mu_static = f->friction.mu_kinetic = mu->number[0];
+  f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
 }
 
-static void lacks_speed(strut_reader *reader, const friction_layers *f, const char *key) {
+/* Reports a key that the law needs and no layer gives, at the top layer. */
+static void report_lack(strut_reader *reader, const friction_layers *f, int key) {
   char expected[200];
+  bool speed = strut_key_at(key)->measure == STRUT_MEASURE_VELOCITY;
   strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
-                     strut_owner_text(reader, f->owner), key,
-                     strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected));
+                     strut_owner_text(reader, f->owner), strut_key_at(key)->name,
+                     speed ? strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected)
+                           : "a number such as 0.5");
 }
 
-/* Is what the friction law needs complete? Says at the top layer what is missing, once each. */
-static bool finish_friction(strut_reader *reader, friction_layers *f, const strut_tree **said) {
+/* Is what the friction law needs complete? What is missing is reported once for each top layer. */
+static bool complete_friction(strut_reader *reader, friction_layers *f,
+                              const strut_tree **reported) {
   if (!f->any || f->broken) return !f->broken;
-  if (!f->law) f->friction.law = STRUT_FRICTION_KARNOPP;
+  if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
   if (f->friction.law == STRUT_FRICTION_NONE) return true;
   bool smooth = f->friction.law == STRUT_FRICTION_SMOOTH;
-  bool stick = f->friction.law != STRUT_FRICTION_KARNOPP || f->stick, width = !smooth || f->width;
-  const char *missing = !f->statics && !f->kinetics ? "mu"
-                        : !f->statics && !smooth    ? "mu_static"
-                        : !f->kinetics              ? "mu_kinetic"
-                                                    : NULL;
-  if (!missing && stick && width) return true;
-  if (*said == f->last) return false;
-  *said = f->last;
-  if (missing)
-    strut_report_error(reader, f->last->place, "%s lacks '%s', expected a number such as 0.5",
-                       strut_owner_text(reader, f->owner), missing);
-  if (!stick) lacks_speed(reader, f, "stick_velocity");
-  if (!width) lacks_speed(reader, f, "width");
-  return false;
+  bool karnopp = f->friction.law == STRUT_FRICTION_KARNOPP;
+  bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
+  bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  const struct {
+    int key;
+    bool lacks;
+  } needs[] = {
+      {STRUT_KEY_FRICTION_MU, !statics && !kinetics},
+      {STRUT_KEY_FRICTION_MU_STATIC, !statics && kinetics && !smooth},
+      {STRUT_KEY_FRICTION_MU_KINETIC, statics && !kinetics},
+      {STRUT_KEY_FRICTION_STICK_VELOCITY,
+       karnopp && !(f->given & key_bit(STRUT_KEY_FRICTION_STICK_VELOCITY))},
+      {STRUT_KEY_FRICTION_WIDTH, smooth && !(f->given & key_bit(STRUT_KEY_FRICTION_WIDTH))}};
+  bool complete = true;
+  for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
+    if (!needs[i].lacks) continue;
+    complete = false;
+    if (*reported != f->last) report_lack(reader, f, needs[i].key);
+  }
+  if (!complete) *reported = f->last;
+  return complete;
 }
 
-/* What the contacts of the ground have in common. */
+/* What all contacts of the ground start from. */
 typedef struct ground_defaults {
-  double stiffness, damping, dissipation;
+  strut_contact contact;
   friction_layers friction;
   bool broken;
-  const strut_tree *said;
+  const strut_tree *reported; /* the layer of friction whose lacks were reported last */
 } ground_defaults;
 
 /* Lays the friction of the contact's groups, then its own, over the ground's. */
@@ -91,13 +90,13 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
   for (size_t g = 0; g < count; g++)
     for (size_t i = 0; i < groups[g]->count; i++)
       if (groups[g]->items[i].nested)
-        add_layer(layers, groups[g]->items[i].nested,
+        add_layer(reader, layers, groups[g]->items[i].nested,
                   (strut_owner){"the friction of group", groups[g]->name});
   if (own->state != STRUT_GIVEN || own->from) return;
   strut_fields nested;
   strut_owner mine = {"the friction of contact", owner.name};
-  strut_read_fields(reader, STRUT_ROOM_FRICTION, own->value, mine, &nested);
-  add_layer(layers, &nested, mine);
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, own->value, mine, &nested);
+  add_layer(reader, layers, &nested, mine);
 }
 
 static void read_contact(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
@@ -105,21 +104,15 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   friction_layers layers = defaults->friction;
   strut_owner owner = {"contact", reader->scene->nodes[contact->node].name};
   bool fine = !defaults->broken;
-  contact->stiffness = defaults->stiffness;
-  contact->damping = defaults->damping;
-  contact->dissipation = defaults->dissipation;
   if (key) {
     strut_fields fields;
-    strut_read_fields(reader, STRUT_ROOM_CONTACT, key->next, owner, &fields);
+    strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
-    contact->stiffness = strut_number_or(&fields, STRUT_KEY_CONTACT_STIFFNESS, defaults->stiffness);
-    contact->damping = strut_number_or(&fields, STRUT_KEY_CONTACT_DAMPING, defaults->damping);
-    contact->dissipation =
-        strut_number_or(&fields, STRUT_KEY_CONTACT_DISSIPATION, defaults->dissipation);
+    strut_store_fields(reader, &fields, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
     if (fields.broken) fine = false;
   }
-  if (!finish_friction(reader, &layers, &defaults->said)) fine = false;
+  if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
   contact->friction = layers.friction;
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
@@ -140,7 +133,7 @@ static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' stands twice in 'nodes' of the ground",
+      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of the ground",
                          item->text);
       fine = false;
     } else {
@@ -186,7 +179,7 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
   for (size_t i = 0; i < count; i++) {
     if (!touches[i]) continue;
     size_t c = scene->contact_count++;
-    scene->contacts[c] = strut_contact_default();
+    scene->contacts[c] = defaults->contact;
     scene->contacts[c].node = (int32_t)i;
     read_contact(reader, entry[i], defaults, &scene->contacts[c], &reader->contact_source[c]);
   }
@@ -195,28 +188,20 @@ static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
 void strut_read_ground(strut_reader *reader) {
   strut_fields *fields = &reader->ground;
   strut_owner owner = {"the ground", NULL};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_ROOM_GROUND, owner.kind, fields))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
     return;
   strut_require(reader, fields, owner,
                 strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place);
-  strut_ground *ground = &reader->scene->ground;
-  ground->present = true;
-  ground->height = strut_number_or(fields, STRUT_KEY_GROUND_HEIGHT, 0.0);
-  ground->slope = strut_number_or(fields, STRUT_KEY_GROUND_SLOPE, 0.0);
-  ground->belt_speed = strut_number_or(fields, STRUT_KEY_GROUND_BELT_SPEED, 0.0);
-  const strut_slot *law = strut_slot_of(fields, STRUT_KEY_GROUND_DAMPING_LAW);
-  if (law->state == STRUT_GIVEN) ground->damping_law = (strut_ground_damping)law->word;
-  ground_defaults defaults = {
-      .stiffness = strut_number_or(fields, STRUT_KEY_GROUND_STIFFNESS, 1.0),
-      .damping = strut_number_or(fields, STRUT_KEY_GROUND_DAMPING, 0.0),
-      .dissipation = strut_number_or(fields, STRUT_KEY_GROUND_DISSIPATION, 0.0),
-      .broken = fields->broken};
+  strut_ground_section section = {.ground = {.present = true}, .contact = strut_contact_default()};
+  strut_store_fields(reader, fields, &reader->scene->arena, &section, sizeof section);
+  reader->scene->ground = section.ground;
+  ground_defaults defaults = {.contact = section.contact, .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
   if (friction->state == STRUT_GIVEN) {
     strut_fields nested;
     strut_owner mine = {"the friction of the ground", NULL};
-    strut_read_fields(reader, STRUT_ROOM_FRICTION, friction->value, mine, &nested);
-    add_layer(&defaults.friction, &nested, mine);
+    strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
+    add_layer(reader, &defaults.friction, &nested, mine);
   }
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN)
     read_contacts(reader, &defaults);

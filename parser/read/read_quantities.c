@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/language/quantities.h"
 #include "parser/read/reader.h"
 
 /* Most characters of a name that a message repeats. */
@@ -20,7 +19,7 @@ static const struct column_row {
 #undef STRUT_COLUMN_ROW
 };
 
-/* The owners that are no things of the scene. */
+/* The owners that every scene has. */
 static const struct group_row {
   const char *word, *name;
   strut_column_owner owner;
@@ -54,14 +53,14 @@ typedef struct found_owner {
 
 static int shown(size_t length) { return length > SHOWN_MOST ? SHOWN_MOST : (int)length; }
 
-/* A piece of the text as a text of its own, in scratch. */
+/* A copy of the piece, in scratch. */
 static const char *text_of(strut_reader *reader, strut_piece piece) {
   const char *text = strut_arena_text(&reader->scratch, piece.text, piece.length);
   if (!text) reader->out_of_memory = true;
   return text ? text : "";
 }
 
-/* Nodes, members and the owners that every scene has, for suggestions. */
+/* Nodes, members and the owners above, for suggestions. */
 static const char *owner_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   const strut_scene *scene = reader->scene;
@@ -150,7 +149,7 @@ static bool has_contact(const strut_scene *scene, int32_t node) {
   return false;
 }
 
-/* Do the columns of the ground mean anything for this node? */
+/* Does the node have the columns of the ground? If not, that is reported. */
 static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
                     strut_refusal *refusal) {
   const strut_scene *scene = reader->scene;
@@ -160,12 +159,12 @@ static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
   if (ground->state == STRUT_BROKEN || reader->ground.broken) return false; /* reported */
   if (ground->state == STRUT_ABSENT)
     snprintf(refusal->text, sizeof refusal->text,
-             "there is no ground, so node '%s' has no '%s'; 'ground' says what it is",
+             "there is no ground, so node '%s' has no '%s'; add 'ground' to the scene",
              scene->nodes[node].name, columns[kind].word);
   else if (of_contact && !has_contact(scene, node))
     snprintf(refusal->text, sizeof refusal->text,
-             "node '%s' does not touch the ground, so it has no '%s'; 'nodes' of the ground says "
-             "which nodes may",
+             "node '%s' does not touch the ground, so it has no '%s'; list it in 'nodes' "
+             "of the ground",
              scene->nodes[node].name, columns[kind].word);
   else
     return true;
@@ -184,9 +183,9 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     }
   found_owner found = find_owner(reader, NULL, word);
   if (!found.owners) return 0;
-  snprintf(refusal->text, sizeof refusal->text, "'%.*s' alone is no number; write '%.*s.' and %s",
-           shown(word.length), word.text, shown(word.length), word.text,
-           field_list(found.owners, list, sizeof list));
+  snprintf(refusal->text, sizeof refusal->text,
+           "'%.*s' alone is not a number; write '%.*s.' and %s", shown(word.length), word.text,
+           shown(word.length), word.text, field_list(found.owners, list, sizeof list));
   return -1;
 }
 
@@ -292,7 +291,7 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   return true;
 }
 
-/* Without a unit it is relative, else in the unit of the quantity. */
+/* Without a unit the accuracy is relative, otherwise absolute. */
 static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                           strut_dimension dimension, bool known, strut_quantity_definition *d) {
   char expected[120], found[80];
@@ -317,7 +316,7 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
     *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
 }
 
-/* Within {...} a comma ends a text that has no quotes: angle(a, b) becomes "angle(a". */
+/* Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". */
 static bool ends_at_comma(strut_reader *reader, const strut_tree *of, strut_owner owner) {
   int open = 0;
   if (!of || of->kind != STRUT_TREE_SCALAR || of->quoted) return false;
@@ -336,12 +335,12 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   strut_owner owner = {"quantity", key->text};
   char unit[STRUT_SUFFIX_TEXT];
   strut_dimension dimension = STRUT_DIM_NONE;
-  strut_fields fields = {.room = STRUT_ROOM_QUANTITY};
+  strut_fields fields = {.section = STRUT_SECTION_QUANTITY};
   const strut_tree *of = key->next;
   bool map = of->kind == STRUT_TREE_MAP;
   if (ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, owner)) return;
   if (map) {
-    strut_read_fields(reader, STRUT_ROOM_QUANTITY, of, owner, &fields);
+    strut_read_fields(reader, STRUT_SECTION_QUANTITY, of, owner, &fields);
     strut_require(reader, &fields, owner, key->place);
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_QUANTITY_OF);
     of = slot->state == STRUT_GIVEN ? slot->value : NULL;
@@ -351,8 +350,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
     return;
   }
   bool known = of && read_expression(reader, of, owner, d, &dimension);
-  const strut_slot *take = strut_slot_of(&fields, STRUT_KEY_QUANTITY_TAKE);
-  if (take->state == STRUT_GIVEN) d->take = (strut_reduction)take->word;
+  strut_store_fields(reader, &fields, &reader->scene->arena, d, sizeof *d);
   if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
                 known, d);
@@ -360,7 +358,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   d->unit = *unit ? strut_keep_text(reader, unit) : "1";
 }
 
-/* A study's table has a column for it, and `keep` names it. */
+/* The name becomes a column of a study's table and a word of `keep`. */
 static bool may_be_called(strut_reader *reader, const strut_tree *key) {
   if (!strut_read_name(reader, key, "quantity")) return false;
   if (strut_word_find(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, key->text) < 0) return true;

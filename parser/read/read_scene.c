@@ -1,33 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The whole way from text to a checked scene. See read_scene.h; the parts are in reader.h. */
+/* Reading a whole scene: text, tree, sections, check. See read_scene.h; the parts are in reader.h. */
 #include "parser/read/read_scene.h"
 
+#include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "parser/read/reader.h"
+#include "parser/yaml/document.h"
 
-/* A text of the scene, in its own memory; "" where there is none. */
-static const char *keep_text(strut_reader *reader, int key) {
-  const strut_slot *slot = strut_slot_of(&reader->top, key);
-  if (slot->state != STRUT_GIVEN) return "";
-  return strut_keep_text(reader, slot->value->text);
-}
-
+/* The scene's own numbers may use parameters: they are read here, when these are known. */
 static void read_head(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
-  scene->name = keep_text(reader, STRUT_KEY_SCENE_NAME);
-  scene->description = keep_text(reader, STRUT_KEY_SCENE_DESCRIPTION);
-  scene->source = keep_text(reader, STRUT_KEY_SCENE_SOURCE);
-  const strut_slot *model = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MASS_MODEL);
-  const strut_slot *bars = strut_slot_of(&reader->top, STRUT_KEY_SCENE_BARS);
-  strut_slot *gravity = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GRAVITY);
-  if (model->state == STRUT_GIVEN) scene->mass_model = (strut_mass_model)model->word;
-  if (bars->state == STRUT_GIVEN) scene->bar_model = (strut_bar_model)bars->word;
-  if (gravity->state == STRUT_GIVEN &&
-      !strut_read_pair(reader, gravity->value, "gravity", (strut_owner){"the scene", NULL},
-                       STRUT_DIM_ACCELERATION, scene->gravity))
-    gravity->state = STRUT_BROKEN;
+  strut_owner owner = {"the scene", NULL};
+  for (int i = 0; i < strut_section_size(STRUT_SECTION_SCENE); i++) {
+    strut_slot *slot = &reader->top.slot[i];
+    int key = strut_section_first(STRUT_SECTION_SCENE) + i;
+    if (slot->state != STRUT_GIVEN || strut_key_at(key)->type != STRUT_TYPE_PAIR) continue;
+    bool fine = strut_read_pair(reader, slot->value, strut_key_at(key)->name, owner,
+                                strut_measure_dimension(strut_key_at(key)->measure), slot->number);
+    if (!fine) slot->state = STRUT_BROKEN;
+  }
+  strut_store_fields(reader, &reader->top, &reader->scene->arena, reader->scene,
+                     sizeof *reader->scene);
 }
 
 /* Stops behind the section in which the diagnostics became full. */
@@ -48,17 +43,31 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
   if (!reader->failed) strut_report_idle_settings(reader);
 }
 
-/* The mappings of which there is one: before they are read, and where they are not there. */
-static void prepare(strut_reader *reader) {
-  reader->ground.room = STRUT_ROOM_GROUND;
-  reader->initial.room = STRUT_ROOM_INITIAL;
-  reader->settle.room = STRUT_ROOM_SETTLE;
-  reader->search.room = STRUT_ROOM_EQUILIBRIA;
-  reader->solver.room = STRUT_ROOM_SOLVER;
-  reader->run.room = STRUT_ROOM_RUN;
-  reader->measure.room = STRUT_ROOM_MEASURE;
-  reader->steady.room = STRUT_ROOM_STEADY;
-  reader->output.room = STRUT_ROOM_OUTPUT;
+/* Sets the section of every singleton mapping, so that absent ones can be queried. */
+static void clear_sections(strut_reader *reader) {
+  reader->ground.section = STRUT_SECTION_GROUND;
+  reader->initial.section = STRUT_SECTION_INITIAL;
+  reader->settle.section = STRUT_SECTION_SETTLE;
+  reader->search.section = STRUT_SECTION_EQUILIBRIA;
+  reader->solver.section = STRUT_SECTION_SOLVER;
+  reader->run.section = STRUT_SECTION_RUN;
+  reader->measure.section = STRUT_SECTION_MEASURE;
+  reader->steady.section = STRUT_SECTION_STEADY;
+  reader->output.section = STRUT_SECTION_OUTPUT;
+}
+
+/* Does the file describe a run? */
+static bool describes_run(strut_reader *reader) {
+  const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
+  const char *step = strut_key_at(STRUT_KEY_SOLVER_STEP)->name;
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN)->key != NULL ||
+         (solver->state == STRUT_GIVEN && strut_tree_find(solver->value, step, NULL));
+}
+
+/* A study instead of a model gets one message instead of one for each line. */
+static bool is_study(const strut_tree *root) {
+  return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
+         !strut_tree_find(root, "nodes", NULL);
 }
 
 void strut_reader_target(strut_reader *reader, strut_setup *setup) {
@@ -67,21 +76,7 @@ void strut_reader_target(strut_reader *reader, strut_setup *setup) {
   reader->experiment = &setup->experiment;
 }
 
-/* Does the file say anything about a run? */
-static bool speaks_of_a_run(strut_reader *reader) {
-  const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
-  const char *step = strut_key_at(STRUT_KEY_SOLVER_STEP)->name;
-  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN)->key != NULL ||
-         (solver->state == STRUT_GIVEN && strut_tree_find(solver->value, step, NULL));
-}
-
-/* A study in the place of a model would be wrong in every line. */
-static bool is_study(const strut_tree *root) {
-  return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "study", NULL) &&
-         !strut_tree_find(root, "nodes", NULL);
-}
-
-/* Everything that can be said once there is a tree. */
+/* Reads and checks the tree; reports all errors. */
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
@@ -90,11 +85,11 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
                        "this is a study, expected a model; 'strut sweep' runs studies");
     return;
   }
-  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root, owner, &reader->top);
+  strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root, owner, &reader->top);
   if (!reader->top.map || reader->document.root->kind != STRUT_TREE_MAP) return;
   strut_require(reader, &reader->top, owner, strut_root_place(reader));
   if (reader->purpose == STRUT_FOR_ANY)
-    reader->purpose = speaks_of_a_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
+    reader->purpose = describes_run(reader) ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;
@@ -117,7 +112,7 @@ static void free_reader(strut_reader *reader) {
   strut_document_free(&reader->document);
 }
 
-/* From a tree that belongs to somebody else, or from the text where there is none yet. */
+/* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
 static strut_status read_from(const strut_document *document, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
                               strut_setup *setup) {
@@ -131,7 +126,7 @@ static strut_status read_from(const strut_document *document, const strut_settin
   strut_reader_target(reader, setup);
   reader->diagnostics = diagnostics;
   reader->purpose = purpose;
-  prepare(reader);
+  clear_sections(reader);
   strut_c_locale locale = strut_c_locale_enter();
   if (document)
     reader->document.root = document->root;
@@ -184,7 +179,7 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
   return STRUT_OK;
 }
 
-/* The parameters only. */
+/* Reads nothing but the parameters. */
 static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
   strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
@@ -192,9 +187,9 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   strut_setup_init(&setup);
   strut_reader_target(reader, &setup);
   reader->diagnostics = diagnostics;
-  prepare(reader);
+  clear_sections(reader);
   reader->document.root = source->document.root;
-  strut_read_fields(reader, STRUT_ROOM_SCENE, reader->document.root,
+  strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root,
                     (strut_owner){"the scene", NULL}, &reader->top);
   if (reader->document.root->kind == STRUT_TREE_MAP) strut_read_parameters(reader, NULL, 0);
   strut_status status = reader->failed ? STRUT_BAD_SCENE : keep_declared(reader, source);
@@ -220,7 +215,7 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   strut_c_locale_leave(locale);
   strut_diagnostics_free(&unused);
   if (status == STRUT_OK) return status;
-  strut_setup setup; /* once more, for everything that can be said */
+  strut_setup setup; /* read again to report all errors */
   if (status == STRUT_BAD_SCENE)
     status = strut_setup_read(&setup, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
   if (status == STRUT_OK) strut_setup_free(&setup);
@@ -252,4 +247,56 @@ strut_status strut_scene_source_read(const strut_scene_source *source,
                                      strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
   return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
+}
+
+enum { FIRST_SIZE = 64 * 1024 };
+
+static strut_status file_trouble(strut_error *error, const char *name, int code) {
+  char reason[128];
+  if (strerror_r(code, reason, sizeof reason) != 0)
+    snprintf(reason, sizeof reason, "error %d", code);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot read %s: %s", name, reason);
+}
+
+/* Reads to the end of the stream; the block grows as needed and keeps room for a NUL. */
+static strut_status read_stream(FILE *stream, const char *name, char **text, size_t *length,
+                                strut_error *error) {
+  size_t capacity = 0, used = 0, got;
+  do {
+    if (capacity < used + 2) {
+      size_t wider = capacity ? 2 * capacity : FIRST_SIZE;
+      if (wider > STRUT_TEXT_MOST + 2) wider = STRUT_TEXT_MOST + 2;
+      char *block = strut_reallocate(*text, wider, 1);
+      if (!block) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while reading %s", name);
+      *text = block;
+      capacity = wider;
+    }
+    errno = 0;
+    got = fread(*text + used, 1, capacity - used - 1, stream);
+    used += got;
+    if (used > STRUT_TEXT_MOST)
+      return strut_fail(error, STRUT_BAD_SCENE, "%s has more than %zu MiB", name,
+                        STRUT_TEXT_MOST >> 20);
+  } while (got);
+  if (ferror(stream)) return file_trouble(error, name, errno ? errno : EIO);
+  (*text)[used] = '\0';
+  *length = used;
+  return STRUT_OK;
+}
+
+strut_status strut_file_read(const char *path, char **text, size_t *length, strut_error *error) {
+  char name[400];
+  bool standard = strcmp(path, "-") == 0;
+  *text = NULL;
+  *length = 0;
+  snprintf(name, sizeof name, standard ? "the standard input" : "'%s'", path);
+  FILE *stream = standard ? stdin : fopen(path, "rb");
+  if (!stream) return file_trouble(error, name, errno);
+  strut_status status = read_stream(stream, name, text, length, error);
+  if (!standard) fclose(stream);
+  if (status != STRUT_OK) {
+    strut_release(*text);
+    *text = NULL;
+  }
+  return status;
 }

@@ -3,9 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/read/reader.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* What the values of a signal under construction measure. */
 typedef struct meaning {
@@ -56,29 +55,23 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
   return true;
 }
 
-/* A sine, half-sine, square or ramp. The keys of their rooms have the same names. */
-static bool read_wave(strut_reader *reader, strut_section room, const strut_tree *map,
+/* A sine, half-sine, square or ramp: its amplitude measures what the user of the signal needs. */
+static bool read_wave(strut_reader *reader, strut_section section, const strut_tree *map,
                       strut_owner owner, meaning *m, strut_signal *signal) {
   strut_fields fields;
-  strut_read_fields(reader, room, map, owner, &fields);
+  strut_read_fields(reader, section, map, owner, &fields);
   strut_require(reader, &fields, owner, map->place);
   bool fine = !fields.broken;
-  for (int i = 0; i < strut_section_size(room); i++) {
+  for (int i = 0; i < strut_section_size(section); i++) {
     const strut_slot *slot = &fields.slot[i];
-    const char *name = strut_key_at(strut_section_first(room) + i)->name;
+    const strut_key *key = strut_key_at(strut_section_first(section) + i);
     if (slot->state != STRUT_GIVEN) continue;
-    if (strcmp(name, "amplitude") == 0) {
-      fine = read_value(reader, slot->value, name, owner, m, &signal->amplitude) && fine;
-    } else if (strcmp(name, "frequency") == 0) {
-      signal->frequency = slot->number[0];
-    } else if (strcmp(name, "phase") == 0) {
-      signal->phase = slot->number[0] / TWO_PI;
-    } else if (strcmp(name, "start") == 0) {
-      signal->start = slot->number[0];
-    } else {
-      signal->stop = slot->number[0];
-    }
+    if (key->measure == STRUT_MEASURE_CONTEXT)
+      fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
+    else if (key->measure == STRUT_MEASURE_ANGLE)
+      signal->phase = slot->number[0] / STRUT_TAU; /* kept in turns */
   }
+  strut_store_fields(reader, &fields, &reader->scene->arena, signal, sizeof *signal);
   return fine;
 }
 
@@ -134,11 +127,9 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
-  static const strut_section rooms[] = {STRUT_ROOM_SIGNAL, STRUT_ROOM_SINE, STRUT_ROOM_HALF_SINE,
-                                        STRUT_ROOM_SQUARE, STRUT_ROOM_RAMP};
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_SIGNAL, map, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
   if (map->count != 1 && !fields.broken)
     strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
                        strut_owner_text(reader, owner), (unsigned)map->count);
@@ -155,7 +146,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal);
   else
-    fine = read_wave(reader, rooms[chosen], value, owner, &m, &signal);
+    fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal);
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }
@@ -176,7 +167,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
     return -1;
   }
   if (reader->signal_depth >= STRUT_DEEPEST_SIGNAL) {
-    strut_report_error(reader, named->key->place, "signals contain each other more than %d deep",
+    strut_report_error(reader, named->key->place, "signals are nested more than %d deep",
                        STRUT_DEEPEST_SIGNAL);
     return -1;
   }

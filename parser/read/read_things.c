@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Nodes and members, and mappings from nodes to pairs. See reader.h. */
+/* Nodes and members, and what drives them: actuators and loads. See reader.h. */
 #include <math.h>
 #include <string.h>
 
@@ -31,17 +31,10 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
     return false;
   }
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_NODE, value, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_NODE, value, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
-  const strut_slot *position = strut_slot_of(&fields, STRUT_KEY_NODE_POSITION);
-  const strut_slot *fixed = strut_slot_of(&fields, STRUT_KEY_NODE_FIXED);
-  const strut_slot *mass = strut_slot_of(&fields, STRUT_KEY_NODE_MASS);
-  if (position->state == STRUT_GIVEN)
-    memcpy(node->position, position->number, sizeof node->position);
-  if (fixed->state == STRUT_GIVEN)
-    for (int c = 0; c < 2; c++) node->fixed[c] = (fixed->word >> c & 1) != 0;
-  if (mass->state == STRUT_GIVEN) node->mass = mass->number[0];
+  strut_store_fields(reader, &fields, &reader->scene->arena, node, sizeof *node);
   return fine && !fields.broken;
 }
 
@@ -76,11 +69,10 @@ static bool read_ends(strut_reader *reader, const strut_slot *slot, strut_owner 
   return node[0] >= 0 && node[1] >= 0;
 }
 
-static void take_rest(strut_fields *fields, strut_member *member) {
-  static const int keys[] = {STRUT_KEY_MEMBER_REST_LENGTH_RATIO, STRUT_KEY_MEMBER_REST_LENGTH,
-                             STRUT_KEY_MEMBER_PRETENSION, STRUT_KEY_MEMBER_FORCE_DENSITY};
+/* Four keys, of which a member has one at most, say the rest length in different ways. */
+static void store_rest_length(strut_fields *fields, strut_member *member) {
   for (int kind = STRUT_REST_RATIO; kind <= STRUT_REST_FORCE_DENSITY; kind++) {
-    const strut_slot *slot = strut_slot_of(fields, keys[kind]);
+    const strut_slot *slot = strut_slot_of(fields, strut_rest_key((strut_rest_kind)kind));
     if (slot->state != STRUT_GIVEN) continue;
     member->rest_kind = (strut_rest_kind)kind;
     member->rest_value = slot->number[0];
@@ -91,22 +83,17 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   strut_owner owner = {"member", member->name};
   bool fine = strut_read_name(reader, key, "member");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_ROOM_MEMBER, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_MEMBER, key->next, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_MEMBER_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   if (!read_ends(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member->node)) {
     reader->ends_unknown = true;
     fine = false;
   }
-  const strut_slot *kind = strut_slot_of(&fields, STRUT_KEY_MEMBER_KIND);
-  if (kind->state == STRUT_GIVEN) member->kind = (strut_member_kind)kind->word;
-  member->stiffness = strut_number_or(&fields, STRUT_KEY_MEMBER_STIFFNESS, 0.0);
-  member->axial_stiffness = strut_number_or(&fields, STRUT_KEY_MEMBER_AXIAL_STIFFNESS, 0.0);
-  member->damping = strut_number_or(&fields, STRUT_KEY_MEMBER_DAMPING, 0.0);
-  member->mass = strut_number_or(&fields, STRUT_KEY_MEMBER_MASS, 0.0);
+  strut_store_fields(reader, &fields, &reader->scene->arena, member, sizeof *member);
   if (strut_slot_of(&fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
     reader->masses_unknown = true;
-  take_rest(&fields, member);
+  store_rest_length(&fields, member);
   return fine && !fields.broken;
 }
 
@@ -148,4 +135,89 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
       take(reader, node, pair, k->next);
   }
   return fine;
+}
+
+static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_actuator *actuator) {
+  strut_owner owner = {"actuator", actuator->name};
+  strut_dimension length = STRUT_DIM_LENGTH;
+  bool fine = strut_read_name(reader, key, "actuator");
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_ACTUATOR, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
+  const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_SIGNAL);
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
+  if (member->state == STRUT_GIVEN && known)
+    actuator->member =
+        strut_read_reference(reader, member->value, "member", owner, "member",
+                             &reader->member_names, strut_member_name, reader->scene->member_count);
+  if (signal->state == STRUT_GIVEN)
+    actuator->signal = strut_read_signal(reader, signal->value, "signal", owner, &length);
+  return fine && !fields.broken && actuator->member >= 0 && actuator->signal >= 0;
+}
+
+static void read_actuators(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_ACTUATORS);
+  if (!map) return;
+  scene->actuators =
+      strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->actuators);
+  reader->actuator_source =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->actuator_source);
+  if (!scene->actuators || !reader->actuator_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t i = strut_next_entry(reader, &scene->actuator_count);
+    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1};
+    strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
+    bool fine = read_actuator(reader, key, &scene->actuators[i]);
+    reader->actuator_source[i] = (strut_source){key, key->next, !fine};
+  }
+}
+
+static bool read_load(strut_reader *reader, const strut_tree *key, strut_load *load) {
+  strut_owner owner = {"load", load->name};
+  strut_dimension factor = STRUT_DIM_NONE;
+  bool fine = strut_read_name(reader, key, "load");
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_LOAD, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *node = strut_slot_of(&fields, STRUT_KEY_LOAD_NODE);
+  const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_LOAD_SIGNAL);
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  if (node->state == STRUT_GIVEN && known)
+    load->node =
+        strut_read_reference(reader, node->value, "node", owner, "node", &reader->node_names,
+                             strut_node_name, reader->scene->node_count);
+  if (load->node < 0) reader->ends_unknown = true;
+  strut_store_fields(reader, &fields, &reader->scene->arena, load, sizeof *load);
+  if (signal->state == STRUT_GIVEN) {
+    load->signal = strut_read_signal(reader, signal->value, "signal", owner, &factor);
+    if (load->signal < 0) fine = false;
+  }
+  return fine && !fields.broken && load->node >= 0;
+}
+
+static void read_loads(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_LOADS);
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_LOADS)->state == STRUT_BROKEN)
+    reader->ends_unknown = true;
+  if (!map) return;
+  scene->loads = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->loads);
+  reader->load_source =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->load_source);
+  if (!scene->loads || !reader->load_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t i = strut_next_entry(reader, &scene->load_count);
+    scene->loads[i] =
+        (strut_load){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
+    strut_add_name(reader, &reader->load_names, scene->loads[i].name, i);
+    bool fine = read_load(reader, key, &scene->loads[i]);
+    reader->load_source[i] = (strut_source){key, key->next, !fine};
+  }
+}
+
+void strut_read_drives(strut_reader *reader) {
+  read_actuators(reader);
+  read_loads(reader);
 }

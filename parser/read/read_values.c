@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Messages of the reader, and single values: numbers, pairs, references. See reader.h. */
+#include <assert.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -110,6 +112,19 @@ bool strut_is_null(const strut_tree *value) {
   return false;
 }
 
+bool strut_lacks_space(const strut_tree *value) {
+  if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
+  size_t word = strspn(value->text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");
+  const char *colon = value->text + word;
+  return word && colon[0] == ':' && colon[1] && colon[1] != ' ';
+}
+
+bool strut_lacks_space_after(const strut_tree *value, const char *name) {
+  size_t length = strlen(name);
+  return strut_lacks_space(value) && strncmp(value->text, name, length) == 0 &&
+         value->text[length] == ':';
+}
+
 const char *strut_found(strut_reader *reader, const strut_tree *value) {
   strut_arena *arena = &reader->scratch;
   if (strut_diagnostics_full(reader->diagnostics)) return "";
@@ -147,10 +162,21 @@ bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const ch
   return strut_read_program(reader, value, key, owner, NULL, quantity);
 }
 
+/* A parameter that is called like a unit is reported once, however often the unit is used. */
+static bool is_reported(strut_reader *reader, strut_piece name) {
+  char text[LONGEST_NAME + 1];
+  snprintf(text, sizeof text, "%.*s", (int)name.length, name.text);
+  strut_parameter_state *parameter = strut_parameter_find(reader, text);
+  if (!parameter || parameter->ambiguous) return parameter != NULL;
+  parameter->ambiguous = true;
+  return false;
+}
+
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity) {
   strut_expression_error error;
   error.message[0] = '\0';
+  error.parameter.length = 0;
   strut_scope scope = strut_parameter_scope(reader);
   const strut_tree *asked_before = reader->asking;
   const char *set_before = reader->asking_set;
@@ -160,6 +186,10 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   reader->asking = asked_before;
   reader->asking_set = set_before;
   if (!fine && scope.names) reader->suggestions += reader->parameter_count;
+  if (!fine && error.parameter.length && is_reported(reader, error.parameter)) {
+    reader->failed = true;
+    return false;
+  }
   if (!fine && error.message[0])
     strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s", key,
                        strut_owner_text(reader, owner), error.message);
@@ -174,6 +204,22 @@ static bool in_range(strut_reader *reader, const strut_tree *value, const char *
   strut_report_error(
       reader, value->place, "'%s' of %s must %s, found %g", key, strut_owner_text(reader, owner),
       range == STRUT_RANGE_NOT_NEGATIVE ? "not be negative" : "be above zero", number);
+  return false;
+}
+
+bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
+                       strut_owner owner, double number) {
+  strut_key_limits limits = key->limits;
+  assert(limits.range == STRUT_RANGE_WHOLE && limits.least >= 0.0);
+  if (limits.least == 0.0 &&
+      !in_range(reader, value, key->name, owner, STRUT_RANGE_NOT_NEGATIVE, number))
+    return false;
+  if (number == floor(number) && number >= limits.least && number <= limits.most) return true;
+  char least[40] = "";
+  if (limits.least > 0.0) snprintf(least, sizeof least, "from %.0f ", limits.least);
+  strut_report_error(reader, value->place, "'%s' of %s must be a whole number %s%s %.0f, found %g",
+                     key->name, strut_owner_text(reader, owner), least, *least ? "to" : "up to",
+                     limits.most, number);
   return false;
 }
 
@@ -206,9 +252,11 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
     return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
   }
   const char *example = strut_dimension_example(dimension);
+  bool longer = value->kind == STRUT_TREE_LIST && value->count > 2;
   strut_report_error(
-      reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s",
-      example ? example : "1", key, strut_owner_text(reader, owner), strut_found(reader, value));
+      reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s%s",
+      example ? example : "1", key, strut_owner_text(reader, owner), strut_found(reader, value),
+      longer ? "; scenes are planar, and the decimal mark is a point" : "");
   return false;
 }
 
@@ -240,8 +288,8 @@ bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *ki
   plain.quoted = false;
   if (length && !*c && length <= LONGEST_NAME && !strut_is_null(&plain)) return true;
   if (length > LONGEST_NAME && !*c)
-    strut_report_error(reader, key->place, "the name of a %s may have %d bytes, found %zu", kind,
-                       (int)LONGEST_NAME, length);
+    strut_report_error(reader, key->place, "the name of a %s may have at most %d bytes, found %zu",
+                       kind, (int)LONGEST_NAME, length);
   else
     strut_report_error(
         reader, key->place,

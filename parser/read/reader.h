@@ -19,35 +19,35 @@
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/document.h"
 
-/** Whom a message is about: "member 'm1'"; name may be NULL: "the solver". */
+/** The subject of a message: "member 'm1'", or "the solver" where name is NULL. */
 typedef struct strut_owner {
   const char *kind, *name;
 } strut_owner;
 
 typedef enum strut_slot_state { STRUT_ABSENT, STRUT_GIVEN, STRUT_BROKEN } strut_slot_state;
 
-/** The value of one key, as far as the table says how to read it. */
+/** The value of one key, as far as the table determines it. */
 typedef struct strut_slot {
   strut_slot_state state;
   int word;                      /* WORD: its index; WORDS: bits; FIXED: 1 x, 2 y */
   double number[2];              /* NUMBER, PAIR; SI */
-  const strut_tree *key, *value; /* where it stands */
-  struct strut_group_item *from; /* the key of a group that it came from, or NULL: its own */
+  const strut_tree *key, *value; /* its place in the tree */
+  struct strut_group_item *from; /* the group's key that gave it; NULL: its own */
 } strut_slot;
 
 /** The keys of one mapping. */
 typedef struct strut_fields {
-  strut_section room;
+  strut_section section;
   bool broken;           /* some value, or the mapping itself, could not be read */
   const strut_tree *map; /* NULL: there is none */
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
-/** One key of a group, and what it is called in the rooms that may use the group. */
+/** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
   int key[3];           /* in member, node, contact; -1: not there */
-  bool refused[3];      /* it has been reported that the room has no such key */
+  bool refused[3];      /* it has been reported that the section has no such key */
   bool found;           /* a finding has been reported here */
   strut_fields *nested; /* of a mapping: friction */
 } strut_group_item;
@@ -67,11 +67,12 @@ typedef struct strut_parameter_state {
   const strut_tree *key, *value;
   enum { STRUT_UNREAD, STRUT_READING, STRUT_READ, STRUT_FAILED } state;
   bool text;
-  bool used; /* something refers to it */
+  bool used;      /* something refers to it */
+  bool ambiguous; /* it has been reported that a unit has its name */
   strut_quantity quantity;
 } strut_parameter_state;
 
-/** A thing with a name: where it stands, and whether findings about it make sense. */
+/** A named thing: its place, and whether it was read completely, so that findings about it make sense. */
 typedef struct strut_source {
   const strut_tree *key, *value;
   bool broken;
@@ -92,7 +93,7 @@ typedef struct strut_named_signal {
   int32_t index; /* into the signals; -1: it could not be read */
 } strut_named_signal;
 
-/** How many parameters may wait for each other, and how many signals. */
+/** Longest chains of parameters and of signals that refer to each other. */
 enum { STRUT_DEEPEST_PARAMETER = 200, STRUT_DEEPEST_SIGNAL = 64 };
 
 typedef struct strut_reader {
@@ -123,11 +124,12 @@ typedef struct strut_reader {
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
   const strut_tree *asking; /* the value whose expression is being evaluated */
   const char *asking_set;   /* or the parameter whose setting is */
+  unsigned spellings;       /* one bit for each former name that was noted */
   size_t suggestions;       /* names compared so far, to bound the effort */
-  bool holes;               /* the text lacks what was refused in it: nothing is missing */
-  bool ends_unknown;        /* some member or load could not be tied to its nodes */
-  bool masses_unknown;      /* some mass could not be read */
-  bool groups_unknown;      /* somebody's groups could not be read */
+  bool holes;          /* refused parts are missing from the tree: absent keys are not reported */
+  bool ends_unknown;   /* some member or load could not be tied to its nodes */
+  bool masses_unknown; /* some mass could not be read */
+  bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
 } strut_reader;
 
@@ -148,7 +150,7 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
                        const void *context, size_t count);
 /** True while suggestions may still be looked for: they are bounded for the file as a whole. */
 bool strut_hints_left(const strut_reader *reader);
-/** "a list", "a mapping", "nothing", "'text'": what a value is instead; lives in scratch. */
+/** "a list of 3", "a mapping", "nothing", "'text'": the value in a message; lives in scratch. */
 const char *strut_found(strut_reader *reader, const strut_tree *value);
 /** The beginning of the file, for what is about all of it. */
 strut_place strut_root_place(const strut_reader *reader);
@@ -157,6 +159,10 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
                                size_t first, size_t depth);
 /** True for a plain empty scalar, ~ and null. */
 bool strut_is_null(const strut_tree *value);
+/** True for a plain text such as `mass:1 kg`, which lacks the space that would make it a key. */
+bool strut_lacks_space(const strut_tree *value);
+/** The same of a text whose key would be `name`. */
+bool strut_lacks_space_after(const strut_tree *value, const char *name);
 /** Is it a scalar that is not null? If not, that is reported. */
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected);
@@ -166,10 +172,13 @@ bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const ch
 /** The same of an expression of columns, whose program the compiler makes. */
 bool strut_read_program(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner, strut_compiler *compiler, strut_quantity *quantity);
-/** A number of the given dimension in SI. */
+/** A number of the given dimension in SI; `range` is not WHOLE. */
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, strut_dimension dimension, strut_key_range range,
                        double *number);
+/** Is the number within the limits of a WHOLE key? If not, that is reported. */
+bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
+                       strut_owner owner, double number);
 /** A list of two numbers. */
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
                      strut_owner owner, strut_dimension dimension, double number[2]);
@@ -177,7 +186,7 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
                              strut_owner owner, const char *kind, const strut_name_map *map,
                              strut_names *names, size_t count);
-/** May a thing be called so? If not, that is reported. */
+/** Is the name allowed? If not, that is reported. */
 bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *kind);
 /** Adds a name to a map; remembers when memory is out. */
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index);
@@ -192,13 +201,13 @@ size_t strut_next_entry(const strut_reader *reader, size_t *count);
 
 /** Sets what the reader fills. */
 void strut_reader_target(strut_reader *reader, strut_setup *setup);
-/** A copy in the scene's own memory; "" where that is out. */
+/** A copy in the scene's arena; "" if memory is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
 
 /* read_fields.c: mappings */
 
 /** Reads a mapping by the table. A value that is not a mapping is reported. */
-void strut_read_fields(strut_reader *reader, strut_section room, const strut_tree *map,
+void strut_read_fields(strut_reader *reader, strut_section section, const strut_tree *map,
                        strut_owner owner, strut_fields *fields);
 /** Reports what is required and absent, at the place given. */
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
@@ -206,19 +215,25 @@ void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner
 /** Reads a value by the table's line for the key. */
 void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
                      const strut_tree *value, strut_owner owner, strut_slot *slot);
-/** The slot of a key: fields->room must be the key's. */
+/** The key of that name in a section, or -1; a former name is accepted with a note. */
+int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key);
+/** The slot of a key: fields->section must be the key's. */
 strut_slot *strut_slot_of(strut_fields *fields, int key);
-/** Reports an unknown key; returns the key of the rooms that was probably meant, or -1. */
-int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *rooms,
+/** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */
+int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner);
-/** Number in a field, or the fallback where it is absent or broken. */
-double strut_number_or(strut_fields *fields, int key, double fallback);
-/** Marks every absent key as broken, so that nothing is said to be missing. */
+/**
+ * Copies every value that could be read into its field of the section's object, texts into the arena.
+ * Keys without a field, and numbers whose unit depends on the context, are left to the section's reader.
+ */
+void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
+                        void *object, size_t object_size);
+/** Marks every absent key as broken, so that none is reported as missing. */
 void strut_suppress_missing(strut_fields *fields);
-/** True where the mapping behind a key of the scene is there and could be read. */
-bool strut_read_section(strut_reader *reader, int key, strut_section room, const char *owner,
+/** Reads the mapping of a key of the scene; true if it is present and a mapping. */
+bool strut_read_section(strut_reader *reader, int key, strut_section section, const char *owner,
                         strut_fields *fields);
-/** The mapping of things behind a key of the scene, or NULL. */
+/** The mapping of names to things that is the value of a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
 
 /* groups.c */
@@ -235,9 +250,9 @@ void strut_report_unused_groups(strut_reader *reader);
 /* parameters.c */
 
 void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count);
-/** The record of what was used, for the scene. */
+/** Stores the parameters as they were used in the scene, for the record. */
 void strut_keep_parameters(strut_reader *reader);
-/** A setting that changes nothing is an error: it cannot be what was meant. */
+/** Reports settings of parameters that nothing uses. */
 void strut_report_idle_settings(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
 /** The parameter of that name, or NULL. */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The study's text and its model. See read_study.h; axes are in study_axes.c. */
+/* The study's text, its model and its figures. See read_study.h; axes are in study_axes.c. */
 #include "parser/study/read_study.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
-#include "parser/study/overlay.h"
 #include "parser/study/study_reader.h"
 
 static const strut_owner study_owner = {"the study", NULL};
@@ -59,7 +59,7 @@ static void read_settings(strut_study_reader *r, const strut_slot *slot, size_t 
   }
 }
 
-/* --set of what the study itself varies is a contradiction. */
+/* Reports --set of parameters that the study itself varies or derives. */
 static void check_overrides(strut_study_reader *r, size_t overrides) {
   strut_study_file *file = r->file;
   for (size_t i = 0; i < overrides; i++) {
@@ -85,7 +85,7 @@ static const strut_tree *quantities_of(strut_scene_source *source) {
   return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
 }
 
-/* What `keep` may name: the words of the table of keys, then the model's quantities. */
+/* The names that `keep` may contain: words of the table of keys, then the model's quantities. */
 typedef struct kept_names {
   char word[32][24];
   size_t word_count;
@@ -138,7 +138,7 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
     bool scalar = item->kind == STRUT_TREE_SCALAR;
     int word = scalar ? strut_word_find(words, item->text) : -1;
     if (scalar && is_twice(slot->value, item))
-      strut_report_error(r->reader, item->place, "'%s' stands twice in 'keep' of the study",
+      strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
     else if (word >= 0)
       study->keep |= 1u << word;
@@ -149,31 +149,75 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   }
 }
 
+static void require_column(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
+                           const char *kind, const char *name, const char *text) {
+  if (text || fields->broken) return;
+  strut_report_error(r->reader, key->place, "%s '%s' lacks '%s', expected a column of the table",
+                     kind, key->text, name);
+}
+
+/* Reports columns that the kind of figure needs. */
+static void require_columns(strut_study_reader *r, const strut_fields *fields,
+                            const strut_tree *key, const strut_study_figure *f) {
+  static const char *const kinds[] = {"figure", "map", "figure", "", ""};
+  const char *kind = kinds[f->kind];
+  if (f->kind == STRUT_FIGURE_PERIOD || f->kind == STRUT_FIGURE_SNAPSHOTS) return;
+  require_column(r, fields, key, kind, "x", f->x);
+  require_column(r, fields, key, kind, "y", f->y);
+  if (f->kind == STRUT_FIGURE_MAP) require_column(r, fields, key, kind, "color", f->color);
+}
+
+static void read_times(strut_study_reader *r, const strut_slot *slot, strut_owner owner,
+                       strut_study_figure *figure) {
+  if (slot->state != STRUT_GIVEN) return;
+  double *times =
+      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *times);
+  for (const strut_tree *item = slot->value->first; item && times; item = item->next)
+    if (strut_read_number(r->reader, item, "times", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
+                          &times[figure->time_count]))
+      figure->time_count++;
+  figure->times = times;
+}
+
+static void read_figure(strut_study_reader *r, const strut_tree *key, strut_study_figure *figure) {
+  strut_fields fields;
+  strut_owner owner = {"figure", key->text};
+  strut_read_name(r->reader, key, "figure");
+  strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
+  *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
+  strut_store_fields(r->reader, &fields, &r->file->arena, figure, sizeof *figure);
+  read_times(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_TIMES), owner, figure);
+  require_columns(r, &fields, key, figure);
+}
+
+static void read_figures(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  if (slot->state != STRUT_GIVEN) return;
+  study->figures =
+      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *study->figures);
+  for (const strut_tree *key = slot->value->first; key && study->figures; key = key->next->next)
+    read_figure(r, key, &study->figures[study->figure_count++]);
+}
+
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
-  const strut_slot *files = strut_slot_of(top, STRUT_KEY_STUDY_TRAJECTORIES);
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   strut_fields fields;
-  const char *name = strut_study_text(r, top, STRUT_KEY_STUDY_NAME);
-  const char *description = strut_study_text(r, top, STRUT_KEY_STUDY_DESCRIPTION);
-  study->name = name ? name : "";
-  study->description = description ? description : "";
-  study->trajectories = files->state == STRUT_GIVEN && files->word == 1;
+  study->name = study->description = "";
+  strut_store_fields(r->reader, top, &r->file->arena, study, sizeof *study);
   if (check->state == STRUT_GIVEN) {
-    strut_read_fields(r->reader, STRUT_ROOM_CHECK, check->value, (strut_owner){"the check", NULL},
-                      &fields);
-    const strut_slot *half = strut_slot_of(&fields, STRUT_KEY_CHECK_HALF_STEP);
-    study->half_step = half->state == STRUT_GIVEN && half->word == 1;
-    study->check_accuracy = strut_number_or(&fields, STRUT_KEY_CHECK_ACCURACY, 0.0);
+    strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value,
+                      (strut_owner){"the check", NULL}, &fields);
+    strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
   }
-  strut_study_read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
+  read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
 static size_t size_of(const strut_slot *slot) {
   return slot->state == STRUT_GIVEN ? slot->value->count : 0;
 }
 
-/* What refers to the model's parameters. */
+/* Reads what refers to the model's parameters: set, derive and axes. */
 static void read_points(strut_study_reader *r, strut_fields *top, const strut_override *overrides,
                         size_t count) {
   strut_study_file *file = r->file;
@@ -192,7 +236,7 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   check_overrides(r, count);
 }
 
-/* A model in the place of a study would be wrong in every line. */
+/* A model instead of a study gets one message instead of one for each line. */
 static bool is_model(const strut_tree *root) {
   return root->kind == STRUT_TREE_MAP && strut_tree_find(root, "nodes", NULL) &&
          !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
@@ -213,7 +257,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
                        "this is a model, expected a study, which names one");
     return STRUT_BAD_SCENE;
   }
-  strut_read_fields(reader, STRUT_ROOM_STUDY, file->document.root, study_owner, &top);
+  strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));
   read_rest(r, &top);
@@ -252,6 +296,12 @@ const char *strut_study_messages(strut_study_file *file, size_t most) {
   const char *own = strut_diagnostics_render(&file->diagnostics, most);
   const char *model =
       file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
+  return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
+}
+
+const char *strut_study_notes(strut_study_file *file) {
+  const char *own = strut_diagnostics_render_notes(&file->diagnostics);
+  const char *model = strut_diagnostics_render_notes(&file->model_diagnostics);
   return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
 }
 
@@ -306,18 +356,18 @@ strut_status strut_study_setup(const strut_study_file *file, const strut_study_v
 }
 
 /* "frequency = 10 Hz, start = I" */
-static void tell_values(const strut_study_file *file, const strut_study_value *values, char *text,
-                        size_t room) {
+static void format_values(const strut_study_file *file, const strut_study_value *values, char *text,
+                          size_t size) {
   size_t used = 0;
   *text = '\0';
-  for (size_t i = 0; i < file->column_count && used < room; i++) {
+  for (size_t i = 0; i < file->column_count && used < size; i++) {
     char number[STRUT_NUMBER_TEXT];
     const char *unit =
         file->columns[i].bare ? "1" : strut_dimension_unit(file->columns[i].dimension);
     bool plain = values[i].word || strcmp(unit, "1") == 0;
     strut_number_text(values[i].number, number);
     int n =
-        snprintf(text + used, room - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
+        snprintf(text + used, size - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
                  values[i].word ? values[i].word : number, plain ? "" : " ", plain ? "" : unit);
     used += n > 0 ? (size_t)n : 0;
   }
@@ -328,10 +378,10 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
   char text[300];
   strut_status status = read_point(file, values, &file->model_diagnostics, &setup);
   if (status == STRUT_OK) strut_setup_free(&setup);
-  if (status != STRUT_BAD_SCENE) return status;
-  tell_values(file, values, text, sizeof text);
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
-  strut_diagnose(&file->diagnostics, (strut_place){0}, "there is no model to run at %s", text);
+  if (status != STRUT_BAD_SCENE) return status;
+  format_values(file, values, text, sizeof text);
+  strut_diagnose(&file->diagnostics, (strut_place){0}, "the model cannot be run at %s", text);
   return status;
 }
 

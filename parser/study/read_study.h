@@ -32,13 +32,15 @@ typedef struct strut_study_file {
 
 /**
  * Reads the study at `path` and its model. On STRUT_BAD_SCENE strut_study_messages has every finding;
- * STRUT_FILE_TROUBLE with the reason in `error`. overrides (--set) are kept as they are.
+ * STRUT_FILE_TROUBLE with the reason in `error`. overrides (--set) are not copied.
  */
 STRUT_API strut_status strut_study_open(const char *path, const strut_override *overrides,
                                         size_t override_count, strut_study_file *file,
                                         strut_error *error);
 /** All messages as printed text, at most `most` of each file; NULL: memory is out. */
 STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
+/** All notes of the points tried, such as on former names of keys; NULL: memory is out. */
+STRUT_API const char *strut_study_notes(strut_study_file *file);
 /**
  * The scene and experiment where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
  * finding with its place. Safe from several threads.
@@ -46,7 +48,7 @@ STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
 STRUT_API strut_status strut_study_setup(const strut_study_file *file,
                                          const strut_study_value *values, strut_setup *setup,
                                          strut_error *error);
-/** The same for one thread: on STRUT_BAD_SCENE all findings go to the messages, and the values. */
+/** Like strut_study_setup, for one thread: all findings go to the messages, with the values of the axes. */
 STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
 /**
  * All that decides the results, as a text that does not change with comments, blanks and the order

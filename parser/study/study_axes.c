@@ -57,7 +57,8 @@ static bool read_list(strut_study_reader *r, along *a) {
     } else if (strut_read_scalar(r->reader, item, a->parameter->name, owner_of(a), "a text")) {
       words[i] = item->text;
       if (strlen(item->text) < 24) continue;
-      strut_report_error(r->reader, item->place, "texts of an axis may have 23 bytes, found %zu",
+      strut_report_error(r->reader, item->place,
+                         "texts of an axis may have at most 23 bytes, found %zu",
                          strlen(item->text));
       fine = false;
     } else {
@@ -81,7 +82,7 @@ static bool count_steps(strut_study_reader *r, along *a, double step) {
   strut_study_column *c = a->column;
   double steps = (c->to - c->from) / step;
   if (step == 0.0 || !(steps >= 0.0) || !isfinite(steps))
-    return refuse_range(r, a, "never arrives: 'step' leads away from 'to'");
+    return refuse_range(r, a, "never reaches 'to' with this 'step'");
   double whole = floor(steps * (1.0 + 1e-12) + 1e-9);
   if (whole >= (double)STRUT_STUDY_MOST_POINTS)
     return refuse_range(r, a, "has more than 1e9 values");
@@ -110,7 +111,7 @@ static bool read_range(strut_study_reader *r, along *a) {
   double step = 0.0;
   if (a->parameter->text)
     return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
-  strut_read_fields(r->reader, STRUT_ROOM_RANGE, a->value, owner_of(a), &fields);
+  strut_read_fields(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields);
   if (!fields.broken) strut_require(r->reader, &fields, owner_of(a), a->value->place);
   if (fields.broken) return false;
   const strut_slot *by = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP);
@@ -134,7 +135,7 @@ static bool read_range(strut_study_reader *r, along *a) {
   return count_steps(r, a, step);
 }
 
-/* Columns of the table that no axis can bear the name of. */
+/* Names of the table's own columns, which no axis may have. */
 static bool is_reserved(const strut_study_reader *r, const char *name) {
   static const char *const names[] = {"point", "status", "message"};
   bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
@@ -187,8 +188,8 @@ static const strut_tree *parameters_of(strut_study_reader *r, const strut_tree *
   if (item->count > 1) {
     strut_report_error(
         r->reader, item->first->next->next->place,
-        "an axis gives one parameter; several that go together stand in {zip: {...}}, and "
-        "axes that cross are items of their own");
+        "an axis gives one parameter; write parameters that vary together as {zip: {...}}, and "
+        "further axes as further items of the list");
     return NULL;
   }
   if (!zip) return item;
@@ -213,10 +214,10 @@ static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study
     fine = read_along(r, &a) && fine;
     axis->column_count++;
     if (fine && axis->column_count > 1 && a.count != axis->count) {
-      strut_report_error(r->reader, key->next->place,
-                         "what is zipped has one length: '%s' has %lld values, '%s' %lld",
-                         columns[0].name, (long long)axis->count, a.parameter->name,
-                         (long long)a.count);
+      strut_report_error(
+          r->reader, key->next->place,
+          "zipped parameters need equally many values: '%s' has %lld values, '%s' %lld",
+          columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
       fine = false;
     }
     if (axis->column_count == 1) axis->count = a.count;
@@ -259,6 +260,6 @@ void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
   double points = 1.0;
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
   if (points > (double)STRUT_STUDY_MOST_POINTS)
-    strut_report_error(r->reader, list->place, "the axes make %.3g points; a study has 1e9 at most",
+    strut_report_error(r->reader, list->place, "the axes make %.3g points, a study may have 1e9",
                        points);
 }

@@ -20,16 +20,21 @@ typedef struct strut_study_reader {
 
 /** The parameter of the model that a key names; NULL where that was reported. */
 const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key);
-/** A text that a key gives, in the study's arena; NULL where there is none. */
-const char *strut_study_text(strut_study_reader *r, strut_fields *fields, int key);
 /**
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.
  */
 strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, strut_error *error);
-/** Reads the figures into the study. */
-void strut_study_read_figures(strut_study_reader *r, const strut_slot *slot);
 /** Reads the axes into the study, and their columns. */
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list);
+
+/** Set in the line of every place of the study's text within the tree of the model. */
+#define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
+
+/** The place, marked as one of the study's text. */
+strut_place strut_overlay_place(strut_place place);
+
+/** Moves messages and notes at marked places from `from` to `over`, unmarked. False: memory is out. */
+bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over);
 
 #endif

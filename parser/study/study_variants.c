@@ -1,9 +1,156 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The model of a study, once for each variant, with their keys over its own. See study_reader.h. */
+/* The model of a study, once for each variant, with their keys laid over its own. See study_reader.h. */
 #include <string.h>
 
-#include "parser/study/overlay.h"
+#include "parser/language/keys.h"
 #include "parser/study/study_reader.h"
+
+/* Pairs of keys of which the first, laid over, also replaces the second. */
+static const char *const rivals[][2] = {
+    {"duration", "periods"},      {"duration", "of"},         {"periods", "duration"},
+    {"step", "accuracy"},         {"integrator", "accuracy"}, {"equilibrium", "configuration"},
+    {"equilibrium", "positions"}, {"equilibrium", "settle"},  {"configuration", "equilibrium"},
+    {"positions", "equilibrium"}, {"settle", "equilibrium"}};
+
+strut_place strut_overlay_place(strut_place place) {
+  place.line |= STRUT_OVERLAY_LINE;
+  return place;
+}
+
+/* A copy of the node that shares its children; NULL: memory is out. */
+static strut_tree *copied(strut_arena *arena, const strut_tree *node) {
+  strut_tree *copy = strut_arena_allocate(arena, 1, sizeof *copy);
+  if (!copy) return NULL;
+  *copy = *node;
+  copy->next = NULL;
+  return copy;
+}
+
+/* A copy of the whole tree with marked places. Documents have at most 64 levels. */
+static strut_tree *marked(strut_arena *arena, const strut_tree *node) {
+  strut_tree *copy = copied(arena, node);
+  if (!copy) return NULL;
+  copy->place = strut_overlay_place(copy->place);
+  copy->text = strut_arena_text(arena, node->text, strlen(node->text));
+  strut_tree **end = &copy->first;
+  for (const strut_tree *child = node->first; child && copy->text; child = child->next) {
+    *end = marked(arena, child);
+    if (!*end) return NULL;
+    end = &(*end)->next;
+  }
+  return copy->text ? copy : NULL;
+}
+
+/* Does a key laid over replace this one? Either may have its former name. */
+static bool replaced(strut_section section, const strut_tree *over, const char *key) {
+  const char *current = strut_key_current(section, key);
+  for (const strut_tree *k = over->first; k; k = k->next->next) {
+    if (strcmp(strut_key_current(section, k->text), current) == 0) return true;
+    for (size_t i = 0; i < sizeof rivals / sizeof rivals[0]; i++)
+      if (strcmp(k->text, rivals[i][0]) == 0 && strcmp(key, rivals[i][1]) == 0) return true;
+  }
+  return false;
+}
+
+static strut_tree *merged(strut_arena *arena, strut_section section, const strut_tree *base,
+                          const strut_tree *over);
+
+/* The value of a key laid over: two mappings become one. */
+static strut_tree *joined(strut_arena *arena, const strut_tree *base, const strut_tree *key) {
+  const strut_tree *below = strut_tree_find(base, key->text, NULL), *value = key->next;
+  if (below && below->kind == STRUT_TREE_MAP && value->kind == STRUT_TREE_MAP)
+    return merged(arena, strut_section_find(key->text), below, value);
+  return marked(arena, value);
+}
+
+/* A mapping with the keys of `base` that stay, then those of `over`. NULL: memory is out. */
+static strut_tree *merged(strut_arena *arena, strut_section section, const strut_tree *base,
+                          const strut_tree *over) {
+  strut_tree *map = copied(arena, base);
+  if (!map) return NULL;
+  strut_tree **end = &map->first;
+  map->count = 0;
+  map->first = NULL;
+  for (const strut_tree *k = base->first; k; k = k->next->next) {
+    if (replaced(section, over, k->text)) continue;
+    strut_tree *key = copied(arena, k), *value = copied(arena, k->next);
+    if (!key || !value) return NULL;
+    *end = key, key->next = value, end = &value->next;
+    map->count++;
+  }
+  for (const strut_tree *k = over->first; k; k = k->next->next) {
+    strut_tree bare = *k;
+    bare.first = NULL;
+    strut_tree *key = marked(arena, &bare), *value = joined(arena, base, k);
+    if (!key || !value) return NULL;
+    *end = key, key->next = value, end = &value->next;
+    map->count++;
+  }
+  return map;
+}
+
+/* A new key of the document with what is laid over as its value. */
+static bool append(strut_document *document, const char *section, const strut_tree *value) {
+  strut_tree *root = document->root, *last = root->first;
+  const strut_tree named = {.kind = STRUT_TREE_SCALAR, .place = value->place, .text = section};
+  strut_tree *key = marked(&document->arena, &named), *copy = marked(&document->arena, value);
+  if (!key || !copy) return false;
+  key->next = copy;
+  while (last && last->next) last = last->next;
+  if (last)
+    last->next = key;
+  else
+    root->first = key;
+  root->count++;
+  return true;
+}
+
+/*
+ * Lays the mapping `value` over the section of that name: its keys replace those of the section, within
+ * nested mappings too, and keys that say the same in another way (`rivals`). False: memory is out.
+ */
+static bool lay_map_over(strut_document *document, const char *section, const strut_tree *value) {
+  strut_tree *root = document->root;
+  if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
+  strut_tree *below = strut_tree_find(root, section, NULL);
+  if (!below) return append(document, section, value);
+  if (below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
+  strut_tree *map = merged(&document->arena, strut_section_find(section), below, value);
+  if (!map) return false;
+  below->first = map->first;
+  below->count = map->count;
+  return true;
+}
+
+static void split_notes(strut_diagnostics *from, strut_diagnostics *over) {
+  size_t kept = 0;
+  for (size_t i = 0; i < from->note_count; i++) {
+    strut_diagnostic note = from->notes[i];
+    if (note.place.line & STRUT_OVERLAY_LINE) {
+      note.place.line &= ~STRUT_OVERLAY_LINE;
+      strut_note(over, note.place, "%s", note.message);
+    } else {
+      from->notes[kept++] = note;
+    }
+  }
+  from->note_count = kept;
+}
+
+bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over) {
+  size_t kept = 0;
+  split_notes(from, over);
+  for (size_t i = 0; i < from->count; i++) {
+    strut_diagnostic item = from->items[i];
+    if (!(item.place.line & STRUT_OVERLAY_LINE)) {
+      from->items[kept++] = item;
+      continue;
+    }
+    item.place.line &= ~STRUT_OVERLAY_LINE;
+    strut_diagnose(over, item.place, "%s", item.message);
+  }
+  from->count = kept;
+  return !over->out_of_memory;
+}
 
 /* Sections of the model that are laid over, and the keys that do so. */
 static const struct {
@@ -26,7 +173,7 @@ static char *model_path(const char *study, const char *model) {
 }
 
 static bool lay_over(strut_document *document, const char *section, const strut_slot *slot) {
-  return slot->state != STRUT_GIVEN || strut_overlay(document, section, slot->value);
+  return slot->state != STRUT_GIVEN || lay_map_over(document, section, slot->value);
 }
 
 /* A model that cannot be read may be the study itself, or another: then that is all there is to say. */
@@ -71,8 +218,8 @@ static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_
 static void check_name(strut_study_reader *r, const strut_tree *key) {
   strut_read_name(r->reader, key, "variant");
   if (strlen(key->text) >= 24)
-    strut_report_error(r->reader, key->place, "names of variants may have 23 bytes, found %zu",
-                       strlen(key->text));
+    strut_report_error(r->reader, key->place,
+                       "names of variants may have at most 23 bytes, found %zu", strlen(key->text));
 }
 
 static strut_status open_variants(strut_study_reader *r, strut_fields *top,
@@ -82,7 +229,7 @@ static strut_status open_variants(strut_study_reader *r, strut_fields *top,
     strut_fields fields;
     strut_owner owner = {"variant", key->text};
     check_name(r, key);
-    strut_read_fields(r->reader, STRUT_ROOM_VARIANT, key->next, owner, &fields);
+    strut_read_fields(r->reader, STRUT_SECTION_VARIANT, key->next, owner, &fields);
     r->variant_names[r->variant_count++] = key->text;
     status = open_source(r, top, &fields);
   }

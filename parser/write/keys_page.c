@@ -7,52 +7,57 @@
 #include "parser/language/keys.h"
 #include "parser/write/writer.h"
 
-/* What stands above the table of each room. */
-static const char *const introductions[STRUT_ROOM_COUNT] = {
-    [STRUT_ROOM_SCENE] = "The keys of the file itself.",
-    [STRUT_ROOM_NODE] =
+/* The text above the table of each section. */
+static const char *const introductions[STRUT_SECTION_COUNT] = {
+    [STRUT_SECTION_SCENE] = "The keys at the top level of a model.",
+    [STRUT_SECTION_NODE] =
         "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.",
-    [STRUT_ROOM_MEMBER] =
-        "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Its own rest "
-        "key replaces that of its group, whichever it is; so does its own stiffness key.",
-    [STRUT_ROOM_GROUND] = "`ground: {...}`: the line that nodes may touch.",
-    [STRUT_ROOM_FRICTION] =
-        "`friction: {...}` of the ground, of a group, or of a contact; each key over the one "
-        "before. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`, and "
-        "Karnopp's "
-        "needs `stick_velocity`; the smooth law needs `mu` or `mu_kinetic`, and `width`.",
-    [STRUT_ROOM_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: what is different for one node.",
-    [STRUT_ROOM_ACTUATOR] = "`actuators: {NAME: {...}}`.",
-    [STRUT_ROOM_LOAD] = "`loads: {NAME: {...}}`.",
-    [STRUT_ROOM_SIGNAL] =
-        "A signal is a mapping with one of these keys, or the name of an entry of `signals`. Its "
-        "values measure what its user needs: a length for an actuator, a plain factor for a load.",
-    [STRUT_ROOM_SINE] = "`{sine: {...}}`.",
-    [STRUT_ROOM_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
-    [STRUT_ROOM_SQUARE] = "`{square: {...}}`.",
-    [STRUT_ROOM_RAMP] = "`{ramp: {...}}`.",
-    [STRUT_ROOM_CONFIGURATION] =
+    [STRUT_SECTION_MEMBER] =
+        "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Of the four "
+        "keys "
+        "for the rest length, the member's own replaces that of its group; the same holds for the "
+        "two "
+        "keys for the stiffness.",
+    [STRUT_SECTION_GROUND] = "`ground: {...}`: the line that nodes may touch.",
+    [STRUT_SECTION_FRICTION] =
+        "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "
+        "precedence over those of its groups, and these over those of the ground. Karnopp's law "
+        "and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs "
+        "`stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`.",
+    [STRUT_SECTION_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.",
+    [STRUT_SECTION_ACTUATOR] = "`actuators: {NAME: {...}}`.",
+    [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
+    [STRUT_SECTION_SIGNAL] =
+        "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
+        "unit of its values follows from its use: a length for an actuator, a number without unit "
+        "for a load.",
+    [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
+    [STRUT_SECTION_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
+    [STRUT_SECTION_SQUARE] = "`{square: {...}}`.",
+    [STRUT_SECTION_RAMP] = "`{ramp: {...}}`.",
+    [STRUT_SECTION_CONFIGURATION] =
         "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with "
-        "these keys. `{}` is the drawn shape. Where a node is called `contacts`, two plain values "
-        "behind that key are its position.",
-    [STRUT_ROOM_INITIAL] = "`initial: {...}`.",
-    [STRUT_ROOM_SETTLE] = "`initial: {settle: {...}}`.",
-    [STRUT_ROOM_EQUILIBRIA] =
-        "`equilibria: {...}`: what `strut equilibria` and `initial: {equilibrium: NAME}` look for.",
-    [STRUT_ROOM_SOLVER] = "`solver: {...}`.",
-    [STRUT_ROOM_RUN] = "`run: {...}`: either a `duration`, or `periods` and `of`.",
-    [STRUT_ROOM_MEASURE] = "`run: {measure: {...}}`.",
-    [STRUT_ROOM_QUANTITY] = "`run: {measure: {quantities: {NAME: {...}}}}`.",
-    [STRUT_ROOM_STEADY] = "`run: {measure: {steady: {...}}}`.",
-    [STRUT_ROOM_OUTPUT] = "`output: {...}`.",
-    [STRUT_ROOM_STUDY] =
-        "A study is a file of its own: what `strut sweep` runs. Expressions may use the model's "
-        "parameters in `set` and `derive`.",
-    [STRUT_ROOM_RANGE] =
+        "these keys. `{}` is the drawn shape. If a node is called `contacts`, that key followed by "
+        "two plain values is its position.",
+    [STRUT_SECTION_INITIAL] = "`initial: {...}`.",
+    [STRUT_SECTION_SETTLE] = "`initial: {settle: {...}}`.",
+    [STRUT_SECTION_EQUILIBRIA] =
+        "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: "
+        "NAME}`.",
+    [STRUT_SECTION_SOLVER] = "`solver: {...}`.",
+    [STRUT_SECTION_RUN] = "`run: {...}`: either `duration`, or `periods` and `of`.",
+    [STRUT_SECTION_MEASURE] = "`run: {measure: {...}}`.",
+    [STRUT_SECTION_QUANTITY] = "`run: {measure: {quantities: {NAME: {...}}}}`.",
+    [STRUT_SECTION_STEADY] = "`run: {measure: {steady: {...}}}`.",
+    [STRUT_SECTION_OUTPUT] = "`output: {...}`.",
+    [STRUT_SECTION_STUDY] =
+        "The keys at the top level of a study, the file that `strut sweep` runs. Expressions in "
+        "`set` and `derive` may use the model's parameters.",
+    [STRUT_SECTION_RANGE] =
         "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
-    [STRUT_ROOM_VARIANT] = "`variants: {NAME: {...}}` of a study.",
-    [STRUT_ROOM_CHECK] = "`check: {...}` of a study.",
-    [STRUT_ROOM_FIGURE] = "`figures: {NAME: {...}}` of a study."};
+    [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
+    [STRUT_SECTION_CHECK] = "`check: {...}` of a study.",
+    [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study."};
 
 /* "none, x, y or both", each in code style. */
 static void put_words(strut_writer *writer, const char *words) {
@@ -69,12 +74,26 @@ static void put_unit(strut_writer *writer, const strut_key *key) {
   bool number = key->type == STRUT_TYPE_NUMBER || key->type == STRUT_TYPE_PAIR;
   if (!number || key->measure == STRUT_MEASURE_NONE) return;
   if (key->measure == STRUT_MEASURE_CONTEXT) {
-    strut_put(writer, " in the unit of its use");
+    strut_put(writer, " in a unit that depends on its use");
     return;
   }
   strut_put(writer, " [");
   strut_put(writer, strut_dimension_unit(strut_measure_dimension(key->measure)));
   strut_put(writer, "]");
+}
+
+static void put_limits(strut_writer *writer, strut_key_limits limits) {
+  switch (limits.range) {
+    case STRUT_RANGE_NOT_NEGATIVE: strut_put(writer, ", not negative"); break;
+    case STRUT_RANGE_ABOVE_ZERO: strut_put(writer, ", positive"); break;
+    case STRUT_RANGE_WHOLE:
+      strut_put(writer, " from ");
+      strut_put_number(writer, limits.least);
+      strut_put(writer, " to ");
+      strut_put_number(writer, limits.most);
+      break;
+    default: break;
+  }
 }
 
 static void put_type(strut_writer *writer, const strut_key *key) {
@@ -104,6 +123,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
     strut_put(writer, ")");
     return;
   }
+  if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   if (types[key->type]) strut_put(writer, types[key->type]);
   if (key->type == STRUT_TYPE_THINGS) {
     strut_put(writer, key->words);
@@ -111,26 +131,25 @@ static void put_type(strut_writer *writer, const strut_key *key) {
     put_words(writer, key->words);
   }
   put_unit(writer, key);
-  if (key->range == STRUT_RANGE_NOT_NEGATIVE) strut_put(writer, ", not negative");
-  if (key->range == STRUT_RANGE_ABOVE_ZERO) strut_put(writer, ", above zero");
+  put_limits(writer, key->limits);
 }
 
-static void put_room(strut_writer *writer, strut_section room) {
+static void put_section(strut_writer *writer, strut_section section) {
   strut_put(writer, "\n## ");
-  strut_put(writer, strut_section_name(room));
+  strut_put(writer, strut_section_name(section));
   strut_put(writer, "\n\n");
-  strut_put(writer, introductions[room]);
+  strut_put(writer, introductions[section]);
   strut_put(writer, "\n\n| key | value | default | meaning |\n|---|---|---|---|\n");
-  for (int i = 0; i < strut_section_size(room); i++) {
-    const strut_key *key = strut_key_at(strut_section_first(room) + i);
+  for (int i = 0; i < strut_section_size(section); i++) {
+    const strut_key *key = strut_key_at(strut_section_first(section) + i);
     bool words = strchr(key->fallback, ' ') && !strchr(key->fallback, '[');
     strut_put(writer, "| `");
     strut_put(writer, key->name);
     strut_put(writer, "` | ");
     put_type(writer, key);
-    strut_put(writer, key->required    ? " | required"
-                      : *key->fallback ? words ? " | " : " | `"
-                                       : " |");
+    strut_put(writer, key->need == STRUT_REQUIRED ? " | required"
+                      : *key->fallback            ? words ? " | " : " | `"
+                                                  : " |");
     strut_put(writer, key->fallback);
     strut_put(writer, *key->fallback && !words ? "` | " : " | ");
     strut_put(writer, key->description);
@@ -140,14 +159,16 @@ static void put_room(strut_writer *writer, strut_section room) {
 
 char *strut_keys_page(void) {
   strut_writer result = {.text = NULL};
-  strut_put(
-      &result,
-      "<!-- Made from the table of keys (parser/language/keys_table.h); do not edit. -->\n"
-      "# Keys of the language, version 1\n\n"
-      "A number is an expression with units, such as `2*amplitude + 0.1 mm`; a plain number is in "
-      "the SI unit given here.\nGroups take the keys of a [member](#member), a [node](#node) or a "
-      "[contact](#contact), except `group`.\n");
-  for (int room = 0; room < STRUT_ROOM_COUNT; room++) put_room(&result, (strut_section)room);
+  strut_put(&result,
+            "<!-- Generated by `strut keys` from parser/language/keys_table.h; do not edit. -->\n"
+            "# Keys of the language, version 1\n\n"
+            "A number is an expression with units, such as `2*amplitude + 0.1 mm`; a number "
+            "without a unit is "
+            "in the SI unit in brackets.\nGroups may have the keys of a [member](#member), a "
+            "[node](#node) or "
+            "a [contact](#contact), except `group`.\n");
+  for (int section = 0; section < STRUT_SECTION_COUNT; section++)
+    put_section(&result, (strut_section)section);
   if (!result.failed) return result.text;
   strut_release(result.text);
   return NULL;

@@ -3,9 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/write/writer.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* The name of the signal in the file, or NULL: it is written where it is used. */
 static const char *signal_name(const strut_writer *writer, int32_t index) {
@@ -15,10 +14,10 @@ static const char *signal_name(const strut_writer *writer, int32_t index) {
 
 /* An angle in radians that is read back as exactly so many turns, if there is one. */
 static double radians(double turns) {
-  double angle = turns * TWO_PI, up = angle, down = angle;
+  double angle = turns * STRUT_TAU, up = angle, down = angle;
   for (int i = 0; i < 4; i++) {
-    if (up / TWO_PI == turns) return up;
-    if (down / TWO_PI == turns) return down;
+    if (up / STRUT_TAU == turns) return up;
+    if (down / STRUT_TAU == turns) return down;
     up = nextafter(up, (double)INFINITY);
     down = nextafter(down, -(double)INFINITY);
   }
@@ -35,22 +34,19 @@ static void put_reference(strut_writer *writer, int32_t index) {
     put_signal(writer, index);
 }
 
-static void put_wave(strut_writer *writer, const strut_signal *s) {
-  bool first = true, wave = s->kind != STRUT_RAMP;
+/* The phase is kept in turns and written as an angle. */
+static void put_phase(strut_writer *writer, strut_mapping *mapping, int key, const void *object) {
+  const strut_signal *signal = object;
+  if (signal->phase == 0.0 && !signbit(signal->phase)) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, radians(signal->phase));
+}
+
+static void put_wave(strut_writer *writer, const strut_signal *signal) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  const strut_signal usual = strut_signal_default(signal->kind);
   strut_put(writer, "{");
-  strut_put_key(writer, &first, "amplitude");
-  strut_put_number(writer, s->amplitude);
-  if (wave) {
-    strut_put_key(writer, &first, "frequency");
-    strut_put_number(writer, s->frequency);
-  }
-  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE)
-    strut_put_value(writer, &first, "phase", radians(s->phase));
-  strut_put_value(writer, &first, "start", s->start);
-  if (s->kind != STRUT_HALF_SINE && isfinite(s->stop)) {
-    strut_put_key(writer, &first, "stop");
-    strut_put_number(writer, s->stop);
-  }
+  strut_put_fields(writer, &mapping, strut_wave_section(signal->kind), signal, &usual, put_phase);
   strut_put(writer, "}");
 }
 
@@ -64,12 +60,10 @@ static void put_table(strut_writer *writer, const strut_signal *s) {
 }
 
 static void put_signal(strut_writer *writer, int32_t index) {
-  static const char *const kinds[] = {"constant", "sine",  "half_sine", "square",
-                                      "ramp",     "table", "sum"};
   const strut_signal *s = &writer->scene->signals[index];
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
   strut_put(writer, "{");
-  strut_put(writer, kinds[s->kind]);
-  strut_put(writer, ": ");
+  strut_put_key_name(writer, &mapping, STRUT_KEY_SIGNAL_CONSTANT + (int)s->kind);
   if (s->kind == STRUT_CONSTANT) {
     strut_put_number(writer, s->amplitude);
   } else if (s->kind == STRUT_TABLE) {
@@ -101,9 +95,8 @@ static void put_named_signals(strut_writer *writer) {
   }
 }
 
-void strut_put_drives(strut_writer *writer) {
+static void put_actuators(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
-  put_named_signals(writer);
   if (scene->actuator_count) strut_put(writer, "actuators:\n");
   for (size_t i = 0; i < scene->actuator_count; i++) {
     strut_put(writer, "  ");
@@ -114,18 +107,33 @@ void strut_put_drives(strut_writer *writer) {
     put_reference(writer, scene->actuators[i].signal);
     strut_put(writer, "}\n");
   }
+}
+
+static void put_load_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                             const void *object) {
+  const strut_load *load = object;
+  if (key == STRUT_KEY_LOAD_NODE) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_name(writer, writer->scene->nodes[load->node].name);
+  } else if (load->signal >= 0) {
+    strut_put_key_name(writer, mapping, key);
+    put_reference(writer, load->signal);
+  }
+}
+
+void strut_put_drives(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  const strut_load usual = {0};
+  put_named_signals(writer);
+  put_actuators(writer);
   if (scene->load_count) strut_put(writer, "loads:\n");
   for (size_t i = 0; i < scene->load_count; i++) {
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_put(writer, "  ");
     strut_put_name(writer, scene->loads[i].name);
-    strut_put(writer, ": {node: ");
-    strut_put_name(writer, scene->nodes[scene->loads[i].node].name);
-    strut_put(writer, ", force: ");
-    strut_put_pair(writer, scene->loads[i].force);
-    if (scene->loads[i].signal >= 0) {
-      strut_put(writer, ", signal: ");
-      put_reference(writer, scene->loads[i].signal);
-    }
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_LOAD, &scene->loads[i], &usual,
+                     put_load_by_hand);
     strut_put(writer, "}\n");
   }
 }
@@ -164,75 +172,58 @@ static const char *period_name(const strut_scene *scene, const strut_experiment 
   return NULL;
 }
 
-static void put_steady(strut_writer *writer, bool *first, const strut_steady *steady) {
-  bool inner = true;
-  strut_put_key(writer, first, "steady");
-  strut_put(writer, "{");
-  strut_put_value(writer, &inner, "tolerance", steady->tolerance);
-  strut_put_value(writer, &inner, "floor", steady->floor);
-  strut_put_value(writer, &inner, "successive", steady->successive);
-  if (steady->shooting) {
-    strut_put_key(writer, &inner, "shooting");
-    strut_put(writer, "yes");
+static void put_measure_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                const void *object) {
+  const strut_experiment *e = object;
+  strut_mapping steady = STRUT_MAPPING_INLINE;
+  if (key == STRUT_KEY_MEASURE_STEADY && e->steady.wanted) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, "{");
+    strut_put_fields(writer, &steady, STRUT_SECTION_STEADY, &e->steady,
+                     &writer->usual.experiment.steady, NULL);
+    strut_put(writer, "}");
+  } else if (key == STRUT_KEY_MEASURE_NODE && e->measure_node >= 0) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_name(writer, writer->scene->nodes[e->measure_node].name);
+  } else if (key == STRUT_KEY_MEASURE_QUANTITIES) {
+    strut_put_quantities(writer, mapping);
   }
-  strut_put(writer, "}");
 }
 
-static void put_run(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_experiment *e = writer->experiment;
-  bool first = true, inner = true;
-  if (e->duration == 0.0 && e->periods == 0.0) return;
-  strut_put(writer, "run: {");
-  strut_put_value(writer, &first, "duration", e->duration);
-  strut_put_value(writer, &first, "periods", e->periods);
-  if (e->periods > 0.0) {
-    const char *name = period_name(scene, e);
-    strut_put_key(writer, &first, "of");
+static void put_run_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                            const void *object) {
+  const strut_experiment *e = object;
+  strut_mapping measure = STRUT_MAPPING_INLINE;
+  bool measures =
+      e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted || e->quantity_count;
+  if (key == STRUT_KEY_RUN_OF && e->periods > 0.0) {
+    const char *name = period_name(writer->scene, e);
+    strut_put_key_name(writer, mapping, key);
     strut_put_name(writer, name ? name : signal_name(writer, e->period_signal));
-  }
-  if (e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted || e->quantity_count) {
-    strut_put_key(writer, &first, "measure");
+  } else if (key == STRUT_KEY_RUN_MEASURE && measures) {
+    strut_put_key_name(writer, mapping, key);
     strut_put(writer, "{");
-    strut_put_value(writer, &inner, "last", e->measure_last);
-    if (e->steady.wanted) put_steady(writer, &inner, &e->steady);
-    if (e->measure_node >= 0) {
-      strut_put_key(writer, &inner, "node");
-      strut_put_name(writer, scene->nodes[e->measure_node].name);
-    }
-    strut_put_quantities(writer, &inner);
+    strut_put_fields(writer, &measure, STRUT_SECTION_MEASURE, e, &writer->usual.experiment,
+                     put_measure_by_hand);
     strut_put(writer, "}");
   }
+}
+
+/* One of the scene's mappings, on a line of its own. */
+static void put_section(strut_writer *writer, int key, strut_section section,
+                        strut_put_by_hand *by_hand) {
+  strut_mapping top = STRUT_MAPPING_INLINE, mapping = STRUT_MAPPING_INLINE;
+  strut_put_key_name(writer, &top, key);
+  strut_put(writer, "{");
+  strut_put_fields(writer, &mapping, section, writer->experiment, &writer->usual.experiment,
+                   by_hand);
   strut_put(writer, "}\n");
 }
 
 void strut_put_experiment(strut_writer *writer) {
-  static const char *const channels[] = {"position", "velocity", "length",
-                                         "force",    "contact",  "energy"};
   const strut_experiment *e = writer->experiment;
-  bool first = true, any = false;
-  strut_put(writer, "solver: {");
-  strut_put_key(writer, &first, "integrator");
-  strut_put_name(writer, e->integrator);
-  strut_put_value(writer, &first, "step", e->step);
-  if (e->tolerance != 1e-6) strut_put_value(writer, &first, "tolerance", e->tolerance);
-  strut_put_value(writer, &first, "refine", e->refine);
-  strut_put_value(writer, &first, "refine_time", e->refine_time);
-  strut_put_value(writer, &first, "accuracy", e->accuracy);
-  if (e->budget != STRUT_USUAL_BUDGET) strut_put_value(writer, &first, "budget", e->budget);
-  strut_put(writer, "}\n");
-  put_run(writer);
-  strut_put(writer, "output: {");
-  first = true;
-  strut_put_value(writer, &first, "every", e->output_every);
-  strut_put_value(writer, &first, "last", e->output_last);
-  strut_put_key(writer, &first, "channels");
-  strut_put(writer, "[");
-  for (unsigned i = 0; i < 6; i++) {
-    if (!(e->channels & 1u << i)) continue;
-    if (any) strut_put(writer, ", ");
-    any = true;
-    strut_put(writer, channels[i]);
-  }
-  strut_put(writer, "]}\n");
+  put_section(writer, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, NULL);
+  if (e->duration != 0.0 || e->periods != 0.0)
+    put_section(writer, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, put_run_by_hand);
+  put_section(writer, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, NULL);
 }

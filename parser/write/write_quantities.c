@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "parser/expression/expression.h"
-#include "parser/language/quantities.h"
 #include "parser/write/writer.h"
 
 static const struct operation_row {
@@ -142,37 +141,37 @@ static void put_expression(strut_writer *writer, const strut_quantity_definition
   strut_release(part.text);
 }
 
-static void put_absolute(strut_writer *writer, bool *first, const strut_quantity_definition *d) {
-  if (!(d->accuracy_absolute > 0.0)) return;
-  strut_put_key(writer, first, "accuracy");
-  strut_put(writer, "\"");
-  strut_put_number(writer, d->accuracy_absolute);
-  strut_put(writer, " ");
-  strut_put(writer, d->unit);
-  strut_put(writer, "\"");
+/* The expression, and an accuracy: relative, or in the quantity's own unit. */
+static void put_quantity_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                 const void *object) {
+  const strut_quantity_definition *d = object;
+  bool absolute = d->accuracy_absolute > 0.0;
+  if (key == STRUT_KEY_QUANTITY_OF) {
+    strut_put_key_name(writer, mapping, key);
+    put_expression(writer, d);
+  } else if (absolute || d->accuracy > 0.0) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, absolute ? "\"" : "");
+    strut_put_number(writer, absolute ? d->accuracy_absolute : d->accuracy);
+    strut_put(writer, absolute ? " " : "");
+    strut_put(writer, absolute ? d->unit : "");
+    strut_put(writer, absolute ? "\"" : "");
+  }
 }
 
-void strut_put_quantities(strut_writer *writer, bool *first) {
-  static const char *const takes[] = {"mean", "min",   "max",    "range",
-                                      "rms",  "final", "change", "rate"};
+void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {
   const strut_experiment *e = writer->experiment;
+  const strut_quantity_definition usual = {0};
   if (!e->quantity_count) return;
-  strut_put_key(writer, first, "quantities");
+  strut_put_key_name(writer, mapping, STRUT_KEY_MEASURE_QUANTITIES);
   strut_put(writer, "{");
   for (size_t i = 0; i < e->quantity_count; i++) {
-    const strut_quantity_definition *d = &e->quantities[i];
-    bool inner = true;
+    strut_mapping inner = STRUT_MAPPING_INLINE;
     strut_put(writer, i ? ", " : "");
-    strut_put_name(writer, d->name);
+    strut_put_name(writer, e->quantities[i].name);
     strut_put(writer, ": {");
-    strut_put_key(writer, &inner, "of");
-    put_expression(writer, d);
-    if (d->take != STRUT_TAKE_MEAN) {
-      strut_put_key(writer, &inner, "take");
-      strut_put(writer, takes[d->take]);
-    }
-    strut_put_value(writer, &inner, "accuracy", d->accuracy);
-    put_absolute(writer, &inner, d);
+    strut_put_fields(writer, &inner, STRUT_SECTION_QUANTITY, &e->quantities[i], &usual,
+                     put_quantity_by_hand);
     strut_put(writer, "}");
   }
   strut_put(writer, "}");

@@ -8,17 +8,6 @@
 #include "engine/base/c_locale.h"
 #include "parser/write/writer.h"
 
-/* Same bits? -0 and 0 differ. */
-static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
-
-static void put_text(strut_writer *writer, const char *key, const char *text) {
-  if (!*text) return;
-  strut_put(writer, key);
-  strut_put(writer, ": ");
-  strut_put_quoted(writer, text);
-  strut_put(writer, "\n");
-}
-
 /* An expression, on one line however it was written. */
 static void put_expression(strut_writer *writer, const char *text) {
   char one[2] = {0};
@@ -30,169 +19,173 @@ static void put_expression(strut_writer *writer, const char *text) {
 
 /* For the record only: the numbers below contain them already. */
 static void put_parameters(strut_writer *writer) {
-  if (!writer->scene->parameter_count) return;
-  strut_put(writer, "parameters: # as they were; their values stand in the numbers below\n");
+  strut_put(writer, "# as they were; their values stand in the numbers below");
   for (size_t i = 0; i < writer->scene->parameter_count; i++) {
     const strut_parameter *p = &writer->scene->parameters[i];
-    strut_put(writer, "  ");
+    strut_put(writer, "\n  ");
     strut_put(writer, p->name);
     strut_put(writer, ": ");
     if (isnan(p->value))
       strut_put_quoted(writer, p->text);
     else
       put_expression(writer, p->text);
-    strut_put(writer, "\n");
+  }
+}
+
+static void put_head_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                             const void *object) {
+  const strut_scene *scene = object;
+  if (key == STRUT_KEY_SCENE_VERSION) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, strut_key_at(key)->words);
+  } else if (key == STRUT_KEY_SCENE_PARAMETERS && scene->parameter_count) {
+    strut_put_key_name(writer, mapping, key);
+    put_parameters(writer);
   }
 }
 
 static void put_head(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  strut_put(writer, "# The scene as it was used, in SI units.\nstrut: 1\n");
-  put_text(writer, "name", scene->name);
-  put_text(writer, "description", scene->description);
-  put_text(writer, "source", scene->source);
-  put_parameters(writer);
-  strut_put(writer, "mass_model: ");
-  strut_put(writer, scene->mass_model == STRUT_MASS_LUMPED ? "lumped\n" : "consistent\n");
-  if (scene->bar_model == STRUT_BARS_RIGID) strut_put(writer, "bars: rigid\n");
-  strut_put(writer, "gravity: ");
-  strut_put_pair(writer, scene->gravity);
+  strut_mapping mapping = STRUT_MAPPING_LINES("");
+  strut_put(writer, "# The scene as it was used, in SI units.");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_SCENE, writer->scene, &writer->usual,
+                   put_head_by_hand);
   strut_put(writer, "\n");
 }
 
 static void put_nodes(strut_writer *writer) {
-  static const char *const supports[] = {"none", "x", "y", "both"};
   strut_put(writer, "nodes:\n");
   for (size_t i = 0; i < writer->scene->node_count; i++) {
     const strut_node *node = &writer->scene->nodes[i];
-    int fixed = (node->fixed[0] ? 1 : 0) + (node->fixed[1] ? 2 : 0);
-    bool first = false, bare = !fixed && node->mass == 0.0 && !signbit(node->mass);
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_node drawn = strut_node_default(); /* nothing but a position */
+    memcpy(drawn.position, node->position, sizeof drawn.position);
+    bool bare = !strut_fields_differ(STRUT_SECTION_NODE, node, &drawn);
     strut_put(writer, "  ");
     strut_put_name(writer, node->name);
-    strut_put(writer, bare ? ": " : ": {position: ");
-    strut_put_pair(writer, node->position);
-    strut_put_value(writer, &first, "mass", node->mass);
-    if (fixed) {
-      strut_put_key(writer, &first, "fixed");
-      strut_put(writer, supports[fixed]);
-    }
+    strut_put(writer, bare ? ": " : ": {");
+    if (bare)
+      strut_put_pair(writer, node->position);
+    else
+      strut_put_fields(writer, &mapping, STRUT_SECTION_NODE, node, &drawn, NULL);
     strut_put(writer, bare ? "\n" : "}\n");
   }
 }
 
+/* The two nodes, and the rest length in the way in which it was given. */
+static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_node *nodes = writer->scene->nodes;
+  const strut_member *m = object;
+  if (key == STRUT_KEY_MEMBER_NODES) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, "[");
+    strut_put_name(writer, nodes[m->node[0]].name);
+    strut_put(writer, ", ");
+    strut_put_name(writer, nodes[m->node[1]].name);
+    strut_put(writer, "]");
+  } else if (key == strut_rest_key(m->rest_kind)) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, m->rest_value);
+  }
+}
+
 static void put_members(strut_writer *writer) {
-  static const char *const kinds[] = {"bar", "spring", "cable"};
-  static const char *const rests[] = {"rest_length_ratio", "rest_length", "pretension",
-                                      "force_density"};
   const strut_scene *scene = writer->scene;
+  const strut_member usual = strut_member_default();
   if (scene->member_count) strut_put(writer, "members:\n");
   for (size_t i = 0; i < scene->member_count; i++) {
-    const strut_member *m = &scene->members[i];
-    bool first = false;
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_put(writer, "  ");
-    strut_put_name(writer, m->name);
-    strut_put(writer, ": {nodes: [");
-    strut_put_name(writer, scene->nodes[m->node[0]].name);
-    strut_put(writer, ", ");
-    strut_put_name(writer, scene->nodes[m->node[1]].name);
-    strut_put(writer, "], kind: ");
-    strut_put(writer, kinds[m->kind]);
-    strut_put_value(writer, &first, "stiffness", m->stiffness);
-    strut_put_value(writer, &first, "axial_stiffness", m->axial_stiffness);
-    strut_put_value(writer, &first, "damping", m->damping);
-    strut_put_value(writer, &first, "mass", m->mass);
-    strut_put_key(writer, &first, rests[m->rest_kind]);
-    strut_put_number(writer, m->rest_value);
+    strut_put_name(writer, scene->members[i].name);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_MEMBER, &scene->members[i], &usual,
+                     put_member_by_hand);
     strut_put(writer, "}\n");
   }
 }
 
-static bool no_friction(const strut_friction *f) {
-  return f->law == STRUT_FRICTION_NONE && f->mu_static == 0.0 && f->mu_kinetic == 0.0 &&
-         f->stick_velocity == 0.0 && f->width == 0.0;
-}
+static const strut_friction no_friction;
 
-static bool same_friction(const strut_friction *a, const strut_friction *b) {
-  return a->law == b->law &&
-         same((const double[2]){a->mu_static, a->mu_kinetic},
-              (const double[2]){b->mu_static, b->mu_kinetic}) &&
-         a->stick_velocity == b->stick_velocity && a->width == b->width;
+static bool has_friction(const strut_friction *f) {
+  return strut_fields_differ(STRUT_SECTION_FRICTION, f, &no_friction);
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
-  static const char *const laws[] = {"none", "karnopp", "coulomb", "smooth"};
-  bool first = false;
-  strut_put(writer, "{law: ");
-  strut_put(writer, laws[f->law]);
-  strut_put_key(writer, &first, "mu_static");
-  strut_put_number(writer, f->mu_static);
-  strut_put_key(writer, &first, "mu_kinetic");
-  strut_put_number(writer, f->mu_kinetic);
-  strut_put_value(writer, &first, "stick_velocity", f->stick_velocity);
-  strut_put_value(writer, &first, "width", f->width);
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  strut_put(writer, "{");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &no_friction, NULL);
   strut_put(writer, "}");
 }
 
-/* What is different for one contact. Frictions are given to all of them, or to each. */
-static bool put_contact(strut_writer *writer, const strut_contact *c, bool shared, bool begun) {
-  const strut_scene *scene = writer->scene;
-  const strut_contact *all = &scene->contacts[0];
-  bool first = true, friction = !shared && !no_friction(&c->friction);
-  bool stiffness = c->stiffness != all->stiffness, damping = c->damping != all->damping;
-  bool dissipation = c->dissipation != all->dissipation;
-  if (!stiffness && !damping && !dissipation && !friction) return begun;
-  strut_put(writer, begun ? "    " : "  contacts:\n    ");
-  strut_put_name(writer, scene->nodes[c->node].name);
-  strut_put(writer, ": {");
-  if (stiffness) strut_put_value(writer, &first, "stiffness", c->stiffness);
-  if (damping) strut_put_key(writer, &first, "damping");
-  if (damping) strut_put_number(writer, c->damping);
-  if (dissipation) strut_put_key(writer, &first, "dissipation");
-  if (dissipation) strut_put_number(writer, c->dissipation);
-  if (friction) strut_put_key(writer, &first, "friction");
-  if (friction) put_friction(writer, &c->friction);
-  strut_put(writer, "}\n");
+/* Friction is written once for all contacts where they share it, else for each contact that has it. */
+static bool friction_is_shared(const strut_scene *scene) {
+  for (size_t i = 1; i < scene->contact_count; i++)
+    if (strut_fields_differ(STRUT_SECTION_FRICTION, &scene->contacts[i].friction,
+                            &scene->contacts[0].friction))
+      return false;
   return true;
 }
 
-static void put_line(strut_writer *writer, const char *key, double value) {
-  bool first = true;
-  if (value == 0.0 && !signbit(value)) return;
-  strut_put(writer, "  ");
-  strut_put_value(writer, &first, key, value);
-  strut_put(writer, "\n");
+/* What is different for one contact. */
+static void put_contact(strut_writer *writer, const strut_contact *contact, bool friction) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  strut_put_name(writer, writer->scene->nodes[contact->node].name);
+  strut_put(writer, ": {");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_CONTACT, contact, writer->scene->contacts, NULL);
+  if (friction) {
+    strut_put_key_name(writer, &mapping, STRUT_KEY_CONTACT_FRICTION);
+    put_friction(writer, &contact->friction);
+  }
+  strut_put(writer, "}");
+}
+
+static void put_contacts(strut_writer *writer, strut_mapping *mapping) {
+  const strut_scene *scene = writer->scene;
+  bool shared = friction_is_shared(scene), begun = false;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *contact = &scene->contacts[i];
+    bool friction = !shared && has_friction(&contact->friction);
+    if (!friction && !strut_fields_differ(STRUT_SECTION_CONTACT, contact, scene->contacts))
+      continue;
+    if (!begun) strut_put(writer, mapping->separator);
+    strut_put(writer, begun ? "\n    " : "contacts:\n    ");
+    begun = true;
+    put_contact(writer, contact, friction);
+  }
+}
+
+static void put_ground_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_scene *scene = writer->scene;
+  const strut_contact *all = scene->contacts;
+  (void)object;
+  if (key == STRUT_KEY_GROUND_FRICTION) {
+    if (!friction_is_shared(scene) || !has_friction(&all->friction)) return;
+    strut_put_key_name(writer, mapping, key);
+    put_friction(writer, &all->friction);
+  } else if (key == STRUT_KEY_GROUND_CONTACTS) {
+    put_contacts(writer, mapping);
+  } else {
+    bool every = scene->contact_count == scene->node_count;
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, every ? "all" : "[");
+    for (size_t i = 0; i < scene->contact_count && !every; i++) {
+      if (i) strut_put(writer, ", ");
+      strut_put_name(writer, scene->nodes[all[i].node].name);
+    }
+    if (!every) strut_put(writer, "]");
+  }
 }
 
 static void put_ground(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
-  const strut_contact *all = scene->contacts;
-  bool shared = true, begun = false;
+  const strut_ground_section usual = {.contact = strut_contact_default()};
+  strut_mapping mapping = STRUT_MAPPING_LINES("  ");
   if (!scene->ground.present || !scene->contact_count) return;
-  strut_put(writer, "ground:\n");
-  put_line(writer, "height", scene->ground.height);
-  put_line(writer, "slope", scene->ground.slope);
-  put_line(writer, "belt_speed", scene->ground.belt_speed);
-  put_line(writer, "stiffness", all->stiffness);
-  put_line(writer, "damping", all->damping);
-  if (scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY)
-    strut_put(writer, "  damping_law: hunt_crossley\n");
-  put_line(writer, "dissipation", all->dissipation);
-  for (size_t i = 1; i < scene->contact_count; i++)
-    if (!same_friction(&all[i].friction, &all->friction)) shared = false;
-  if (shared && !no_friction(&all->friction)) {
-    strut_put(writer, "  friction: ");
-    put_friction(writer, &all->friction);
-    strut_put(writer, "\n");
-  }
-  strut_put(writer, "  nodes: ");
-  if (scene->contact_count == scene->node_count) strut_put(writer, "all");
-  for (size_t i = 0; i < scene->contact_count && scene->contact_count < scene->node_count; i++) {
-    strut_put(writer, i ? ", " : "[");
-    strut_put_name(writer, scene->nodes[all[i].node].name);
-  }
-  strut_put(writer, scene->contact_count < scene->node_count ? "]\n" : "\n");
-  for (size_t i = 0; i < scene->contact_count; i++)
-    begun = put_contact(writer, &all[i], shared, begun);
+  strut_ground_section section = {scene->ground, scene->contacts[0]};
+  strut_put(writer, "ground:");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_GROUND, &section, &usual, put_ground_by_hand);
+  strut_put(writer, "\n");
 }
 
 /* Is the signal whose periods count one that nothing names? Then it gets a name of its own. */
@@ -209,6 +202,7 @@ char *strut_setup_write(const strut_setup *setup) {
   const strut_experiment *e = &setup->experiment;
   strut_writer writer = {
       .scene = &setup->scene, .experiment = e, .period_signal = nameless_period(&setup->scene, e)};
+  strut_setup_init(&writer.usual);
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
   put_nodes(&writer);

@@ -8,8 +8,7 @@
 /* Same bits? -0 and 0 differ. */
 static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 * sizeof *a) == 0; }
 
-/* "[[n1, n4], [n2]]": always a list of lists, which cannot be taken for a position. */
-static void put_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
+void strut_put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count) {
   strut_put(writer, "[");
   for (size_t i = 0; i < count; i++) {
     strut_put(writer, i ? ", [" : "[");
@@ -43,34 +42,38 @@ static void put_configurations(strut_writer *writer) {
   if (scene->configuration_count) strut_put(writer, "configurations:\n");
   for (size_t i = 0; i < scene->configuration_count; i++) {
     const strut_configuration *c = &scene->configurations[i];
-    bool first = true;
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
     strut_put(writer, "  ");
     strut_put_name(writer, c->name);
     strut_put(writer, ": {");
     if (c->set_count) {
-      strut_put_key(writer, &first, "contacts");
-      put_sets(writer, c->sets, c->set_count);
+      strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_CONTACTS);
+      strut_put_node_sets(writer, c->sets, c->set_count);
     }
     if (c->shaped) {
-      strut_put_key(writer, &first, "shape");
+      strut_put_key_name(writer, &mapping, STRUT_KEY_CONFIGURATION_SHAPE);
       put_shape(writer, c);
     }
     strut_put(writer, "}\n");
   }
 }
 
+static void put_supports(strut_writer *writer, strut_mapping *mapping, int key,
+                         const void *object) {
+  const strut_search *search = object;
+  if (!search->support_count) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_node_sets(writer, search->supports, search->support_count);
+}
+
 static void put_search(strut_writer *writer) {
-  const strut_search *search = &writer->experiment->search;
-  bool first = true;
-  if (!search->support_count && !search->starts && search->seed == 1) return;
+  const strut_search *search = &writer->experiment->search,
+                     *usual = &writer->usual.experiment.search;
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  if (!search->support_count && !strut_fields_differ(STRUT_SECTION_EQUILIBRIA, search, usual))
+    return;
   strut_put(writer, "equilibria: {");
-  if (search->support_count) {
-    strut_put_key(writer, &first, "supports");
-    put_sets(writer, search->supports, search->support_count);
-  }
-  strut_put_value(writer, &first, "starts", (double)search->starts);
-  strut_put_key(writer, &first, "seed");
-  strut_put_number(writer, (double)search->seed);
+  strut_put_fields(writer, &mapping, STRUT_SECTION_EQUILIBRIA, search, usual, put_supports);
   strut_put(writer, "}\n");
 }
 
@@ -106,18 +109,20 @@ static void put_initial_pair(strut_writer *writer, bool *begun, bool *listed, co
   strut_put(writer, "\n");
 }
 
+/* The step, where it is chosen for settling: that of the run is written there. */
+static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int key,
+                              const void *object) {
+  const strut_settle *settle = object;
+  if (settle->step <= 0.0 || settle->step == writer->experiment->step) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, settle->step);
+}
+
 static void put_settle(strut_writer *writer, const strut_settle *settle) {
-  bool first = true;
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
   strut_put(writer, "  settle: {");
-  strut_put_value(writer, &first, "speed", settle->speed);
-  strut_put_value(writer, &first, "acceleration", settle->acceleration);
-  strut_put_value(writer, &first, "limit", settle->limit);
-  if (settle->evaluations > 0.0)
-    strut_put_value(writer, &first, "evaluations", settle->evaluations);
-  if (settle->step != 0.0 && settle->step != writer->experiment->step)
-    strut_put_value(writer, &first, "step", fmax(0.0, settle->step));
-  if (settle->perturb) strut_put(writer, ", perturb: yes");
-  if (settle->friction) strut_put(writer, ", friction: kept");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_SETTLE, settle, &writer->usual.experiment.settle,
+                   put_settling_step);
   strut_put(writer, "}\n");
 }
 

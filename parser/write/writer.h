@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 #include "engine/scene/experiment.h"
+#include "parser/language/keys.h"
 
 typedef struct strut_writer {
   const strut_scene *scene;
@@ -17,9 +18,9 @@ typedef struct strut_writer {
   size_t length, capacity;
   bool failed;           /* memory was out; all later writing is ignored */
   int32_t period_signal; /* a signal that has no name but needs one; else -1 */
+  strut_setup usual;     /* the defaults */
 } strut_writer;
 
-/** Appends text as it is. */
 void strut_put(strut_writer *writer, const char *text);
 /** Appends some bytes of a text. */
 void strut_put_part(strut_writer *writer, const char *text, size_t length);
@@ -31,17 +32,41 @@ void strut_put_pair(strut_writer *writer, const double pair[2]);
 void strut_put_quoted(strut_writer *writer, const char *text);
 /** Appends a thing's name, in quotes where YAML would take it for something else. */
 void strut_put_name(strut_writer *writer, const char *name);
-/** Appends ", key: " or "key: " at the beginning of a mapping {...}. */
-void strut_put_key(strut_writer *writer, bool *first, const char *key);
-/** Appends ", key: value" unless value is 0 (bits included). */
-void strut_put_value(strut_writer *writer, bool *first, const char *key, double value);
+/** A mapping that is being written: what stands before the next key, and before those after it. */
+typedef struct strut_mapping {
+  const char *separator, *next;
+} strut_mapping;
+
+/** Within braces: `{key: value, key: value}`. */
+#define STRUT_MAPPING_INLINE ((strut_mapping){"", ", "})
+/** One line for each key: behind what was written. */
+#define STRUT_MAPPING_LINES(indent) ((strut_mapping){"\n" indent, "\n" indent})
+
+/** Appends the separator and "key: ". */
+void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key);
+/** As strut_put_key, with the key's name in the language. */
+void strut_put_key_name(strut_writer *writer, strut_mapping *mapping, int key);
+
+/** Writes a key that has no field, where the object gives it a value. */
+typedef void strut_put_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object);
+/**
+ * Writes the keys of a section in the order of the table: fields of `object` that are always written or
+ * differ from those of `usual`, and the keys without a field by `by_hand` (NULL: they are left out).
+ */
+void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_section section,
+                      const void *object, const void *usual, strut_put_by_hand *by_hand);
+/** True where some field of the section differs between two objects. */
+bool strut_fields_differ(strut_section section, const void *object, const void *usual);
 
 /** write_drives.c: signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
-/** write_quantities.c: `quantities` of the measurement, where there are any. */
-void strut_put_quantities(strut_writer *writer, bool *first);
+/** write_quantities.c: `quantities` of the measurement, if there are any. */
+void strut_put_quantities(strut_writer *writer, strut_mapping *mapping);
 /** write_shapes.c: configurations, the search for equilibria, the initial state. */
 void strut_put_shapes(strut_writer *writer);
+/** "[[n1, n4], [n2]]": always a list of lists, which cannot be mistaken for a position. */
+void strut_put_node_sets(strut_writer *writer, const strut_node_set *sets, size_t count);
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Messages: collected, sorted, rendered with their line and a caret; and suggestions. */
 #include "parser/yaml/diagnostics.h"
 
 #include <stdarg.h>
@@ -7,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "parser/yaml/source_line.h"
+#include "engine/base/memory.h"
 #include "parser/yaml/text.h"
 
 enum { MESSAGE_MOST = 900 };
@@ -30,7 +31,7 @@ static void tidy(char *message, int written) {
     if ((unsigned char)*c < 0x20 || *c == 0x7F) *c = ' ';
 }
 
-static bool make_room(strut_diagnostic **list, size_t count, size_t *room) {
+static bool grow_list(strut_diagnostic **list, size_t count, size_t *room) {
   if (count < *room) return true;
   size_t capacity = *room ? 2 * *room : 16;
   void *items = strut_reallocate(*list, capacity, sizeof **list);
@@ -59,7 +60,7 @@ void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const cha
   va_start(arguments, format);
   const char *copy = compose(diagnostics, format, arguments);
   va_end(arguments);
-  if (!copy || !make_room(&diagnostics->items, diagnostics->count, &diagnostics->capacity)) {
+  if (!copy || !grow_list(&diagnostics->items, diagnostics->count, &diagnostics->capacity)) {
     diagnostics->unstored++;
     diagnostics->out_of_memory = true;
     return;
@@ -69,16 +70,158 @@ void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const cha
       (strut_diagnostic){.place = place, .order = order, .message = copy};
 }
 
+static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
+  for (size_t i = 0; i < diagnostics->note_count; i++) {
+    const strut_diagnostic *note = &diagnostics->notes[i];
+    if (note->place.line == place.line && note->place.column == place.column &&
+        strcmp(note->message, message) == 0)
+      return true;
+  }
+  return false;
+}
+
 void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   const char *copy = compose(diagnostics, format, arguments);
   va_end(arguments);
-  if (!copy ||
-      !make_room(&diagnostics->notes, diagnostics->note_count, &diagnostics->note_capacity))
+  if (!copy || has_note(diagnostics, place, copy) ||
+      !grow_list(&diagnostics->notes, diagnostics->note_count, &diagnostics->note_capacity))
     return;
   diagnostics->notes[diagnostics->note_count++] =
       (strut_diagnostic){.place = place, .message = copy};
+}
+
+/* A text that grows; `text` is NUL-terminated once anything was appended. */
+typedef struct text_builder {
+  char *text;
+  size_t length, capacity;
+  bool failed; /* memory was out: the text is not whole */
+} text_builder;
+
+/* Code points of a long line that are shown, and how many of them stand before the place. */
+enum { SHOWN_MOST = 100, SHOWN_BEFORE = 40 };
+
+static bool make_text_room(text_builder *out, size_t more) {
+  if (out->failed) return false;
+  if (out->length + more < out->capacity) return true;
+  size_t capacity = 2 * (out->length + more) + 256;
+  char *text = strut_reallocate(out->text, capacity, 1);
+  if (!text) {
+    out->failed = true;
+    return false;
+  }
+  out->text = text;
+  out->capacity = capacity;
+  return true;
+}
+
+__attribute__((format(printf, 2, 3))) static void append_text(text_builder *out, const char *format,
+                                                              ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  int length = vsnprintf(NULL, 0, format, arguments);
+  va_end(arguments);
+  if (length < 0) out->failed = true;
+  if (make_text_room(out, (size_t)length + 1)) {
+    vsnprintf(out->text + out->length, (size_t)length + 1, format, again);
+    out->length += (size_t)length;
+  }
+  va_end(again);
+}
+
+static void append_bytes(text_builder *out, const char *bytes, size_t size) {
+  if (!make_text_room(out, size + 1)) return;
+  memcpy(out->text + out->length, bytes, size);
+  out->length += size;
+  out->text[out->length] = '\0';
+}
+
+/* Cells of a terminal that a character takes. */
+static int cells(uint32_t code) {
+  static const struct range {
+    uint32_t first, last;
+    int cells;
+  } ranges[] = {{0x300, 0x36F, 0},    {0x200B, 0x200F, 0},   {0x20D0, 0x20FF, 0},
+                {0xFE00, 0xFE0F, 0},  {0x1100, 0x115F, 2},   {0x2E80, 0xA4CF, 2},
+                {0xAC00, 0xD7A3, 2},  {0xF900, 0xFAFF, 2},   {0xFE30, 0xFE6F, 2},
+                {0xFF00, 0xFF60, 2},  {0x1F300, 0x1F64F, 2}, {0x1F900, 0x1F9FF, 2},
+                {0x20000, 0x3FFFD, 2}};
+  for (size_t i = 0; code >= 0x300 && i < sizeof ranges / sizeof ranges[0]; i++)
+    if (code >= ranges[i].first && code <= ranges[i].last) return ranges[i].cells;
+  return 1;
+}
+
+/* The stretch of a line that is shown: code points [first, end) of `points`. */
+typedef struct window {
+  uint32_t points, first, end;
+} window;
+
+static bool at_line_end(const strut_cursor *cursor) {
+  return cursor->offset >= cursor->length ||
+         strut_text_break(cursor->text + cursor->offset, cursor->length - cursor->offset) > 0;
+}
+
+static window choose_window(strut_cursor *line, strut_place place) {
+  while (place.column > SHOWN_MOST && line->column <= place.column - SHOWN_BEFORE &&
+         !at_line_end(line))
+    strut_cursor_step(line);
+  strut_cursor cursor = *line;
+  window shown = {.points = line->column - 1, .first = line->column - 1};
+  while (!at_line_end(&cursor) && shown.points <= place.column + SHOWN_MOST) {
+    strut_cursor_step(&cursor);
+    shown.points++;
+  }
+  shown.end = shown.points;
+  if (!shown.first && shown.points > SHOWN_MOST && place.column > SHOWN_BEFORE)
+    shown.first = place.column - SHOWN_BEFORE;
+  if (shown.end - shown.first > SHOWN_MOST) shown.end = shown.first + SHOWN_MOST;
+  return shown;
+}
+
+/* Calls for each shown character: the source itself, or what stands below it up to the place. */
+static void append_source(text_builder *out, strut_cursor cursor, window shown) {
+  for (uint32_t i = cursor.column - 1; i < shown.end; i++) {
+    uint32_t code;
+    const char *here = cursor.text + cursor.offset;
+    size_t size = strut_text_decode(here, cursor.length - cursor.offset, &code);
+    strut_cursor_step(&cursor);
+    if (i < shown.first) continue;
+    if (code == STRUT_BAD_CODE || strut_text_forbidden(code))
+      append_bytes(out, "\xEF\xBF\xBD", 3);
+    else
+      append_bytes(out, here, size);
+  }
+}
+
+static void append_caret(text_builder *out, strut_cursor cursor, window shown, strut_place place) {
+  uint32_t from = place.column ? place.column - 1 : 0, length = place.length ? place.length : 1;
+  uint32_t to = length > shown.end || from > shown.end - length ? shown.end : from + length;
+  for (uint32_t i = cursor.column - 1; i < shown.end && i < to; i++) {
+    uint32_t code;
+    strut_text_decode(cursor.text + cursor.offset, cursor.length - cursor.offset, &code);
+    strut_cursor_step(&cursor);
+    if (i < shown.first) continue;
+    const char *mark = i > from ? "~" : i == from ? "^" : code == '\t' ? "\t" : " ";
+    if (i == from) append_bytes(out, "^", 1);
+    for (int cell = i == from ? 1 : 0; cell < cells(code); cell++)
+      append_bytes(out, i == from ? "~" : mark, 1);
+  }
+  if (from >= shown.end) append_bytes(out, "^", 1); /* behind the line's last character */
+}
+
+/* Appends the line in which the cursor stands and a caret line; the cursor moves to where the shown
+   stretch begins, so that places in order cost one walk of a line. */
+static void append_source_line(text_builder *out, strut_cursor *cursor, strut_place place) {
+  window shown = choose_window(cursor, place);
+  if (!shown.points) return;
+  const char *before = shown.first ? "..." : "", *after = shown.end < shown.points ? "..." : "";
+  append_text(out, "%5u | %s", place.line, before);
+  append_source(out, *cursor, shown);
+  append_text(out, "%s\n      | %s", after, shown.first ? "   " : "");
+  append_caret(out, *cursor, shown, place);
+  append_text(out, "\n");
 }
 
 static int compare(const void *a, const void *b) {
@@ -88,21 +231,21 @@ static int compare(const void *a, const void *b) {
   return x->order < y->order ? -1 : x->order > y->order;
 }
 
-static void render_one(strut_text_builder *out, const strut_diagnostics *diagnostics,
-                       const char *kind, const strut_diagnostic *item, strut_cursor *cursor) {
+static void render_one(text_builder *out, const strut_diagnostics *diagnostics, const char *kind,
+                       const strut_diagnostic *item, strut_cursor *cursor) {
   const char *file = diagnostics->file ? diagnostics->file : "<text>";
   if (item->place.line == 0) {
-    strut_text_append(out, "%s: %s: %s\n", file, kind, item->message);
+    append_text(out, "%s: %s: %s\n", file, kind, item->message);
     return;
   }
-  strut_text_append(out, "%s:%u:%u: %s: %s\n", file, item->place.line, item->place.column, kind,
-                    item->message);
+  append_text(out, "%s:%u:%u: %s: %s\n", file, item->place.line, item->place.column, kind,
+              item->message);
   strut_cursor_to_line(cursor, item->place.line);
-  if (cursor->line == item->place.line) strut_source_line_show(out, cursor, item->place);
+  if (cursor->line == item->place.line) append_source_line(out, cursor, item->place);
 }
 
 const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most) {
-  strut_text_builder out = {0};
+  text_builder out = {0};
   strut_cursor cursor = {.text = "", .line = 1, .column = 1};
   if (diagnostics->text) cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   if (diagnostics->count)
@@ -111,7 +254,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   for (size_t i = 0; i < shown; i++)
     render_one(&out, diagnostics, "error", &diagnostics->items[i], &cursor);
   size_t left = diagnostics->count - shown + diagnostics->unstored;
-  if (left) strut_text_append(&out, "... and %zu more\n", left);
+  if (left) append_text(&out, "... and %zu more\n", left);
   const char *text =
       out.failed ? NULL
                  : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
@@ -120,7 +263,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
 }
 
 const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
-  strut_text_builder out = {0};
+  text_builder out = {0};
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
     render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
@@ -137,4 +280,75 @@ void strut_diagnostics_free(strut_diagnostics *diagnostics) {
   strut_release(diagnostics->notes);
   strut_arena_free(&diagnostics->arena);
   *diagnostics = (strut_diagnostics){0};
+}
+
+/* Longer words get no suggestion; more candidates than this are not worth the time. */
+enum { WORD_MOST = 64, CANDIDATE_MOST = 10000 };
+
+typedef struct word {
+  uint32_t code[WORD_MOST];
+  size_t length;
+} word;
+
+static bool decode(const char *text, word *result) {
+  size_t left = strnlen(text, 4 * WORD_MOST + 1);
+  result->length = 0;
+  while (left) {
+    if (result->length == WORD_MOST) return false;
+    size_t size = strut_text_decode(text, left, &result->code[result->length++]);
+    text += size;
+    left -= size;
+  }
+  return result->length > 0;
+}
+
+static size_t least(size_t a, size_t b) { return a < b ? a : b; }
+
+/*
+ * Insertions, deletions, substitutions and swaps of neighbours from a to b; most + 1 where there are
+ * more than `most`. Only the band of the table that so few steps can reach is computed.
+ */
+static size_t distance(const word *a, const word *b, size_t most) {
+  size_t rows[3][WORD_MOST + 2];
+  size_t *before = rows[0], *above = rows[1], *row = rows[2], beyond = most + 1, last_nearest = 0;
+  for (size_t j = 0; j <= b->length; j++) above[j] = least(j, beyond);
+  for (size_t i = 1; i <= a->length; i++) {
+    size_t first = i > most ? i - most : 1, last = least(b->length, i + most), nearest = beyond;
+    row[first - 1] = first == 1 ? least(i, beyond) : beyond;
+    for (size_t j = first; j <= last; j++) {
+      size_t inserted = j < i + most ? above[j] + 1 : beyond;
+      size_t substituted = above[j - 1] + (a->code[i - 1] != b->code[j - 1]);
+      row[j] = least(least(inserted, row[j - 1] + 1), least(substituted, beyond));
+      if (i > 1 && j > 1 && a->code[i - 1] == b->code[j - 2] && a->code[i - 2] == b->code[j - 1])
+        row[j] = least(row[j], before[j - 2] + 1);
+      nearest = least(nearest, row[j]);
+    }
+    nearest = least(nearest, row[first - 1]);
+    if (nearest > most && last_nearest > most) return beyond; /* a swap looks two rows back */
+    last_nearest = nearest;
+    size_t *oldest = before;
+    before = above;
+    above = row;
+    row = oldest;
+  }
+  return above[b->length];
+}
+
+const char *strut_did_you_mean(const char *text, const char *(*next)(const void *context, size_t i),
+                               const void *context) {
+  word wanted, candidate;
+  if (!decode(text, &wanted)) return NULL;
+  size_t allowed = wanted.length / 3 > 1 ? wanted.length / 3 : 1;
+  const char *best = NULL, *name;
+  for (size_t i = 0; i < CANDIDATE_MOST && (name = next(context, i)) != NULL; i++) {
+    if (!decode(name, &candidate)) continue;
+    size_t longer = wanted.length > candidate.length ? wanted.length : candidate.length;
+    if (longer - least(wanted.length, candidate.length) > allowed) continue;
+    size_t steps = distance(&wanted, &candidate, allowed);
+    if (steps > allowed || steps >= longer) continue; /* nothing in common is no suggestion */
+    best = name;
+    if (steps == 0) return best;
+    allowed = steps - 1; /* only a nearer one replaces it */
+  }
+  return best;
 }

@@ -53,7 +53,7 @@ STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const ch
  */
 STRUT_API void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format,
                               ...) __attribute__((format(printf, 3, 4)));
-/** Adds a note, which is no error: nothing fails by it. Lost where memory is out. */
+/** Adds a note, which is no error, unless the place has it already. Lost if memory is out. */
 STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
 /** All notes, in order, as strut_diagnostics_render shows messages. NULL: memory is out. */

@@ -13,8 +13,138 @@ enum {
   RECENT_SLOTS = 1024, /* short scalars seen lately, to share their text */
   RECENT_LENGTH = 24,
   PROBLEMS_MOST = 1000, /* then reading stops */
+  ANCHOR_MOST = 1000,
 };
 static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
+
+/* An anchored node. */
+typedef struct anchored_node {
+  const char *name;
+  strut_tree *node;
+  uint64_t weight; /* nodes it stands for, aliases inside counted in full; 0: still open */
+  size_t height;   /* levels of lists and mappings in it, aliases inside counted in full */
+} anchored_node;
+
+typedef struct anchor_table {
+  anchored_node *items; /* (ANCHOR_MOST) */
+  uint16_t *slots;      /* 1 + index of the latest of its name */
+  size_t count;
+  uint64_t seed;
+} anchor_table;
+
+/* A hash table of the keys of a map, reused for the next map. */
+typedef struct key_table {
+  strut_tree **slots;
+  size_t capacity;
+  uint64_t seed;
+} key_table;
+
+enum { SLOT_COUNT = 2048, FEW_KEYS = 8 };
+
+/* Seeds differ from run to run, so that an author of texts cannot aim at one slot. */
+static uint64_t hash_text(const char *text, size_t length, uint64_t seed) {
+  uint64_t hash = seed ^ UINT64_C(0xCBF29CE484222325);
+  for (size_t i = 0; i < length; i++)
+    hash = (hash ^ (unsigned char)text[i]) * UINT64_C(0x100000001B3);
+  hash ^= hash >> 32;
+  hash *= UINT64_C(0x9E3779B97F4A7C15);
+  return hash ^ hash >> 29;
+}
+
+/* The slot of that name, or the empty one where it belongs. */
+static size_t anchor_slot(const anchor_table *anchors, const char *name) {
+  size_t slot = (size_t)hash_text(name, strlen(name), anchors->seed) % SLOT_COUNT;
+  while (anchors->slots[slot] && strcmp(anchors->items[anchors->slots[slot] - 1].name, name) != 0)
+    slot = (slot + 1) % SLOT_COUNT;
+  return slot;
+}
+
+static anchored_node *find_anchor(const anchor_table *anchors, const char *name) {
+  if (!anchors->count) return NULL;
+  uint16_t found = anchors->slots[anchor_slot(anchors, name)];
+  return found ? &anchors->items[found - 1] : NULL;
+}
+
+static anchored_node *add_anchor(anchor_table *anchors, const char *name, strut_tree *node) {
+  if (!anchors->items) anchors->items = strut_allocate(ANCHOR_MOST, sizeof *anchors->items);
+  if (!anchors->slots) anchors->slots = strut_allocate(SLOT_COUNT, sizeof *anchors->slots);
+  if (!anchors->items || !anchors->slots) return NULL;
+  size_t slot = anchor_slot(anchors, name);
+  anchored_node *anchor = &anchors->items[anchors->count++];
+  *anchor = (anchored_node){.name = name, .node = node};
+  anchors->slots[slot] = (uint16_t)anchors->count;
+  return anchor;
+}
+
+static void free_anchors(anchor_table *anchors) {
+  strut_release(anchors->items);
+  strut_release(anchors->slots);
+}
+
+static bool clear_table(key_table *table, size_t count) {
+  size_t capacity = 32;
+  while (capacity < 2 * count) capacity *= 2;
+  if (capacity > table->capacity) {
+    strut_release(table->slots);
+    table->slots = strut_allocate(capacity, sizeof(strut_tree *));
+    table->capacity = table->slots ? capacity : 0;
+    return table->slots != NULL;
+  }
+  memset(table->slots, 0, capacity * sizeof(strut_tree *));
+  return true;
+}
+
+/* The key of the same text met before, else NULL and `key` is remembered. */
+static strut_tree *find_or_add_key(key_table *table, size_t mask, strut_tree *key) {
+  size_t slot = (size_t)hash_text(key->text, strlen(key->text), table->seed) & mask;
+  for (; table->slots[slot]; slot = (slot + 1) & mask)
+    if (strcmp(table->slots[slot]->text, key->text) == 0) return table->slots[slot];
+  table->slots[slot] = key;
+  return NULL;
+}
+
+static strut_tree *find_among_few(strut_tree *map, strut_tree *key) {
+  for (strut_tree *other = map->first; other != key; other = other->next->next)
+    if (strcmp(other->text, key->text) == 0) return other;
+  return NULL;
+}
+
+/* Longest stretch of a key that a message repeats, in bytes. */
+enum { SHOWN_MOST = 64 };
+
+static bool refuse_key(strut_tree *key, strut_tree *earlier, strut_diagnostics *diagnostics) {
+  bool plain = !key->quoted;
+  if (plain && key->text[0] == '\0')
+    strut_diagnose(diagnostics, key->place, "a key is missing before this ':'");
+  else if (plain && strcmp(key->text, "<<") == 0)
+    strut_diagnose(diagnostics, key->place,
+                   "'<<' is not allowed; use groups to share keys between things");
+  else if (earlier)
+    strut_diagnose(diagnostics, key->place, "duplicate key '%.*s'; the first one is in line %u",
+                   strut_text_cut(key->text, SHOWN_MOST), key->text, earlier->place.line);
+  else
+    return false;
+  return true;
+}
+
+static bool check_keys(strut_tree *map, key_table *table, strut_diagnostics *diagnostics) {
+  bool few = map->count <= FEW_KEYS;
+  if (!few && !clear_table(table, map->count)) return false;
+  size_t mask = 31;
+  while (mask + 1 < 2 * (size_t)map->count) mask = 2 * mask + 1;
+  strut_tree **link = &map->first;
+  while (*link) {
+    strut_tree *key = *link;
+    strut_tree *earlier = few ? find_among_few(map, key) : find_or_add_key(table, mask, key);
+    if (refuse_key(key, earlier, diagnostics)) {
+      *link = key->next->next;
+      map->count--;
+    } else {
+      link = &key->next->next;
+    }
+  }
+  return true;
+}
 
 /* A list or map whose end has not come yet. */
 typedef struct frame {
@@ -36,8 +166,8 @@ typedef struct reader {
   strut_tree *spare; /* unused nodes of the newest slab */
   size_t spare_count;
   uint64_t nodes, expanded;
-  strut_anchors anchors;
-  strut_key_table keys;
+  anchor_table anchors;
+  key_table keys;
   const char *recent[RECENT_SLOTS];
   bool ended, no_memory;
 } reader;
@@ -129,11 +259,10 @@ static bool key_expected(const reader *r) {
 static bool read_anchor(reader *r, const yaml_char_t *name, strut_tree *node, size_t *index) {
   *index = 0;
   if (!name) return true;
-  if (r->anchors.count >= STRUT_ANCHOR_MOST)
-    return over_limit(r, node->place, "anchors", STRUT_ANCHOR_MOST);
+  if (r->anchors.count >= ANCHOR_MOST) return over_limit(r, node->place, "anchors", ANCHOR_MOST);
   const char *text = (const char *)name;
   text = strut_arena_text(&r->document->arena, text, strlen(text));
-  if (!text || !strut_anchors_add(&r->anchors, text, node)) return out_of_memory(r);
+  if (!text || !add_anchor(&r->anchors, text, node)) return out_of_memory(r);
   *index = r->anchors.count;
   return true;
 }
@@ -162,7 +291,7 @@ static bool check_escapes(reader *r, const char *text, size_t length, strut_plac
 static const char *keep_text(reader *r, const char *text, size_t length) {
   if (!length) return "";
   if (length > RECENT_LENGTH) return strut_arena_text(&r->document->arena, text, length);
-  size_t slot = (size_t)strut_text_hash(text, length, 0) % RECENT_SLOTS;
+  size_t slot = (size_t)hash_text(text, length, 0) % RECENT_SLOTS;
   const char *known = r->recent[slot];
   if (known && strncmp(known, text, length) == 0 && known[length] == '\0') return known;
   return r->recent[slot] = strut_arena_text(&r->document->arena, text, length);
@@ -191,7 +320,7 @@ static bool read_scalar(reader *r, const yaml_event_t *event) {
 static bool read_alias(reader *r, const yaml_event_t *event) {
   const char *name = (const char *)event->data.alias.anchor;
   strut_place place = place_of(event);
-  const strut_anchor *anchor = strut_anchors_find(&r->anchors, name);
+  const anchored_node *anchor = find_anchor(&r->anchors, name);
   if (key_expected(r)) {
     strut_diagnose(r->diagnostics, place, "a key must be a plain text, not an alias");
     return false;
@@ -199,7 +328,8 @@ static bool read_alias(reader *r, const yaml_event_t *event) {
   if (!anchor || !anchor->weight) {
     strut_diagnose(
         r->diagnostics, place,
-        anchor ? "alias '*%.64s' stands inside what it repeats" : "unknown alias '*%.64s'", name);
+        anchor ? "alias '*%.64s' refers to a value that contains it" : "unknown alias '*%.64s'",
+        name);
     return false;
   }
   r->expanded += anchor->weight;
@@ -247,10 +377,10 @@ static bool close_collection(reader *r, const yaml_event_t *event) {
   if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
       column > node->place.column)
     node->place.length = (uint32_t)column - node->place.column;
-  if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, &r->keys, r->diagnostics))
+  if (node->kind == STRUT_TREE_MAP && !check_keys(node, &r->keys, r->diagnostics))
     return out_of_memory(r);
   if (closed.anchor) {
-    strut_anchor *anchor = &r->anchors.items[closed.anchor - 1];
+    anchored_node *anchor = &r->anchors.items[closed.anchor - 1];
     anchor->weight = closed.weight;
     anchor->height = closed.height + 1;
   }
@@ -281,8 +411,9 @@ static bool check_rest(reader *r, const yaml_event_t *event) {
   if (at->offset >= at->length) return true;
   bool next = at->length - at->offset >= 3 && memcmp(at->text + at->offset, "---", 3) == 0;
   strut_place place = {at->line, at->column, next ? 3 : 1};
-  strut_diagnose(r->diagnostics, place,
-                 next ? "a second document; a file holds one" : "text behind the document's end");
+  strut_diagnose(
+      r->diagnostics, place,
+      next ? "a second document; a file holds one" : "text after the end of the document");
   return false;
 }
 
@@ -345,7 +476,7 @@ strut_status strut_document_read(strut_document *document, strut_diagnostics *di
   r->keys.seed = r->anchors.seed = (uint64_t)(uintptr_t)r ^ (uint64_t)time(NULL) << 20;
   if (!read_events(r)) document->root = NULL;
   bool no_memory = r->no_memory || diagnostics->out_of_memory;
-  strut_anchors_free(&r->anchors);
+  free_anchors(&r->anchors);
   strut_release(r->keys.slots);
   strut_release(r);
   if (no_memory) document->root = NULL;

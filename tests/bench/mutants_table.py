@@ -117,7 +117,7 @@ MUTANTS = [
            "if (stretch > t->slack[j]) sum += 0.5 * t->stiffness[j] * stretch * stretch;",
            "sum += 0.5 * t->stiffness[j] * stretch * stretch;",
            "slack cables store energy", "energy|recompute|member_laws"),
-    Mutant("geometric-stiffness-sign", "engine/forces/stiffness.c",
+    Mutant("geometric-stiffness-sign", "engine/forces/tangent.c",
            "double along = c - across;", "double along = c + across;",
            "the tangent stiffness has the prestress twice along the member",
            "step_limit|step_limit_dense|potential"),

@@ -108,10 +108,10 @@ def check(cells, coupling, seed):
     if len(stable) != len(states):
         fail(f"{what}: {len(stable)} stable states, not {len(states)}")
     missed = told["missed"]
-    if not 0 < missed["chance"] <= missed["chance_below"] <= 1:
+    if not 0 < missed["probability"] <= missed["probability_bound"] <= 1:
         fail(f"{what}: chance {missed}")
     rare = sum(e["found"] <= 2 for e in stable)
-    if rare > 2 and missed["unmet"] == 0 and missed["chance_below"] < 4 / told["starts"]:
+    if rare > 2 and missed["unreached"] == 0 and missed["probability_bound"] < 4 / told["starts"]:
         fail(f"{what}: {rare} states were hardly met, of which nothing is said: {missed}")
 
 

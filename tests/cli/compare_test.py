@@ -76,7 +76,7 @@ def check_rigidity(path, v):
 def check_states(path, model):
     told, v = read("equilibria", path), model["values"]
     stands = {e["name"]: (e["rest"] or e)["energy"] for e in told["equilibria"]
-              if e["fate"] == "stands"}
+              if e["outcome"] == "stands"}
     if {s["name"]: s["energy"] for s in model["states"]} != stands:
         fail(f"{path}: states {model['states']}, not {stands}")
     energies = [s["energy"] for s in model["states"]]
@@ -193,12 +193,12 @@ check_frequencies(CRAWLER, crawler["values"])
 check_motion(CRAWLER, crawler)
 same("mass", crawler["values"]["mass"], 0.14)
 if crawler["values"]["lowest_energy"] is not None or \
-        crawler["why_empty"]["lowest_energy"] != "not asked for":
+        crawler["reasons"]["lowest_energy"] != "not asked for":
     fail("states that were not asked for")
 
 # ---- unlike structures, settings, CSV ----
-both = read("compare", CRAWLER, X, TWO, PENDULUM, "--no-states", "--set", "frequency=10.5 Hz",
-            "--set", "start=II")
+both = read("compare", "--set", "frequency=10.5 Hz", "--set", "start=II", CRAWLER, X, TWO,
+            PENDULUM, "--no-states")
 by = {m["model"]: m for m in both["models"]}
 if list(by) != ["crawler", "x-frame", "two-mass-crawler", "pendulum"]:
     fail(f"labels {list(by)}")
@@ -209,12 +209,12 @@ if by["x-frame"]["without_parameters"] != ["frequency", "start"] or \
     fail("parameters that a model does not have are not told")
 check_motion(CRAWLER, by["crawler"], "--set", "frequency=10.5 Hz", "--set", "start=II")
 if by["x-frame"]["values"]["velocity"] is not None or "drive" not in \
-        by["x-frame"]["why_empty"]["drive_frequency"]:
+        by["x-frame"]["reasons"]["drive_frequency"]:
     fail("a structure without drive")
 for model in both["models"]:
     for key, value in model["values"].items():
-        if (value is None) != (key in model["why_empty"]):
-            fail(f"{model['model']}: {key} is {value}, the reason {model['why_empty'].get(key)}")
+        if (value is None) != (key in model["reasons"]):
+            fail(f"{model['model']}: {key} is {value}, the reason {model['reasons'].get(key)}")
 told = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
 rows = list(csv.DictReader(io.StringIO(told)))
 alone = read("compare", CRAWLER, X, "--no-states")["models"]
@@ -255,7 +255,7 @@ members:
         fail("the first differs from itself")
     # stiffer by a factor: a spring from a wall, whose stiffness along it is its own
     same("stiffness of a spring", found["models"][0]["values"]["stiffness_x"], 100)
-    if found["models"][0]["why_empty"].get("stiffness_y") is None:
+    if found["models"][0]["reasons"].get("stiffness_y") is None:
         fail("a spring without tension resists across")
     out = run("compare", "one.yaml", "two.yaml", "--no-states", "--no-motion").stdout
     for line in ("two against one", "+ members.ac", "- parameters.unlike",
@@ -299,7 +299,7 @@ members:
         if done.stdout:
             fail(f"strut compare {' '.join(words)}: prints something")
 
-    refused(1, "MODEL... is missing")
+    refused(1, "missing MODEL...")
     refused(4, "nosuch.yaml", "one.yaml", "nosuch.yaml", "-o", "none")
     open("bad.yaml", "w").write(text.replace("kind: spring", "kind: sprong"))
     open("worse.yaml", "w").write("strut: 1\nnods: {}\n")
@@ -309,8 +309,28 @@ members:
             fail(f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")
     if os.path.exists("none"):
         fail("a refused comparison leaves a directory")
-    refused(1, "did you mean 'stiff'", "one.yaml", "two.yaml", "--set", "stif=3")
+    refused(1, "did you mean 'stiff'", "--set", "stif=3", "one.yaml", "two.yaml")
+    refused(1, "no model has such a parameter", "--set", "stif=3", "one.yaml", "two.yaml")
+    refused(1, "'two.yaml' has no such parameter", "one.yaml", "two.yaml", "--set", "stif=3")
     refused(2, "frog", "one.yaml", "two.yaml", "--set", "stiff=frog")
+    # ---- settings behind a model are its own; scenes' names; notes once ----
+    done = run("compare", "one.yaml", "one.yaml", "--set", "stiff=200 N/m", "one.yaml", "--set",
+               "stiff=300 N/m", "--no-states", "--no-motion", "--json")
+    own = {m["model"]: m for m in json.loads(done.stdout)["models"]}
+    if list(own) != ["one", "one stiff=200 N/m", "one stiff=300 N/m"]:
+        fail(f"labels of settings: {list(own)}")
+    first = own["one"]["values"]["stiffness_x"]
+    for label, stiffness in (("one stiff=200 N/m", 200), ("one stiff=300 N/m", 300)):
+        if own[label]["parameters"]["stiff"] != stiffness or \
+                own[label]["values"]["stiffness_x"] == first:
+            fail(f"{label} is not set: {own[label]['parameters']}")
+    done = run("compare", "--set", "stiff=1e6", "one.yaml", "one.yaml", "--no-states",
+               "--no-motion")
+    if done.stderr.count("note:") != 1:
+        fail(f"not one note on --set: {done.stderr}")
+    done = run("compare", CRAWLER, PENDULUM, "--no-states", "--no-motion")
+    if "crawler:  Nine-member multistable crawler\n" not in done.stdout:
+        fail(f"no name of the scene: {done.stdout[:300]}")
     refused(1, "--accuracy", "one.yaml", "--accuracy", "0")
     refused(1, "--accuracy", "one.yaml", "--accuracy", "200%")
     refused(1, "--csv", "one.yaml", "--csv", "--json")

@@ -4,18 +4,26 @@
 . "$(dirname "$0")/lib.sh"
 crawler=$here/../../models/crawler/crawler.yaml
 
+# First what stands and its barriers, then counts; --all has every row. Shapes are told apart.
 expect 0 equilibria "$crawler"
 err_empty
-for text in "I            n1,n4      stable      22.706131 J" "stands" \
-  "tips over n4 onto n2 and n4: II" "below ground (" "III" "unstable ones, saddles and maxima" \
-  "from         to                  barrier straight there  over"; do out_has "$text"; done
+for text in "I                  n1,n4        stable      22.706131 J" "stands" "III" "collapsed" \
+  "1 crossing" "from               to                        barrier         direct  over" \
+  "not shown: 4 that tip over" "unstable (saddles and maxima); --all lists them"; do
+  out_has "$text"
+done
+out_has_not "below ground ("
+[ "$(wc -l <out)" -lt 45 ] || fail "the short table is long"
+expect 0 equilibria "$crawler" --all --starts 60
+for text in "tips over n4 onto n2 and n4: II" "below ground (" "presses with" "held-n1-n2-1 " \
+  "  between III and III-2"; do out_has "$text"; done
 
 expect 0 equilibria "$crawler" --json -o results
 cp out all.json
 same all.json results/equilibria.json
 files results equilibria.json
-for key in name strut_version seed starts missed chance bound remark equilibria label energy \
-  potential contacts supports fate verdict tips_over ends_as shape placements found nodes forces \
+for key in name strut_version seed starts missed probability smallest_basin remark equilibria label energy \
+  potential contacts supports outcome verdict tips_over ends_as shape congruent_copies found collapsed crossings nodes forces \
   reactions below_ground eigenvalues negative_eigenvalues zero_eigenvalues rest residual down \
   barriers from to height saddle via direct direct_saddle; do
   out_has "\"$key\":"
@@ -31,6 +39,15 @@ out_has '"seed":	7,'
 out_has '"energy":	22.70613'
 out_has '"energy":	22.71202'
 grep -q '"supports":	\["n2", "n4"\]' out && fail "--supports holds others too"
+# Names of what stands do not depend on the seed.
+cp out seed-7
+expect 0 equilibria "$crawler" --json --seed 8 --supports n1,n4
+for file in seed-7 out; do
+  jq -r '.equilibria[] | select(.outcome == "stands") | "\(.name) \(.energy * 1e6 | round)"' $file |
+    grep -v n1-n2-n3-n4-n5 | sort >$file.names
+done
+same seed-7.names out.names
+grep -q '^n2-n3-n4-1 22246013$' out.names || fail "names: $(cat out.names)"
 expect 0 equilibria "$crawler" --starts 40 --supports n2,n5
 err_empty
 

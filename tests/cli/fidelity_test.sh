@@ -23,6 +23,12 @@ sed 's/^nodes:/bars: rigid\nnodes:/' "$rod" >"$work/rigid.yaml"
 same_run "--bars rigid" "$work/rigid.yaml" "$rod"
 same_run "--bars elastic" "$rod" "$work/rigid.yaml"
 
+# The former name of a law, noted.
+expect 0 check "$crawler" --damping-law printed
+err_has "strut check: note: 'printed' is now called 'approach_only'"
+expect 0 check "$crawler" --damping-law approach_only
+[ ! -s err ] || fail "a note without cause"
+
 for command in run check; do
   expect 1 "$command" "$crawler" --bars rigdi
   err_has "--bars expects elastic or rigid, not 'rigdi'; did you mean 'rigid'?"
@@ -31,14 +37,14 @@ for command in run check; do
   expect 1 "$command" "$crawler" --friction-law coulom
   err_has "did you mean 'coulomb'?"
   expect 1 "$command" "$crawler" --damping-law hunt
-  err_has "--damping-law expects printed or hunt_crossley, not 'hunt'"
+  err_has "--damping-law expects approach_only or hunt_crossley, not 'hunt'"
   expect 1 "$command" "$crawler" --friction-law smooth
   err_has "needs ground.friction.width"
   expect 1 "$command" "$crawler" --damping-law hunt_crossley
   err_has "needs ground.dissipation"
   expect 1 "$command" "$rod" --friction-law coulomb
   err_has "needs a ground with friction"
-  expect 1 "$command" "$rod" --damping-law printed
+  expect 1 "$command" "$rod" --damping-law approach_only
   err_has "needs a ground"
   expect 1 "$command" "$crawler" --friction-law coulomb
   err_has "needs a method with events"

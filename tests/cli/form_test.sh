@@ -17,7 +17,7 @@ holds() {
   size=$2
   shift 2
   expect 0 form "$model" "$@" -o form.yaml
-  out_has "forces left"
+  out_has "residual force"
   grep -qF 'run: {duration: 10}' form.yaml || fail "$model: no run of 10 s was added"
   expect 0 run form.yaml -o results --quiet
   moved=$(drift results/nodes.csv)

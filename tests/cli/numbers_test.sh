@@ -26,5 +26,5 @@ expect 3 run "$hopper" --set "step=20 ms" --set seconds=60 --force
 out_has "Hopper: diverged"
 
 expect 0 check "$hopper" --set "step=20 ms"
-out_has "strut run will refuse it"
+out_has "strut run rejects it"
 done_testing

@@ -162,15 +162,15 @@ err_has "did you mean 'k'?"
 expect 1 path over.yaml --over tip.y --until 3
 err_has "did you mean 'top.y'?"
 expect 1 path over.yaml --over weight --until 3
-err_has "'weight' is a load; --load weight follows its factor"
+err_has "'weight' is a load; use --load weight"
 expect 1 path over.yaml --over k
 err_has "missing --until VALUE"
 expect 1 path over.yaml --over k --until "3 m"
 err_has "--until expects a stiffness"
 expect 1 path over.yaml --over k --until "1000 N/m"
-err_has "the path would end where it begins"
+err_has "--from and --until are equal"
 expect 1 path over.yaml --over k --load weight --until 3
-err_has "leave out either it or --over"
+err_has "give either --load or --over, not both"
 expect 1 path over.yaml --over pull --from "-2 m" --until 0
 err_has "the rest length of tie would be negative"
 sed 's/load: 1 N/load: 1 N, speed: 3, shape: "flat"/; s/frequency: 1 Hz/frequency: speed/
@@ -178,7 +178,7 @@ sed 's/load: 1 N/load: 1 N, speed: 3, shape: "flat"/; s/frequency: 1 Hz/frequenc
 expect 1 path idle.yaml --over speed --until 5
 err_has "speed changes nothing that matters at rest"
 expect 1 path idle.yaml --over shape --until 5
-err_has "parameter 'shape' is a text; a path needs a number"
+err_has "parameter 'shape' is a text, expected a number"
 sed -i 's/speed: 3/speed: 3, unused: 4/' idle.yaml
 expect 2 path idle.yaml --over unused --until 5
 err_has "nothing in the scene uses parameter 'unused'"

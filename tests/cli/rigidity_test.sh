@@ -22,7 +22,7 @@ err_empty
 out_has "s = 1"
 out_has "f = 3: 3 rigid-body"
 out_has "6 members - 8 free coordinates = -2 = s - f"
-out_has "yes, by the state of self-stress"
+out_has "yes, by the self-stress state"
 out_has "structure with tensegrity features of class 2"
 expect 0 rigidity x.yaml --json
 for text in '"rank":	5' '"method":	"svd"' '"rigid_body":	3' '"super_stable":	true' '"equilibrium":	true' \
@@ -54,7 +54,7 @@ err_has "taken"
 grep -v 'ac:\|bd:\|bar' x.yaml | sed 's/force_density: 5 N.m},/rest_length_ratio: 1}}/' >loop.yaml
 expect 0 rigidity loop.yaml
 out_has "f = 4: 3 rigid-body, 1 finite"
-out_has "lengths stay within"
+out_has "lengths constant within"
 
 # Nodes alone, all held: an answer, not a failure.
 printf 'strut: 1\nnodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}}\n' >nodes.yaml

@@ -33,7 +33,7 @@ out_has "unstable equilibrium"
 out_has "node 'tip'"
 out_has "  unstable   tip moves along x"
 expect 0 equilibria rod.yaml
-out_has "the start settles in unnamed-2"
+out_has "the start settles in saddle-1"
 out_has "unstable equilibrium"
 
 # Pushed off it hangs, for all of them.

@@ -55,7 +55,7 @@ err_has "2 of 5 shards are missing (1, 3)"
 absent in-5/table.csv
 expect 0 sweep study.yaml -o in-5 --status
 out_has "shard 0: 4 points: 4 done, 0 missing, 0 of the done failed"
-out_has "shard 1: not begun"
+out_has "shard 1: not started"
 expect 0 sweep study.yaml -o in-5 --status --json
 out_has '{"shard": 4, "points": 3, "done": 3, "missing": 0, "failed": 0}]}'
 expect 0 sweep study.yaml -o in-5 --shard 1/5 --quiet --set seconds=0.02
@@ -77,6 +77,14 @@ for line in --array=0-6 --cpus-per-task=3 --time=1-02:00:00 --mem=1500M --job-na
 done
 sh -n out || fail "the script is none"
 absent "it's here"
+if command -v shellcheck >/dev/null; then
+  shellcheck "$here"/../../engine/study/cluster/*.sh || fail "shellcheck objects to a template"
+  for kind in slurm parallel; do
+    "$strut" sweep study.yaml -o "it's here" --emit $kind --shards 7 >"$kind.sh"
+    grep -q '@[a-z]*@' "$kind.sh" && fail "a placeholder is left in $kind.sh"
+    shellcheck "$kind.sh" || fail "shellcheck objects to $kind.sh"
+  done
+fi
 mkdir bin
 printf '#!/bin/sh\nprintf "%%s\\n" "$@" >>%s\necho 12\n' "$work/sent" >bin/sbatch
 chmod +x bin/sbatch

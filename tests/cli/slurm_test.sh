@@ -151,7 +151,7 @@ scontrol update job="${shards}_2" StartTime=now 2>/dev/null # Slurm would let it
 wait_for 300 over "$shards" || give_up "the shards do not end" # as it does where it takes no update yet
 wait_for 30 over "$table" || give_up "the merge does not end"
 [ "$(state "${shards}_2")" = "FAILED 3:0 " ] || fail "shard 2: $(state "${shards}_2")"
-grep -q 'interrupted with' "out/slurm-$shards-2.log" || fail "shard 2 was not interrupted"
+grep -q 'interrupted after' "out/slurm-$shards-2.log" || fail "shard 2 was not interrupted"
 [ "$(state "${shards}_1")" = "FAILED 137:0 " ] || fail "shard 1: $(state "${shards}_1")"
 cp "out/slurm-$table-merge.log" "$work/out"
 out_has "shard 1 lacks"

@@ -113,6 +113,40 @@ keep: [velocity, force_evaluations, residual, work, contacts, positions, outcome
 """
 
 
+ROD = """strut: 1
+parameters: {mass: 1 kg, stiff: 1e5 N/m}
+gravity: [0, -9.81]
+nodes: {pin: {position: [0, 0], fixed: both}, tip: {position: [0, 1], mass: mass}}
+members: {rod: {kind: bar, nodes: [pin, tip], stiffness: stiff, damping: 10}}
+initial: {settle: true}
+solver: {step: 1 ms}
+run: {duration: 0.1 s}
+"""
+
+
+def warnings_are_counted():
+    """Once per cause, with how many runs gave it; and a column for unstable starts."""
+    write("rod.yaml", ROD)
+    write("rods.yaml", """strut: 1
+study: rods
+model: rod.yaml
+axes: [{mass: [1 kg, 2 kg, 3 kg]}]
+""")
+    done = run("sweep", "rods.yaml", "-o", "rods", "--json", "--threads", "2")
+    warnings = json.loads(done.stdout)["warnings"]
+    check(len(warnings) == 1 and warnings[0]["runs"] == 3 and warnings[0]["point"] == 0,
+          f"warnings {warnings}")
+    check(done.stderr.count("warning") == 1 and "3 of 3 runs, first point 0: " in done.stderr,
+          f"warnings on stderr: {done.stderr}")
+    check([row["start_unstable"] for row in rows("rods/table.csv")] == ["1"] * 3,
+          "the column of unstable starts")
+    write("rod.yaml", ROD.replace("settle: true", "settle: {perturb: yes}"))
+    done = run("sweep", "rods.yaml", "-o", "hanging", "--json")
+    check(not json.loads(done.stdout)["warnings"] and not done.stderr, "warnings of nothing")
+    check([row["start_unstable"] for row in rows("hanging/table.csv")] == ["0"] * 3,
+          "the column of stable starts")
+
+
 def rows_are_single_runs():
     write("crawler.yaml", CRAWLER)
     run("sweep", "crawler.yaml", "-o", "one", "--threads", "1", "--quiet")
@@ -279,7 +313,7 @@ def interrupted():
     if child.returncode == 0:
         return  # it was over before
     check(child.returncode == 130, f"interrupted: exit code {child.returncode}")
-    check("the same command goes on from there" in err, f"interrupted: {err}")
+    check("the same command resumes" in err, f"interrupted: {err}")
     check(not os.path.exists(f"{work}/stopped/table.csv"), "an earlier table beside new points")
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     check(read("stopped/table.csv") == read("one/table.csv"), "after an interrupt: table")
@@ -512,7 +546,7 @@ keep: [velocity]
 
 
 def wrong_use():
-    check("-o DIR is missing" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
+    check("missing -o DIR" in run("sweep", "fails.yaml", code=1).stderr, "no -o")
     run("sweep", "fails.yaml", "-o", "other", "--threads", "0", code=1)
     run("sweep", "nowhere.yaml", "-o", "other", code=4)
     run("sweep", "fails.yaml", "-o", "nothing", "--status", code=4)
@@ -557,7 +591,7 @@ keep: [velocity]
 
 
 try:
-    for test in (points_are_those_of_numpy, rows_are_single_runs, the_same_bytes,
+    for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs, the_same_bytes,
                  lanes_change_nothing, killed_and_resumed, interrupted, points_that_fail,
                  failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
                  trajectories, killed_while_recording,

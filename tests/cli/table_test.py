@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table of a sweep in other programs: the lines of docs/sweep.md for pandas, Octave and LibreOffice
+# The table of a sweep in other programs: the lines of docs/how-to/results.md for pandas, Octave and LibreOffice
 # are run as they stand there, and what these programs then hold is the table.
 #
 #   python3 table_test.py STRUT
@@ -26,10 +26,10 @@ work = tempfile.mkdtemp()
 
 
 def lines_of(program):
-    """The block behind "<!-- run: PROGRAM -->" in docs/sweep.md."""
-    with open(f"{root}/docs/sweep.md", encoding="utf-8") as file:
+    """The block behind "<!-- run: PROGRAM -->" in docs/how-to/results.md."""
+    with open(f"{root}/docs/how-to/results.md", encoding="utf-8") as file:
         found = re.findall(f"<!-- run: {program} -->\n```text\n(.*?)```\n", file.read(), re.S)
-    check(len(found) == 1, f"docs/sweep.md has {len(found)} blocks for {program}")
+    check(len(found) == 1, f"docs/how-to/results.md has {len(found)} blocks for {program}")
     return found[0]
 
 
@@ -62,7 +62,7 @@ TEXTS = ("start", "motion", "outcome", "status", "message")
 
 def make_tables():
     """That of the document's first commands, and one with points that fail."""
-    with open(f"{root}/docs/sweep.md", encoding="utf-8") as file:
+    with open(f"{root}/docs/how-to/results.md", encoding="utf-8") as file:
         block = re.search("```sh\n(.*?)```\n", file.read(), re.S).group(1)
     os.symlink(f"{root}/models", f"{work}/models")
     os.environ["PATH"] = os.path.dirname(strut) + os.pathsep + os.environ["PATH"]

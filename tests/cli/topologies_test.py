@@ -49,7 +49,7 @@ gull = models[[os.path.basename(f) for f in files].index("gull.yaml")]
 if gull["values"]["cost_of_transport"] is not None:
     fail(f"the gull has a cost of transport: {gull['values']['cost_of_transport']}")
 
-# docs/compare.md shows what the program prints, numbers to the 1 % that velocities are right to. Left out
+# docs/how-to/compare-designs.md shows what the program prints, numbers to the 1 % that velocities are right to. Left out
 # are states, which take long; what is measured or depends on how an accuracy is reached; and the last
 # column, the velocity of which is nothing but its error.
 LAST = 12
@@ -70,16 +70,16 @@ def alike(a, b):
     return len(a) == len(b)
 
 
-page = open("docs/compare.md", encoding="utf-8").read()
-names = re.search(r"^strut compare (nine.*) -o five$", page, re.M).group(1).split()
+page = open("docs/how-to/compare-designs.md", encoding="utf-8").read()
+names = re.search(r"^strut compare (nine.*) --no-states -o five$", page, re.M).group(1).split()
 shown = page.split("```text\n")[1].split("```")[0].splitlines()
 os.environ["COLUMNS"] = "120"
 printed = run("compare", *[f"models/topologies/{n}" for n in names], "--no-states").splitlines()
 for line in shown:
     if not line.startswith(ROWS) and not any(alike(line, other) for other in printed):
-        fail(f"docs/compare.md: the program does not print '{line}'")
+        fail(f"docs/how-to/compare-designs.md: the program does not print '{line}'")
 if len(shown) < 30:
-    fail("docs/compare.md shows no table")
+    fail("docs/how-to/compare-designs.md shows no table")
 if alike("  velocity   10.03 mm/s" + LAST * " ", "  velocity   10.33 mm/s" + LAST * " "):
     fail("numbers that differ are taken for alike")
 

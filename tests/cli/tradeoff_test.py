@@ -73,7 +73,7 @@ def check_spreads(what, answer):
             told = row[kind]
             wanted = spread(infinite(told["points"]))
             if not all(close(a, b) for a, b in zip(
-                    wanted, infinite([told["median"], told["ninety"], told["worst"]]))):
+                    wanted, infinite([told["median"], told["percentile_90"], told["worst"]]))):
                 fail(f"{what}: {row['group']} {row['step']}: {kind} {told}, not {wanted}")
         if row["diverged"] != sum(v is None for v in row["step_error"]["points"]):
             fail(f"{what}: {row['group']} {row['step']} does not count what diverged")
@@ -312,14 +312,14 @@ if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in g
 # ---- Wrong use: one sentence, nothing on stdout.
 for words, text in (
         (("--measure", "speed"), "--measure expects velocity, position or energy"),
-        (("--methods", "rk4,rk5"), "there is no method 'rk5'"),
-        (("--methods", ""), "there is no method ''"),
+        (("--methods", "rk4,rk5"), "unknown method 'rk5'"),
+        (("--methods", ""), "unknown method ''"),
         (("--steps", "0"), "a whole number from 1 to 40"),
         (("--periods", "-1"), "--periods is from"),
         (("--budget", "3 m"), "--budget expects"),
         (("--budget", "-3 s"), "--budget is from"),
-        (("--points", "3"), "belong to what --vary draws"),
-        (("--seed", "3"), "belong to what --vary draws"),
+        (("--points", "3"), "need --vary"),
+        (("--seed", "3"), "need --vary"),
         (("--vary", "height"), "--vary expects NAME=RANGE"),
         (("--vary", "height=..2"), "--vary expects NAME=LOW..HIGH"),
         (("--vary", "height=1.."), "--vary expects NAME=LOW..HIGH"),

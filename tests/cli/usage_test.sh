@@ -6,7 +6,7 @@ hopper=$here/hopper.yaml
 
 expect 1
 out_empty
-err_has "a command is missing"
+err_has "missing COMMAND"
 expect 1 rum
 err_has "unknown command 'rum'; did you mean 'run'?"
 expect 1 help chek
@@ -14,6 +14,17 @@ err_has "did you mean 'check'?"
 expect 0 --version
 grep -qE '^strut [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no version"
 err_empty
+cp out version
+expect 0 -V
+same version out
+# Commands and their summaries stand in two columns, whatever the longest name.
+expect 0 help
+sed -n '/^Commands:/,/^$/p' out | sed '1d;$d' >list
+[ "$(sed -E 's/^(  [a-z]+ +).*/\1/' list | awk '{print length($0)}' | sort -u | wc -l)" -eq 1 ] ||
+  fail "the list of commands is not aligned"
+expect 0 help help
+out_has "usage: strut help"
+expect 0 help --help
 for words in help --help -h; do
   expect 0 $words
   err_empty
@@ -64,14 +75,14 @@ err_has "--set expects NAME=VALUE"
 expect 1 check "$hopper" --force
 err_has "unknown option '--force'"
 expect 1 run
-err_has "MODEL is missing"
+err_has "missing MODEL"
 expect 1 run "$hopper" other.yaml
-err_has "'other.yaml'"
+err_has "unexpected argument 'other.yaml'"
 expect 1 keys "$hopper"
 out_empty
 err_has "'strut keys --help' lists the options"
 expect 1 run --
-err_has "MODEL is missing"
+err_has "missing MODEL"
 expect 0 run -q -- "$hopper"
 expect 0 run --quiet "$hopper" --set seconds=0.01
 out_empty
@@ -112,6 +123,29 @@ err_has "empty.yaml:"
 out_has '"completed"'
 "$strut" check - <bad.yaml >out 2>err && fail "a bad scene on the standard input"
 err_has ":2:1: error: "
+
+# -q: every command has it, and prints no report.
+for command in $(awk '{print $1}' list); do
+  expect 0 $command --help
+  out_has "-q, --quiet"
+done
+cat >snap.yaml <<'YAML'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0.3], mass: 1}, c: {position: [2, 0], fixed: both}}
+members:
+  ab: {nodes: [a, b], kind: bar, stiffness: 1000}
+  bc: {nodes: [b, c], kind: bar, stiffness: 1000}
+loads: {push: {node: b, force: [0, -1 N]}}
+YAML
+for command in check modes equilibria rigidity path; do
+  expect 0 $command snap.yaml -q
+  out_empty
+  err_empty
+  expect 0 $command snap.yaml --json -q
+  out_has "{"
+done
+expect 0 check "$hopper" -q
+out_empty
 
 # The other commands.
 expect 0 keys

@@ -31,6 +31,22 @@ grep -q '"motion":null' model.html || fail "a model moves"
 sed 's/"swing.yaml"//' model.html | cmp -s - stdin.html || fail "another page from the standard input"
 [ "$(ls -A | grep -c html)" -eq 3 ] || fail "$(ls -A)"
 
+# Without -o: beside the run or the model, and never over a file that strut did not write.
+mkdir beside
+cp -r swing beside/swing
+cp swing.yaml beside/model.yaml
+expect 0 view beside/swing/
+sed 's/beside.//' beside/swing.html | cmp -s - swing.html || fail "another page without -o"
+expect 0 view beside/swing -q
+expect 0 view beside/model.yaml -q
+[ -s beside/model.html ] || fail "no page of the model"
+echo mine >beside/swing.html
+expect 4 view beside/swing
+err_has "strut did not write it"
+[ "$(cat beside/swing.html)" = mine ] || fail "overwrote a file"
+expect 1 view - </dev/null
+err_has "missing -o FILE.html"
+
 # The same page in any locale and with any number of threads.
 for locale in C C.UTF-8 de_DE.UTF-8; do
   LC_ALL=$locale OMP_NUM_THREADS=1 expect 0 view swing -o again.html -q
@@ -47,17 +63,17 @@ timeout --preserve-status -s INT 0.1 "$strut" view "$here/../../models/crawler/c
 absent stopped.html
 
 # Wrong use: a sentence, and nothing is written.
-expect 1 view swing
-err_has "give -o FILE.html"
+expect 1 view .
+err_has "missing -o FILE.html"
 expect 1 view swing -o page.pdf
-err_has "ends with .html"
+err_has "must end in .html"
 expect 1 view swing -o .html
 expect 1 view swing -o page.html --equilibria some
 err_has "some"
 expect 1 view swing -o page.html --set x=1
 err_has "--set needs a model"
 expect 1 view -o page.html
-err_has "RUN|MODEL is missing"
+err_has "missing RUN|MODEL"
 expect 1 view swing -o page.html --plot a.svg
 absent page.html
 

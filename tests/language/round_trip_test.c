@@ -275,7 +275,7 @@ static void every_key_stands_in_a_good_file(void **state) {
   (void)state;
   scene_file *files;
   size_t count = scene_files(&files);
-  for (int key = 0; key < strut_section_first(STRUT_ROOM_STUDY);
+  for (int key = 0; key < strut_section_first(STRUT_SECTION_STUDY);
        key++) { /* studies: study_test.c */
     char with_colon[60];
     bool found = false;

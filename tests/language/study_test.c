@@ -132,7 +132,7 @@ static void bad_studies_are_refused(void **state) {
 }
 
 static void open_good(const char *name, strut_study_file *file) {
-  char path[600];
+  static char path[600]; /* the study refers to it */
   strut_error error = {0};
   snprintf(path, sizeof path, FOLDER "good/%s", name);
   strut_status status = strut_study_open(path, NULL, 0, file, &error);
@@ -146,7 +146,7 @@ static void every_key_stands_in_a_good_study(void **state) {
   (void)state;
   char *one = read_text(FOLDER "good/every-key.yaml"),
        *two = read_text(FOLDER "good/accuracy.yaml");
-  for (int key = strut_section_first(STRUT_ROOM_STUDY); key < STRUT_KEY_COUNT; key++) {
+  for (int key = strut_section_first(STRUT_SECTION_STUDY); key < STRUT_KEY_COUNT; key++) {
     char with_colon[60];
     snprintf(with_colon, sizeof with_colon, "%s:", strut_key_at(key)->name);
     if (!strstr(one, with_colon) && !strstr(two, with_colon))
@@ -218,6 +218,34 @@ static void a_study_is_what_it_says(void **state) {
   strut_study_close(&file);
 }
 
+/* Former names of keys in a study and its variants: read, noted once, and replaced by current ones. */
+static void former_names_are_noted_once(void **state) {
+  (void)state;
+  static const double expected[] = {1e-3, 1e-9};
+  strut_study_file file;
+  strut_error error = {0};
+  open_good("former-names.yaml", &file);
+  for (int64_t variant = 0; variant < 2; variant++) {
+    strut_study_value values[2];
+    strut_setup setup;
+    strut_grid_values(&file.study, 2 * variant, values);
+    assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+    assert_true(setup.experiment.steady.floor == expected[variant]);
+    assert_int_equal(setup.experiment.steady.successive, 4);
+    strut_setup_free(&setup);
+  }
+  const char *notes = strut_study_notes(&file);
+  assert_non_null(strstr(notes,
+                         "former-names.yaml:5:43: note: 'successive' is now called "
+                         "'repetitions'"));
+  assert_non_null(strstr(notes,
+                         "former-names.yaml:8:35: note: 'floor' is now called "
+                         "'absolute_tolerance'"));
+  assert_int_equal(file.diagnostics.note_count, 2);
+  assert_int_equal(file.model_diagnostics.note_count, 0);
+  strut_study_close(&file);
+}
+
 /* Comments and blanks change nothing; what decides results does. */
 static void identity(void **state) {
   (void)state;
@@ -261,6 +289,7 @@ int main(void) {
       cmocka_unit_test(every_key_stands_in_a_good_study),
       cmocka_unit_test(keep_is_one_table),
       cmocka_unit_test(a_study_is_what_it_says),
+      cmocka_unit_test(former_names_are_noted_once),
       cmocka_unit_test(identity),
       cmocka_unit_test(no_memory),
   };

@@ -4,7 +4,7 @@
 #include <gsl/gsl_sort_vector.h>
 #include <math.h>
 
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

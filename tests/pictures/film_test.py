@@ -130,14 +130,14 @@ def test_names():
 def test_said():
     """What is too short or recorded too seldom is told, with what to do."""
     said = call(0, hopper, "--animate", "d.gif").stdout
-    check(re.search(r"lasts 500 ms: --speed 1/10 shows it in 5 s", said), said[-300:])
+    check(re.search(r"lasts 500 ms: --speed 1/10 makes a film of 5 s", said), said[-300:])
     with open(hopper, encoding="utf-8") as file:
         text = file.read().replace("every: 1 ms", "every: 100 ms").replace("seconds: 0.5",
                                                                            "seconds: 3")
     with open("seldom.yaml", "w", encoding="utf-8") as file:
         file.write(text)
     said = call(0, "seldom.yaml", "--animate", "d.gif").stdout
-    check("recorded every 100 ms, shown every 40 ms" in said, said[-300:])
+    check("recorded every 100 ms but shown every 40 ms" in said, said[-300:])
     check(call(0, hopper, "--animate", "d.gif", "--quiet").stdout == "", "not quiet")
     said = call(0, hopper, "--animate", "d.gif", "--json").stdout
     check(said.lstrip().startswith("{") and said.rstrip().endswith("}"), "no JSON")

@@ -156,6 +156,18 @@ def check_charts(driver, name):
     check(0.35 < run(driver, "strut.frame / strut.frames") < 0.65, f"{name}: a click does not seek")
 
 
+def check_panels(driver):
+    """A run without a search: the first chart is of what moves most, parameters are in view."""
+    open_page(driver, "bouncing.html")
+    first = run(driver, "Array.from(document.querySelector('.chart-title').querySelectorAll('bdi'),"
+                        " (e) => e.textContent)")
+    check(first == ["ball y"], f"bouncing.html: the first chart is of {first}")
+    rows = [row.text for row in driver.find_elements(By.CSS_SELECTOR, "#parameters tr")]
+    check(any(row.startswith("integration method ") for row in rows), f"bouncing.html: parameters {rows}")
+    check(not driver.find_element(By.ID, "cards-section").is_displayed(),
+          "bouncing.html: equilibria that nobody asked for")
+
+
 def ink(driver):
     """Pixels of the stage that are not blank."""
     return run(driver, "(() => { const c = document.getElementById('canvas');"
@@ -173,7 +185,7 @@ def check_cards(driver, name, listed):
     stable = [e for e in listed if e["label"] in ("stable", "floppy")]
     left_out = run(driver, "strut.data.equilibria_left_out || 0")
     check(len(cards) + left_out >= len(stable) and cards, f"{name}: {len(cards)} cards")
-    standing = [e for e in listed if e["fate"] == "stands"]
+    standing = [e for e in listed if e["outcome"] == "stands"]
     shown = [card for card in cards if card.is_displayed()]
     check(len(shown) == len(standing), f"{name}: {len(shown)} cards of {len(standing)} that stand")
     for card in shown[:3]:
@@ -299,6 +311,7 @@ def main():
                 check(ink(driver) > 200 and run(driver, "strut.frames") == 0,
                       "model.html: a model at rest is not drawn")
                 check_silence(driver, "model.html")
+                check_panels(driver)
                 check_hostile(driver)
                 check_damaged(driver)
         finally:

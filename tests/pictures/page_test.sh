@@ -17,10 +17,12 @@ cd "$work"
 sed 's/^run: .*/run: {periods: 30, of: drive, measure: {last: 10}}/; s/^output: {last: 10, /output: {last: 5, /' \
   "$root/models/crawler/crawler.yaml" >crawler.yaml
 "$strut" run crawler.yaml --quiet -o crawler
-"$strut" view crawler --quiet -o crawler.html
+"$strut" view crawler --quiet --equilibria all -o crawler.html
 "$strut" equilibria crawler.yaml --json >crawler.json
 "$strut" run "$root/models/gallery/two-mass-crawler.yaml" --quiet -o two-mass
 "$strut" view two-mass --quiet -o two-mass.html
+"$strut" run "$root/models/basics/bouncing-node.yaml" --quiet -o bouncing
+"$strut" view bouncing --quiet -o bouncing.html
 "$strut" view "$root/models/gallery/x-frame.yaml" --quiet -o model.html
 
 # Texts that would be markup, end a script or turn the direction of writing. The language keeps names

@@ -163,6 +163,61 @@ plot("log.csv", "--log", "xy", "--plot", "log.svg")
 line = curves(read("log.svg")[2], FIRST)[0]
 check_curve("log.svg", [-float(i) for i in range(12)][::-1], logs[::-1], line[::-1])
 
+# Columns of two units have an axis each: every curve has a scale of its own that its axis shows.
+write("two.csv", "f [Hz],v [m/s],w [J],u [m/s],l [m]\n" + "".join(
+    f"{x!r},{a!r},{2e-3 * x * x!r},{1.2 * b!r},{x!r}\n" for x, a, b in zip(xs, one, two)))
+plot("two.csv", "--y", "v,w,u", "--plot", "two.svg")
+_, _, paths = read("two.svg")
+THIRD = (0, 0x9E / 255, 0x73 / 255)
+scales = [check_curve(f"two.svg, {name}", xs, ys, curves(paths, colour)[0]) for name, ys, colour in
+          (("v", one, FIRST), ("w", [2e-3 * x * x for x in xs], SECOND),
+           ("u", [1.2 * b for b in two], THIRD))]
+if all(scales):
+    check(abs(scales[0][2] / scales[2][2] - 1) < 1e-3, "two.svg: columns of one unit share an axis")
+    check(abs(scales[0][2] / scales[1][2] - 1) > 0.1, "two.svg: columns of two units share an axis")
+ticks = [path.lines[0] for path in paths if near(path.stroke, FRAME) and len(path.lines) == 1
+         and len(path.lines[0]) == 2 and abs(path.lines[0][0][1] - path.lines[0][1][1]) < 0.01]
+right = max(p[0] for line in curves(paths, FIRST) for p in line)
+left = min(p[0] for line in curves(paths, FIRST) for p in line)
+check(sum(min(p[0] for p in t) > right - 0.1 for t in ticks) > 3, "two.svg: ticks on the right")
+check(sum(max(p[0] for p in t) < left + 0.1 for t in ticks) > 3, "two.svg: ticks on the left")
+plot("two.csv", "--y", "v,w,l", "--plot", "a.svg", code=1, err="three units (m/s, J, m)")
+
+# Limits and labels that are given.
+plot("two.csv", "--y", "v", "--x-limits", "0,10", "--y-limits", "-0.02,0.02", "--plot", "limits.svg",
+     "--x-label", "frequency of the drive", "--y-label", "speed", "--title", "Own title")
+_, _, paths = read("limits.svg")
+found = check_curve("limits.svg", xs, one, curves(paths, FIRST)[0])
+frames = [path.lines[0] for path in paths if near(path.stroke, FRAME) and len(path.lines[0]) >= 4]
+if found and frames:
+    low, high = (f(p[0] for p in frames[0]) for f in (min, max))
+    check(abs(found[1] - low) < 0.05 and abs(10 * found[0] + found[1] - high) < 0.05,
+          "limits.svg: x from 0 to 10")
+    top, bottom = (f(p[1] for p in frames[0]) for f in (min, max))
+    check(abs(0.02 * found[2] + found[3] - top) < 0.05, "limits.svg: y up to 0.02")
+for words, err in ((["--x-limits", "3,1"], "two ascending numbers"),
+                   (["--y-limits", "0,1", "--log", "y"], "above 0"),
+                   (["--y-limits", "x"], "two ascending numbers"),
+                   (["--colors", "grey"], "knows no --colors")):
+    plot("two.csv", "--y", "v", *words, "--plot", "a.svg", code=1, err=err)
+
+# An eighth curve has the colour of the first, and other dashes.
+write("many.csv", "t," + ",".join(f"s{k}" for k in range(8)) + "\n" + "".join(
+    f"{i}," + ",".join(f"{k + math.sin(i)!r}" for k in range(8)) + "\n" for i in range(30)))
+plot("many.csv", "--y", ",".join(f"s{k}" for k in range(8)), "--plot", "many.svg")
+dashes = [path.dash for path in read("many.svg")[2] if near(path.stroke, FIRST) and not path.curved
+          and any(len(line) > 4 for line in path.lines)]
+check(len(dashes) == 2 and bool(dashes[0]) != bool(dashes[1]), f"many.svg: dashes {dashes}")
+
+# Rounding noise is drawn as a level line.
+write("noise.csv", "t [s],y [m],c [N]\n" + "".join(
+    f"{i},{1e-16 * (-1) ** i!r},{0.1 + 1e-16 * (i * i % 7)!r}\n" for i in range(30)))
+for name in "yc":
+    plot("noise.csv", "--y", name, "--plot", "noise.svg")
+    heights = [p[1] for path in read("noise.svg")[2] if near(path.stroke, FIRST)
+               for line in path.lines for p in line]
+    check(heights and max(heights) - min(heights) < 0.01, f"noise.svg, {name}: it is no level line")
+
 # A map: every cell where its row says.
 write("map.csv", "a,b,c\n" + "".join(f"{i},{k},{'x' if (i + k) % 3 else 'y'}\n"
                                      for i in range(5) for k in range(4)))
@@ -183,6 +238,28 @@ fills = [tuple(round(c, 3) for c in path.fill) for path in read("hole.svg")[2]
          and max(p[0] for p in path.lines[0]) - min(p[0] for p in path.lines[0]) > 50]
 check(len(fills) == 19 and len(set(fills)) == 2, "a cell of which nothing is said has no category")
 
+# A map of a signed quantity: blue below zero, brown above, near white at it, whatever the extremes.
+write("signed.csv", "a,b,v [m/s]\n" + "".join(
+    f"{i},{k},{0.01 * (i - 1) * (1 + k)!r}\n" for i in range(5) for k in range(4)))
+
+
+def cells_of(*words):
+    plot("signed.csv", "--kind", "map", *words, "--plot", "signed.svg")
+    return [path.fill for path in read("signed.svg")[2] if path.fill and not near(path.fill, (1, 1, 1))
+            and not path.curved and max(p[0] for p in path.lines[0]) -
+            min(p[0] for p in path.lines[0]) > 50][:20]
+
+
+shades = cells_of()
+check(len(shades) == 20, f"signed.svg: {len(shades)} cells of 20")
+for k, fill in enumerate(shades):
+    i = k % 5
+    sign = (fill[0] > fill[2] + 0.02) - (fill[2] > fill[0] + 0.02)
+    check(sign == (i > 1) - (i < 1), f"signed.svg: cell {k} has the colour {fill}")
+check(all(abs(f[0] - f[1]) < 0.01 and abs(f[1] - f[2]) < 0.01 for f in cells_of("--colors", "grey")),
+      "signed.svg: --colors grey")
+check(cells_of("--colors", "sequential") != shades, "signed.svg: --colors sequential")
+
 # A point between two gaps is seen.
 write("lone.csv", "t,x\n" + "".join(f"{i},{'' if i in (3, 5) else i * i}\n" for i in range(40)))
 plot("lone.csv", "--plot", "lone.svg")
@@ -199,10 +276,10 @@ for name in ("map.svg", "panels.svg"):
 # Refusals: where, what was expected, and nothing left behind.
 plot("curves.csv", "--x", "freqency", "--plot", "a.svg", code=1, err="did you mean 'frequency'?")
 plot("panels.csv", "--y", "start", "--plot", "a.svg", code=1, err="does not hold numbers")
-plot("curves.csv", code=1, err="give --plot FILE")
+plot("curves.csv", code=1, err="missing --plot FILE")
 plot("curves.csv", "--plot", "a.bmp", code=1, err=".svg, .pdf or .png")
 plot("curves.csv", "--kind", "pie", "--plot", "a.svg", code=1, err="curves")
-plot("curves.csv", "--doubt", "one", "--plot", "a.svg", code=1, err="knows no --doubt")
+plot("curves.csv", "--doubt", "one", "--plot", "a.svg", code=1, err="has no option --doubt")
 plot("curves.csv", "--plot", "nowhere/a.svg", code=4, err="nowhere")
 plot("ways.csv", "--only", "way=slo", "--plot", "a.svg", code=1, err="has 'slo' in column 'way'")
 plot("ways.csv", "--only", "way", "--plot", "a.svg", code=1, err="expects COLUMN=TEXT")
@@ -213,7 +290,7 @@ write("ragged.csv", "a,b\n1,2\n3\n4,5,6\n")
 done = plot("ragged.csv", "--plot", "a.svg", code=2, err="ragged.csv:3:1: error: 1 cells, expected 2")
 check("ragged.csv:4:1" in done.stderr, "only the first bad row is told")
 write("open.csv", 'a,b\n1,"2\n')
-plot("open.csv", "--plot", "a.svg", code=2, err="open.csv:2:3: error: a quoted cell that nothing closes")
+plot("open.csv", "--plot", "a.svg", code=2, err="open.csv:2:3: error: unterminated quoted cell")
 write("empty.csv", "")
 plot("empty.csv", "--plot", "a.svg", code=2, err="empty")
 write("header.csv", "a,b\n")

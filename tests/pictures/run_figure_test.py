@@ -105,6 +105,35 @@ def check_snapshots(here, model, words, expected, common):
         fail(f"{words}: the way that it goes is not seen: origins at {lefts}")
 
 
+THROWN = """strut: 1
+name: Thrown triangle
+gravity: [0, -9.81 m/s^2]
+ground: {stiffness: 1e4 N/m, damping: 5 N s/m, friction: {law: karnopp, mu: 0.3, stick_velocity: 0.1 mm/s}}
+nodes: {a: [0, 0], b: [0.1 m, 0], c: [0.05 m, 0.03 m]}
+members:
+  ab: {kind: bar, nodes: [a, b], stiffness: 1e4 N/m, mass: 0.1 kg}
+  ac: {kind: bar, nodes: [a, c], stiffness: 1e4 N/m, mass: 0.1 kg}
+  bc: {kind: bar, nodes: [b, c], stiffness: 1e4 N/m, mass: 0.1 kg}
+initial:
+  velocities: {a: [1, 2 m/s], b: [1, 2.5 m/s], c: [1, 2 m/s]}
+solver: {step: 0.05 ms}
+run: {duration: 0.7 s}
+"""
+
+
+def check_ground(here):
+    """A structure that leaves the ground: in a row of snapshots the ground is at one height."""
+    model, file = os.path.join(here, "thrown.yaml"), os.path.join(here, "thrown.svg")
+    open(model, "w").write(THROWN)
+    run(model, "-q", "--plot", file, "--draw", "snapshots")
+    width, height, paths = read(file)
+    lines = [s for s in segments(paths) if near(s[2].stroke, (0.3, 0.3, 0.3))
+             and abs(s[0][1] - s[1][1]) < 1e-6 and abs(s[0][0] - s[1][0]) > 0.3 * width]
+    below = [s[0][1] for s in lines if s[0][1] > 0.6 * height]
+    if len(below) < 2 or max(below) - min(below) > 0.02:
+        fail(f"the ground of the last row is drawn at {below}")
+
+
 def check_period(here, model, factors):
     """The nodes' ways over the last period, exaggerated from their mean places."""
     file, out = os.path.join(here, "b.svg"), os.path.join(here, "out2")
@@ -187,7 +216,7 @@ def check_refusals(here, model):
     file = os.path.join(here, "none.svg")
     refuse = lambda err, *words, code=1: run(model, "-q", *words, code=code, err=err)
     refuse("did you mean 'overview'", "--plot", file, "--draw", "overveiw")
-    refuse("give --plot FILE too", "--draw", "curves")
+    refuse("--draw needs --plot FILE", "--draw", "curves")
     refuse("--scale goes with", "--plot", file, "--scale", "10,2")
     refuse("--times goes with", "--plot", file, "--draw", "period", "--times", "1 s")
     refuse("two numbers above 0", "--plot", file, "--draw", "period", "--scale", "10")
@@ -248,6 +277,7 @@ with tempfile.TemporaryDirectory() as here:
                     [0, 0.05, 0.1, 0.15, 1.0], True)
     check_snapshots(here, tilt, ["--times", "300.4 ms", "--width", "column"], [0.3], True)
     check_snapshots(here, short, [], [1.4, 1.52, 1.64, 1.76, 1.88, 2.0], True)
+    check_ground(here)
     check_period(here, short, (1, 1))
     check_period(here, short, (10, 2))
     check_overview(here, short)

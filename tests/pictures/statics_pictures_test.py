@@ -90,7 +90,7 @@ crawler = os.path.join(root, "models/crawler/crawler.yaml")
 
 # Equilibria: those that stand, by energy, each to the same scale where it rests on the ground.
 found = json.loads(run("equilibria", crawler, "--json", "--plot", "e.svg"))["equilibria"]
-standing = [e for e in found if e["fate"] == "stands"]
+standing = [e for e in found if e["outcome"] == "stands"]
 standing.sort(key=lambda e: e["rest"]["energy"])
 members, names = members_of(crawler)
 _, _, paths = read("e.svg")
@@ -180,7 +180,7 @@ if shutil.which("pdftotext"):
     text = subprocess.run(["pdftotext", "-layout", "r.pdf", "-"], capture_output=True, text=True).stdout
     check(all(f"n{k}" in text for k in range(1, 7)) and "self-stress" in text, f"the PDF says {text}")
 run("rigidity", model, "--plot", "r.jpeg", code=1, err=".svg, .pdf or .png")
-run("rigidity", model, "--width", "column", code=1, err="give --plot FILE too")
+run("rigidity", model, "--width", "column", code=1, err="--width needs --plot FILE")
 run("equilibria", crawler, "--plot", "x.svg", "--width", "3 s", code=1, err="expects a length")
 run("form", arm, "--plot", "x.svg", "--width", "5 m", code=1, err="between 40 mm and 1 m")
 run("form", arm, "--plot", "nowhere/x.svg", code=4, err="nowhere")

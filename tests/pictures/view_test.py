@@ -133,7 +133,14 @@ def crawler():
           f"summary: {rows}")
     run("view", "crawl", "-o", "again.html", "-q")
     check(open("again.html").read() == text, "not the same bytes twice")
-    cards(page.data, "crawl/scene.yaml")
+    parameters = {row["label"]: row["value"] for row in page.data["parameters"]}
+    check(parameters == {"frequency": "10 Hz", "amplitude": "0.1 mm", "friction": "0.1", "start": "I",
+                         "step": "0.1 ms", "integration method": "rk4",
+                         "integration step": "100 us"}, f"parameters: {parameters}")
+    check(page.data["equilibria"] is None and not page.data["equilibria_remark"],
+          "equilibria that nobody asked for")
+    run("view", "crawl", "--equilibria", "all", "-o", "all.html")
+    cards(Page("all.html").data, "crawl/scene.yaml")
 
 
 def cards(data, scene):
@@ -143,14 +150,14 @@ def cards(data, scene):
     check(len(listed) == 40 and len(listed) + data["equilibria_left_out"] == len(found), "cards")
     check([card["name"] for card in listed[:4]] == ["III", "III-2", "I", "II"],
           f"first: {[card['name'] for card in listed[:4]]}")
-    standing = [name for name, e in found.items() if e["fate"] == "stands"]
+    standing = [name for name, e in found.items() if e["outcome"] == "stands"]
     check(set(standing) <= {card["name"] for card in listed}, "some that stand have no card")
     for card in listed:
         other = found[card["name"]]
         where = [x for node in data["nodes"] for x in other["nodes"][node["name"]]]
         check(all(abs(a - b) <= 5.001e-9 * abs(b) for a, b in zip(card["position"], where)), "shape")
         check(card["energy"] == other["energy"] and card["verdict"] == other["verdict"] and
-              card["stands"] == (other["fate"] == "stands"), f"card {card['name']}")
+              card["stands"] == (other["outcome"] == "stands"), f"card {card['name']}")
         forces = other["forces"].values()
         check(all(abs(a - b) <= 5.001e-9 * abs(b) for a, b in zip(card["force"], forces)), "forces")
         if card["stands"]: # what presses on the ground carries the whole

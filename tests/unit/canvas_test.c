@@ -12,8 +12,9 @@
 
 #include <cmocka.h>
 
-#include "engine/output/draw/canvas_parts.h"
+#include "engine/output/draw/canvas.h"
 #include "engine/output/draw/palette.h"
+#include "engine/output/file.h"
 
 static const char *const endings[] = {"svg", "pdf", "png"};
 
@@ -132,7 +133,7 @@ static void test_full(void **state) {
   assert_int_equal(strut_canvas_open(path_of("full", "svg", path), 100, 80, "", &c, &error), 0);
   draw_something(c);
   /* No disk is needed: writing into /dev/full fails the same way. */
-  assert_true(freopen("/dev/full", "wb", c->file.stream) != NULL);
+  assert_true(freopen("/dev/full", "wb", strut_canvas_file(c)->stream) != NULL);
   assert_int_equal(strut_canvas_commit(c, &error), STRUT_FILE_TROUBLE);
   strut_canvas_free(c);
   assert_int_not_equal(access(path, F_OK), 0);

@@ -9,8 +9,7 @@
 
 #include <cmocka.h>
 
-#include "engine/study/compare/compare_figure.h"
-#include "engine/study/compare/compare_report.h"
+#include "engine/study/compare/compare.h"
 #include "parser/read/difference.h"
 #include "parser/read/read_scene.h"
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "engine/output/draw/axes.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/map.h"
 #include "engine/output/draw/work_precision.h"
 #include "tests/support/random.h"

@@ -202,7 +202,7 @@ static void bombs_are_refused_at_once(void **state) {
   expect_bomb_defused("%TAG", numbered("", "%TAG !t#! tag:x#,2000:\n", 20000),
                       "directives such as %TAG are not allowed");
   expect_bomb_defused("late %TAG", numbered("a: 1\n...\n", "%TAG !t#! tag:x#,2000:\n", 20000),
-                      "text behind the document's end");
+                      "text after the end of the document");
   expect_bomb_defused("%YAML", repeat("", "%YAML 1.1\n", 20000, "---\na: 1\n"),
                       "a second %YAML line");
   expect_bomb_defused("documents", repeat("a: 1\n", "---\na: 1\n", 100000, ""),

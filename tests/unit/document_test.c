@@ -209,7 +209,7 @@ static void tags_and_directives_are_refused(void **state) {
   expect_error("%YAML 1.1\n%YAML 1.1\n---\na: 1\n", "2:1: a second %YAML line");
   expect_error("%YAML 3.0\n---\na: 1\n", "1:1: only YAML 1.1 and 1.2 can be read");
   expect_error("%YAML x\n---\na: 1\n", "1:7: expected '%YAML 1.2'");
-  expect_error("%YAML 1.2\na: 1\n", "2:1: expected '---' behind a %YAML line");
+  expect_error("%YAML 1.2\na: 1\n", "2:1: expected '---' after a %YAML line");
 }
 
 static void a_file_holds_one_document(void **state) {
@@ -221,9 +221,9 @@ static void a_file_holds_one_document(void **state) {
   expect_error("---\n...\n", "0:0: the file is empty");
   expect_error("a: 1\n---\nb: 2\n", "2:1: a second document; a file holds one");
   expect_error("a: 1\n...\n---\nb: 2\n", "3:1: a second document; a file holds one");
-  expect_error("a: 1\n...\n%TAG ! tag:x,2000:\n---\n", "3:1: text behind the document's end");
-  expect_error("{a: 1} b\n", "1:8: text behind the document's end");
-  expect_error("a: 1\n... b\n", "2:5: text behind the document's end");
+  expect_error("a: 1\n...\n%TAG ! tag:x,2000:\n---\n", "3:1: text after the end of the document");
+  expect_error("{a: 1} b\n", "1:8: text after the end of the document");
+  expect_error("a: 1\n... b\n", "2:5: text after the end of the document");
 }
 
 static void common_mistakes_have_words(void **state) {
@@ -236,20 +236,21 @@ static void common_mistakes_have_words(void **state) {
   expect_error("a: [1, 2\n", "1:4: this '[' is never closed");
   expect_error("a: [1, 2, \n", "1:4: this '[' is never closed");
   expect_error("a: {b: 1\n", "1:4: this '{' is never closed");
-  expect_error("a: {b: [1}\n", "1:10: expected ',' or ']' (the list begun in line 1)");
-  expect_error("a: [1, 2\nb: 3\n", "2:2: expected ',' or ']' (the list begun in line 1)");
-  expect_error("a: {b: 1\nc: 3\n", "2:2: expected ',' or '}' (the mapping begun in line 1)");
+  expect_error("a: {b: [1}\n", "1:10: expected ',' or ']' (the list that begins in line 1)");
+  expect_error("a: [1, 2\nb: 3\n", "2:2: expected ',' or ']' (the list that begins in line 1)");
+  expect_error("a: {b: 1\nc: 3\n", "2:2: expected ',' or '}' (the mapping that begins in line 1)");
   expect_error("a: \"x\nb: 2\n", "1:4: this quote is never closed");
   expect_error("a: 1\nb: 'x\n", "2:4: this quote is never closed");
   expect_error("a: \"x\n---\nb\n", "1:4: this quote is not closed before the document ends");
-  expect_error("a: 1\nabc\n", "2:1: expected ':' and a value behind this key");
-  expect_error("a:\n  b: 1\n c: 2\n",
-               "3:2: expected a key at the same indentation as the other keys (the mapping begun "
-               "in line 1)");
+  expect_error("a: 1\nabc\n", "2:1: expected ':' and a value after this key");
   expect_error(
-      "- a\nb: 1\n",
-      "2:1: expected '- ' at the same indentation as the other items (the list begun in line 1)");
-  expect_error("a: \"b\" c\n", "1:8: unexpected text behind a value");
+      "a:\n  b: 1\n c: 2\n",
+      "3:2: expected a key at the same indentation as the other keys (the mapping that begins "
+      "in line 1)");
+  expect_error("- a\nb: 1\n",
+               "2:1: expected '- ' at the same indentation as the other items (the list that "
+               "begins in line 1)");
+  expect_error("a: \"b\" c\n", "1:8: unexpected text after a value");
   expect_error("a: - b\n",
                "1:4: a '- ' item is not allowed here; begin it on a new line, or write [a, b]");
   expect_error("a: [1,,2]\n", "1:7: a value is missing here");
@@ -258,13 +259,13 @@ static void common_mistakes_have_words(void **state) {
   expect_error("a: %5\n", "1:4: a value cannot begin with '%'; put it in quotes");
   expect_error("a: `b`\n", "1:4: a value cannot begin with '`'; put it in quotes");
   expect_error("a: *\n",
-               "1:5: expected a name behind '*'; a text that begins with '*' needs quotes");
+               "1:5: expected a name after '*'; a text that begins with '*' needs quotes");
   expect_error("a: & b\n",
-               "1:5: expected a name behind '&'; a text that begins with '&' needs quotes");
+               "1:5: expected a name after '&'; a text that begins with '&' needs quotes");
   expect_error("a: |x\n b\n", "1:5: expected '|' or '>' and then a new line");
   expect_error("a: *x\n", "1:4: unknown alias '*x'");
-  expect_error("a: &x [1, *x]\n", "1:11: alias '*x' stands inside what it repeats");
-  expect_error("a: &x {b: {c: *x}}\n", "1:15: alias '*x' stands inside what it repeats");
+  expect_error("a: &x [1, *x]\n", "1:11: alias '*x' refers to a value that contains it");
+  expect_error("a: &x {b: {c: *x}}\n", "1:15: alias '*x' refers to a value that contains it");
 }
 
 static void finding_is_by_text(void **state) {

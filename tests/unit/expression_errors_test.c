@@ -15,7 +15,7 @@
 
 static void malformed_numbers_are_named(void **state) {
   (void)state;
-  const char *point = "a number has one decimal point and digits behind it";
+  const char *point = "a number has one decimal point and digits after it";
   expect_error("1.", 0, 2, point);
   expect_error("1.2.3", 0, 4, point);
   expect_error("2*1..5", 2, 2, point);
@@ -36,6 +36,7 @@ static void malformed_numbers_are_named(void **state) {
 static void wrong_units_are_named(void **state) {
   (void)state;
   expect_error("10 mmm", 3, 3, "unknown unit 'mmm'; did you mean 'mm'?");
+  expect_error("1 Ns/m", 2, 2, "unknown unit 'Ns'; did you mean 'N s'?");
   expect_error("10 hz", 3, 2, "unknown unit 'hz'; did you mean 'Hz'?");
   expect_error("10 parsec", 3, 6, "unknown unit 'parsec'");
   expect_error("2 pi", 2, 2, "expected an operator before 'pi'; write '*' to multiply");
@@ -43,8 +44,10 @@ static void wrong_units_are_named(void **state) {
   expect_error("2 sin(1)", 2, 3, "expected an operator before 'sin'; write '*' to multiply");
   expect_error("2*a + mm", 6, 2, "the unit 'mm' needs a number before it, such as '1 mm'");
   expect_error("1/Hz", 2, 2, "the unit 'Hz' needs a number before it, such as '1 Hz'");
-  expect_error("10 N*t", 5, 1, "'t' is a unit and a parameter; write '* (t)' for the parameter");
-  expect_error("10 N / t", 7, 1, "'t' is a unit and a parameter; write '/ (t)' for the parameter");
+  expect_error("10 N*t", 5, 1,
+               "'t' is a unit and a parameter; rename the parameter, or write '* (t)' for it");
+  expect_error("10 N / t", 7, 1,
+               "'t' is a unit and a parameter; rename the parameter, or write '/ (t)' for it");
   const char *power = "the power of a unit is a whole number such as 2";
   expect_error("1 m^0.5", 4, 2, power);
   expect_error("1 m^(2)", 4, 0, power);
@@ -60,7 +63,7 @@ static void names_are_looked_up(void **state) {
   expect_error("1 + tow", 4, 3, "unknown parameter 'tow'; did you mean 'two'?");
   expect_error("xyzzy", 0, 5, "unknown parameter 'xyzzy'");
   expect_error("sine(1)", 0, 4, "unknown function 'sine'; did you mean 'sin'?");
-  expect_error("two(1)", 0, 3, "'two' is no function; write '*' to multiply");
+  expect_error("two(1)", 0, 3, "'two' is not a function; write '*' to multiply");
   expect_error("sin", 0, 3, "the function 'sin' needs its arguments in parentheses");
   expect_error("2*lost", 2, 4, ""); /* the lookup has said why */
   strut_quantity q;
@@ -75,9 +78,10 @@ static void names_are_looked_up(void **state) {
 
 static void wrong_dimensions_are_named(void **state) {
   (void)state;
-  expect_error("2*(1 m + 1 s)", 3, 9, "'+' joins a length and a time, expected one dimension");
-  expect_error("1 m - f", 0, 7, "'-' joins a length and a frequency, expected one dimension");
-  expect_error("min(1 m, 1 kg)", 0, 14, "'min' joins a length and a mass, expected one dimension");
+  expect_error("2*(1 m + 1 s)", 3, 9, "'+' joins a length and a time, expected equal dimensions");
+  expect_error("1 m - f", 0, 7, "'-' joins a length and a frequency, expected equal dimensions");
+  expect_error("min(1 m, 1 kg)", 0, 14,
+               "'min' joins a length and a mass, expected equal dimensions");
   expect_error("2^(1 m)", 0, 7, "the exponent is a length, expected a number without unit");
   expect_error("sin(1 m)", 0, 8, "'sin' takes an angle, got a length");
   expect_error("sin(1 Hz * (1 s) * 1 kg)", 0, 24, "'sin' takes an angle, got a mass");

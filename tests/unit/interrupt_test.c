@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "parser/cli/interrupt.c" /* the program is no library to link with */
+#include "parser/cli/streams.c" /* the program is no library to link with */
 
 static void test_first_and_second(void **state) {
   const int *signal_number = *state;

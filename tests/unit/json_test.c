@@ -88,7 +88,7 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
       {"dissipated_friction", e->dissipated_friction},
       {"initial", e->initial},
       {"residual", e->residual},
-      {"moved", e->moved},
+      {"exchanged", e->moved},
   };
   for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
     assert_number(energy, fields[i].key, fields[i].value);
@@ -207,14 +207,14 @@ static void test_the_table(void **unused) {
   char *text = strut_summary_table(&summary, &scene);
   static const char *const expected[] = {
       "Cr\xc3\xa4wler: completed\n",
-      "  velocity    9.781 mm/s of the centre of mass, spread 2 um/s, from 100 s on\n",
+      "  velocity    9.781 mm/s of the centre of mass, spread 2 um/s, from 100 s\n",
       "  duration    110 s, 1100000 steps, after 700 ms of settling\n",
       "  step        100 us, stable up to 512.3 us\n",
-      "  computed    4400000 forces in 250 ms, 227.3 ns per step\n",
+      "  computed    4400000 force evaluations in 250 ms, 227.3 ns per step\n",
       "  n1                       300 mm",
       "  n1                       33.3 %         1.1 mm\n",
       "  kinetic                142.9 mJ\n",
-      "  lost to friction           10 J\n",
+      "  dissipated by friction     10 J\n",
   };
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
     if (!strstr(text, expected[i])) fail_msg("'%s' is not in:\n%s", expected[i], text);

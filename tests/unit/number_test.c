@@ -15,7 +15,6 @@
 
 #include "engine/base/memory.h"
 #include "parser/expression/expression.h"
-#include "parser/expression/number.h"
 #include "parser/yaml/diagnostics.h"
 
 static uint64_t random_state = 42;

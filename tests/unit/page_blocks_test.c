@@ -16,7 +16,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/page/page.h"
-#include "engine/output/page/page_blocks.h"
+#include "engine/output/page/page_motion.h"
 #include "tests/support/build.h"
 
 static uint64_t seed = 1;
@@ -186,7 +186,11 @@ static char *page_of(strut_trajectory *motion, size_t most, strut_page_frames *f
   strut_setup setup;
   strut_error error = {0};
   strut_model *model = weight(&setup);
-  strut_page page = {.model = model, .motion = motion, .yaml = "strut: 1\n", .most_bytes = most};
+  strut_page page = {.model = model,
+                     .experiment = &setup.experiment,
+                     .motion = motion,
+                     .yaml = "strut: 1\n",
+                     .most_bytes = most};
   char *html = strut_page_html(&page, frames, &error);
   assert_non_null(html);
   strut_model_free(model);
@@ -278,7 +282,8 @@ static void memory_that_is_out_is_told(void **state) {
   strut_error error = {0};
   strut_trajectory motion = swing();
   strut_model *model = weight(&setup);
-  strut_page page = {.model = model, .motion = &motion, .yaml = "strut: 1\n"};
+  strut_page page = {
+      .model = model, .experiment = &setup.experiment, .motion = &motion, .yaml = "strut: 1\n"};
   int64_t failed = 0;
   for (int64_t n = 0;; n++) {
     strut_fail_allocation_after(n);
@@ -309,7 +314,7 @@ static void no_name_becomes_markup(void **state) {
   strut_setup setup;
   strut_error error = {0};
   strut_model *model = weight(&setup);
-  strut_page page = {.model = model, .yaml = "strut: 1\n"};
+  strut_page page = {.model = model, .experiment = &setup.experiment, .yaml = "strut: 1\n"};
   char *plain = strut_page_html(&page, NULL, &error);
   setup.scene.nodes[0].name = setup.scene.members[0].name = setup.scene.name =
       setup.scene.description = evil;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -394,11 +394,66 @@ static void big_files_take_linear_time(void **state) {
   assert_true(seconds_to_read(40000, true, STRUT_BAD_SCENE) < 40 * small);
 }
 
+/* Former names and synonyms mean what the current ones do; former ones are noted, once each. */
+static void other_spellings(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "groups: {soft: {kind: string, stiffness: 10, damping: 1}}\n"
+      "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
+      "members: {m: {group: soft, nodes: [a, b]}, n: {kind: strut, stiffness: 5, nodes: [a, b]}}\n"
+      "actuators: {d: {member: m, signal: {sine: {amplitude: 1e-3, frequency: 1}}}}\n"
+      "ground: {height: -1, stiffness: 10, damping_law: printed}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {periods: 9, of: d, measure: {steady: {floor: 1e-3, successive: 3}}}\n";
+  strut_setup s;
+  strut_diagnostics diagnostics = {0};
+  assert_int_equal(
+      strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
+      STRUT_OK);
+  assert_int_equal(s.scene.members[0].kind, STRUT_CABLE);
+  assert_int_equal(s.scene.members[1].kind, STRUT_BAR);
+  assert_int_equal(s.scene.ground.damping_law, STRUT_DAMPING_APPROACH);
+  assert_true(s.experiment.steady.floor == 1e-3 && s.experiment.steady.successive == 3);
+  const char *notes = strut_diagnostics_render_notes(&diagnostics);
+  assert_non_null(strstr(notes, "test.yaml:6:50: note: 'printed' is now called 'approach_only'\n"));
+  assert_non_null(
+      strstr(notes, "test.yaml:8:45: note: 'floor' is now called 'absolute_tolerance'\n"));
+  assert_non_null(
+      strstr(notes, "test.yaml:8:58: note: 'successive' is now called 'repetitions'\n"));
+  assert_int_equal(diagnostics.note_count, 3);
+  strut_diagnostics_free(&diagnostics);
+  strut_setup_free(&s);
+}
+
+/* A key by both of its names is given twice. */
+static void both_spellings_of_a_key(void **state) {
+  (void)state;
+  static const char text[] =
+      "strut: 1\n"
+      "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
+      "members: {m: {kind: bar, stiffness: 5, nodes: [a, b]}}\n"
+      "actuators: {d: {member: m, signal: {sine: {amplitude: 1e-3, frequency: 1}}}}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {periods: 9, of: d, measure: {steady: {floor: 1e-3, absolute_tolerance: 1e-3}}}\n";
+  strut_setup s;
+  strut_diagnostics diagnostics = {0};
+  assert_int_equal(
+      strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
+      STRUT_BAD_SCENE);
+  assert_non_null(strstr(strut_diagnostics_render(&diagnostics, 9),
+                         "the steady state gives both 'floor' and 'absolute_tolerance', expected "
+                         "one of them"));
+  strut_diagnostics_free(&diagnostics);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_crawler_page),
       cmocka_unit_test(overrides),
       cmocka_unit_test(configurations),
+      cmocka_unit_test(other_spellings),
+      cmocka_unit_test(both_spellings_of_a_key),
       cmocka_unit_test(groups_give_defaults),
       cmocka_unit_test(friction_comes_in_layers),
       cmocka_unit_test(signals_and_their_names),

@@ -88,7 +88,7 @@ static void test_a_triangle_stands_on_every_side(void **unused) {
     assert_near(sum, weight, 1e-9);
     assert_near(below, weight, 1e-8);
   }
-  assert_string_equal(f.all.list[0].name, "unnamed-1");
+  assert_string_equal(f.all.list[0].name, "n1-n2-1");
   done(&f);
 }
 

@@ -11,8 +11,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/legend.h"
-#include "engine/output/figures/modes_figure.h"
-#include "engine/output/figures/path_figure.h"
+#include "engine/output/figures/statics_figures.h"
 #include "tests/models/run_model.h"
 #include "tests/unit/scratch.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/integrate/limit/tangent_bound.h"
 #include "tests/support/build.h"

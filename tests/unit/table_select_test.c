@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "engine/output/figures/table_select.h"
+#include "engine/output/figures/table_parts.h"
 
 enum { ROWS = 9 };
 enum { SIDE, X, Y, WORD, COLUMNS };

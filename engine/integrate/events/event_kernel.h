@@ -10,6 +10,7 @@
 
 #include "engine/forces/forces_kernel.h"
 #include "engine/integrate/events/event_stepping.h"
+#include "engine/model/pose.h"
 
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
 STRUT_INLINE double located_normal(const strut_contact_entry *e, int8_t damper, double gap,
@@ -58,11 +59,9 @@ STRUT_INLINE double located_friction(const strut_contact_entry *e, uint8_t mode,
 /* Kinematics of contact i at q, v. */
 STRUT_INLINE void located_place(const strut_contact_table *c, int32_t i, const double *restrict q,
                                 const double *restrict v, strut_touch *touch) {
-  uint32_t at = c->at[i];
-  double up = q[at + 1] - c->height;
-  touch->gap = q[at] * c->normal[0] + up * c->normal[1];
-  touch->into = v[at] * c->normal[0] + v[at + 1] * c->normal[1];
-  touch->slip = v[at] * c->tangent[0] + v[at + 1] * c->tangent[1] - c->belt_speed;
+  touch->gap = strut_contact_gap(c, i, q);
+  touch->into = strut_contact_along_normal(c, i, v);
+  touch->slip = strut_contact_slip(c, i, v);
 }
 
 /* Adds the forces of the closed contacts to `force` and notes them. */
@@ -75,7 +74,7 @@ STRUT_INLINE void located_ground(const strut_model *model, const strut_event_ste
     uint32_t at = c->at[i];
     strut_touch *o = &touch[i];
     located_place(c, i, q, v, o);
-    o->applied = force[at] * c->tangent[0] + force[at + 1] * c->tangent[1];
+    o->applied = strut_contact_along_ground(c, i, force);
     o->normal = located_normal(&c->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction =
         located_friction(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
@@ -90,9 +89,8 @@ STRUT_INLINE void located_rates(const strut_model *model, const strut_event_step
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
-    uint32_t at = c->at[i];
-    touch[i].into_rate = a[at] * c->normal[0] + a[at + 1] * c->normal[1];
-    touch[i].slip_rate = a[at] * c->tangent[0] + a[at + 1] * c->tangent[1];
+    touch[i].into_rate = strut_contact_along_normal(c, i, a);
+    touch[i].slip_rate = strut_contact_along_ground(c, i, a);
   }
 }
 

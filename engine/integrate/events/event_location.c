@@ -7,10 +7,6 @@
 /* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
 static const double FAINT = 1e-12;
 
-static double gap_of(const strut_contact_table *c, int32_t i, const double *q) {
-  return q[c->at[i]] * c->normal[0] + (q[c->at[i] + 1] - c->height) * c->normal[1];
-}
-
 /*
  * The edge of the band by which contact i leaves: that of the step's end, which may be beyond the one
  * by which it came in, where the step begins. Steppers that are not exact take each end's own: a band
@@ -34,8 +30,8 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
   switch (kind) {
-    case STRUT_EVENT_TOUCH: return gap_of(&model->contacts, i, end->q);
-    case STRUT_EVENT_OPEN: return -gap_of(&model->contacts, i, end->q);
+    case STRUT_EVENT_TOUCH: return strut_contact_gap(&model->contacts, i, end->q);
+    case STRUT_EVENT_OPEN: return -strut_contact_gap(&model->contacts, i, end->q);
     case STRUT_EVENT_SLIP_ENDS: return s * o->slip - located_edge(e);
     case STRUT_EVENT_LEAVES_STICK_BAND: return located_edge(e) - way_out(l, o, i) * o->slip;
     case STRUT_EVENT_STICK_BREAKS: return e->mu_static * o->normal - fabs(o->friction);
@@ -129,13 +125,9 @@ static void measure_cables(const strut_model *model, const strut_state *state,
   const strut_member_table *t = &model->members;
   for (int32_t k = 0; k < l->cable_count; k++) {
     int32_t j = l->cable[k];
-    const double *a = end->q + t->from[j], *b = end->q + t->to[j];
-    const double *va = end->v + t->from[j], *vb = end->v + t->to[j];
-    double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
-    double inverse = length > 0.0 ? 1.0 / length : 0.0;
-    double rate = ((vb[0] - va[0]) * dx + (vb[1] - va[1]) * dy) * inverse;
-    end->stretch[k] = length - state->rest[j];
-    end->stretch_rate[k] = rate - state->rest_rate[j];
+    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, end->q);
+    end->stretch[k] = pose.stretch;
+    end->stretch_rate[k] = strut_member_rate(t, j, &pose, end->v) - state->rest_rate[j];
     end->tension[k] = t->stiffness[j] * end->stretch[k] + t->damping[j] * end->stretch_rate[k];
   }
 }
@@ -149,7 +141,7 @@ void strut_event_measure(const strut_model *model, const strut_state *state,
    opened may stand below 0 by rounding, on its way up. */
 static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
   strut_touch to;
-  if (gap_of(c, i, l->now->q) > 0.0) return true;
+  if (strut_contact_gap(c, i, l->now->q) > 0.0) return true;
   located_place(c, i, l->next->q, l->next->v, &to);
   return to.into < 0.0;
 }
@@ -171,7 +163,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
           c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
         keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (gap_of(c, i, l->next->q) < 0.0 && closes(c, i, l)) {
+    } else if (strut_contact_gap(c, i, l->next->q) < 0.0 && closes(c, i, l)) {
       keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
     }
   }
@@ -195,21 +187,19 @@ static double parabola_root(double gap, double speed, double bend) {
 static double crossing(const strut_model *model, const strut_state *state,
                        const strut_event_stepper *l, int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
-  const double *v = state->v + c->at[i], *a = l->now->a + c->at[i], *n = c->normal;
-  double speed = h * (v[0] * n[0] + v[1] * n[1]);
-  double bend = 0.5 * h * h * (a[0] * n[0] + a[1] * n[1]);
-  return parabola_root(sign * gap_of(c, i, state->q), sign * speed, sign * bend);
+  double gap = strut_contact_gap(c, i, state->q),
+         speed = h * strut_contact_along_normal(c, i, state->v);
+  double bend = 0.5 * h * h * strut_contact_along_normal(c, i, l->now->a);
+  return parabola_root(sign * gap, sign * speed, sign * bend);
 }
 
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *l, double h) {
   const strut_contact_table *c = &model->contacts;
-  const double *q = l->next->q;
-  bool level = c->normal[0] == 0.0;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t i = 0; i < c->count; i++) {
     bool closed = l->mode[i] != STRUT_MODE_OPEN;
-    double gap = level ? q[c->at[i] + 1] - c->height : gap_of(c, i, q);
+    double gap = strut_contact_gap(c, i, l->next->q);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;
     double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))

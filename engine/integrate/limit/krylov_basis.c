@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/forces/rigid.h"
 
 bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
@@ -18,18 +19,12 @@ bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *ta
   return space->vector && space->stiffness && space->damping && space->image && space->node;
 }
 
-static double largest_of(const double *x, int32_t n) {
-  double largest = 0.0;
-  for (int32_t i = 0; i < n; i++) largest = fmax(largest, fabs(x[i]));
-  return largest;
-}
-
 /* What rigid bars leave of it; nothing where they hold all of it and only rounding is left. */
 static void hold_rigid(const strut_model *model, strut_rigid *rigid, double *acceleration,
                        double *scratch) {
-  double before = largest_of(acceleration, model->length);
+  double before = strut_largest_magnitude(acceleration, model->length);
   strut_rigid_filter(model, rigid, acceleration, scratch);
-  if (largest_of(acceleration, model->length) < 1e-12 * before)
+  if (strut_largest_magnitude(acceleration, model->length) < 1e-12 * before)
     memset(acceleration, 0, (size_t)model->length * sizeof *acceleration);
 }
 
@@ -76,20 +71,14 @@ void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const do
   for (int32_t i = 0; i < n; i++) y[i] += b * other[i];
 }
 
-static double dot(const double *x, const double *y, int32_t n) {
-  double sum = 0.0;
-  for (int32_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* Scales x to size 1 in the mass; its size before, 0 where it has none. `image` is then M x. */
 static double normalise(strut_krylov_basis *space, double *x) {
   int32_t n = space->tangent->n;
-  double largest = largest_of(x, n);
+  double largest = strut_largest_magnitude(x, n);
   if (!(largest > 0.0 && largest < HUGE_VAL)) return 0.0;
   for (int32_t i = 0; i < n; i++) x[i] /= largest;
   strut_tangent_mass(space, x, space->image);
-  double size = sqrt(fmax(0.0, dot(x, space->image, n)));
+  double size = sqrt(fmax(0.0, strut_dot(x, space->image, n)));
   if (!(size > 0.0)) return 0.0;
   for (int32_t i = 0; i < n; i++) x[i] /= size, space->image[i] /= size;
   return size * largest;
@@ -104,7 +93,7 @@ static void project_last(strut_krylov_basis *space) {
     double *small = which ? space->damping : space->stiffness;
     strut_tangent_apply(space, which ? 0.0 : 1.0, which ? 1.0 : 0.0, x, space->image);
     for (int j = 0; j <= last; j++) {
-      double value = dot(space->vector + (size_t)j * (size_t)n, space->image, n);
+      double value = strut_dot(space->vector + (size_t)j * (size_t)n, space->image, n);
       small[j * space->most + last] = small[last * space->most + j] = value;
     }
   }
@@ -116,7 +105,7 @@ bool strut_krylov_basis_add(strut_krylov_basis *space, double *x) {
   for (int pass = 0; pass < 3; pass++) {
     for (int j = 0; j < space->count; j++) {
       const double *v = space->vector + (size_t)j * (size_t)n;
-      double part = dot(v, space->image, n);
+      double part = strut_dot(v, space->image, n);
       for (int32_t i = 0; i < n; i++) x[i] -= part * v[i];
     }
     double left = normalise(space, x);
@@ -143,14 +132,14 @@ static int orthonormal_rows(double *c, int rows, int columns) {
   int kept = 0;
   for (int r = 0; r < rows; r++) {
     double *x = c + (size_t)r * (size_t)columns, *to = c + (size_t)kept * (size_t)columns;
-    double before = sqrt(dot(x, x, columns));
+    double before = sqrt(strut_dot(x, x, columns));
     for (int pass = 0; pass < 2; pass++)
       for (int j = 0; j < kept; j++) {
         const double *y = c + (size_t)j * (size_t)columns;
-        double part = dot(x, y, columns);
+        double part = strut_dot(x, y, columns);
         for (int i = 0; i < columns; i++) x[i] -= part * y[i];
       }
-    double size = sqrt(dot(x, x, columns));
+    double size = sqrt(strut_dot(x, x, columns));
     if (!(size > 1e-8 * before)) continue;
     for (int i = 0; i < columns; i++) to[i] = x[i] / size;
     kept++;

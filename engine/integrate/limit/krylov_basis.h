@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 
 typedef struct strut_krylov_basis {
   const strut_model *model;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/forces/rigid.h"
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "engine/integrate/limit/tangent_bound.h"
 #include "engine/integrate/limit/tangent_limits.h"
 #include "engine/model/memory_estimate.h"

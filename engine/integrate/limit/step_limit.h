@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
 #define STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
 
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "engine/integrate/limit/stability.h"
 
 typedef struct strut_step_limit {

@@ -11,7 +11,7 @@
 
 #include <stdbool.h>
 
-#include "engine/forces/stiffness.h"
+#include "engine/forces/tangent.h"
 #include "engine/integrate/limit/stability.h"
 
 /** What all motions keep to. */

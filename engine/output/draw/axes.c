@@ -1,13 +1,183 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/axes.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/output/draw/palette.h"
+
+/* Round numbers on axes, and how they are written. */
+
+/* Ticks with more significant digits get a common offset. */
+enum { MOST_DIGITS = 5 };
+
+static double round_step(double rough) {
+  double power = pow(10.0, floor(log10(rough))), part = rough / power;
+  return power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
+}
+
+/* The number with fewest digits within five ranges of the middle. */
+static double common_part(double low, double high) {
+  double middle = low + 0.5 * (high - low), near = middle;
+  for (int k = (int)floor(log10(fabs(middle))); k >= (int)floor(log10(high - low)); k--) {
+    double power = pow(10.0, k);
+    near = round(middle / power) * power;
+    if (fabs(near - middle) <= 5 * (high - low)) break;
+  }
+  return near;
+}
+
+size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]) {
+  size_t count = 0;
+  if (!(high > low) || !isfinite(high - low) || wanted < 1) return 0;
+  if (wanted > STRUT_MOST_TICKS / 3) wanted = STRUT_MOST_TICKS / 3;
+  double step = round_step((high - low) / wanted);
+  double first = ceil(low / step - 1e-9);
+  for (double k = first; k * step <= high + 1e-9 * step && count < STRUT_MOST_TICKS; k++) {
+    if (count && k * step <= ticks[count - 1]) break; /* closer than doubles resolve */
+    ticks[count++] = k == 0 ? 0 : k * step;
+  }
+  return count;
+}
+
+const char *strut_prefix(double largest, const char *unit, double *factor) {
+  static const char *const plain[] = {"", "%", "kg", "deg", "°"};
+  static const char *const names[] = {"f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"};
+  *factor = 1;
+  for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
+    if (strcmp(unit, plain[i]) == 0) return "";
+  if (!(largest > 0) || !isfinite(largest)) return "";
+  double group = floor(log10(largest) / 3 + 1e-12);
+  if (group < -5 || group > 5) return "";
+  *factor = pow(1000.0, group);
+  return names[(int)group + 5];
+}
+
+static void write_power(char *text, size_t size, int exponent) {
+  static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  char digits[16];
+  int used = snprintf(text, size, "10%s", exponent < 0 ? "⁻" : "");
+  snprintf(digits, sizeof digits, "%d", exponent < 0 ? -exponent : exponent);
+  for (const char *d = digits; *d; d++)
+    used += snprintf(text + used, size - (size_t)used, "%s", raised[*d - '0']);
+}
+
+/* With a real minus sign, and powers of ten as print writes them. */
+static void write_number(char *text, size_t size, const char *format, int decimals, double value) {
+  char plain[64];
+  if (value == 0) value = 0; /* no minus zero */
+  snprintf(plain, sizeof plain, format, decimals, value);
+  char *power = strchr(plain, 'e');
+  int exponent = power ? atoi(power + 1) : 0;
+  if (power) *power = '\0';
+  snprintf(text, size, "%s%s", plain[0] == '-' ? "\xe2\x88\x92" : "", plain + (plain[0] == '-'));
+  if (!power) return;
+  size_t used = strlen(text);
+  snprintf(text + used, size - used, "×");
+  used = strlen(text);
+  write_power(text + used, size - used, exponent);
+}
+
+strut_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
+  strut_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
+  const char *space = strchr(plain.text, ' ');
+  bool micro = space && space[1] == 'u' && strcmp(space + 2, unit) == 0;
+  snprintf(drawn.text, sizeof drawn.text, "%s%.*s%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
+           space ? (int)(space - plain.text) - (plain.text[0] == '-') : STRUT_QUANTITY_TEXT,
+           plain.text + (plain.text[0] == '-'), micro ? " µ" : "", space ? space + 2 * micro : "");
+  return drawn;
+}
+
+static void write_label(const strut_axis *axis, const char *prefix, const char *offset,
+                        strut_tick_set *set) {
+  const char *name = axis->name ? axis->name : "", *unit = axis->unit ? axis->unit : "";
+  snprintf(set->label, sizeof set->label, "%s%s%s%s%s", name, offset,
+           *unit ? (*name ? " in " : "in ") : "", *unit ? prefix : "", unit);
+}
+
+static void linear_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
+  double factor, largest = fmax(fabs(axis->low), fabs(axis->high)), offset = 0;
+  char offset_text[64] = "";
+  set->count = strut_ticks(axis->low, axis->high, wanted, set->at);
+  double step = set->count > 1 ? set->at[1] - set->at[0] : axis->high - axis->low;
+  bool far = largest / step > 2 * pow(10.0, MOST_DIGITS);
+  if (far) { /* the common part of all ticks goes into the label */
+    offset = common_part(axis->low, axis->high);
+    largest = fmax(fabs(axis->low - offset), fabs(axis->high - offset));
+  }
+  const char *prefix = strut_prefix(largest, axis->unit ? axis->unit : "", &factor);
+  if (far) {
+    char number[48];
+    write_number(number, sizeof number, "%.*g", 12, fabs(offset));
+    snprintf(offset_text, sizeof offset_text, " %s %s%s%s", offset > 0 ? "\xe2\x88\x92" : "+",
+             number, axis->unit && *axis->unit ? " " : "", axis->unit ? axis->unit : "");
+  }
+  write_label(axis, prefix, offset_text, set);
+  step /= factor;
+  double size = largest / factor;
+  bool plain = size < 1e5 && step > 1e-6;
+  int decimals = plain ? (int)fmax(0, ceil(-log10(step) - 1e-6)) : 3;
+  for (size_t i = 0; i < set->count; i++)
+    write_number(set->text[i], STRUT_TICK_TEXT, plain ? "%.*f" : "%.*g", decimals,
+                 (set->at[i] - offset) / factor);
+}
+
+/* Decades; within few of them also 2 and 5 times, as plain numbers. */
+static void logarithmic_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
+  double from = log10(axis->low), to = log10(axis->high);
+  int each = (int)fmax(1, ceil((to - from) / fmax(wanted, 1)));
+  bool few = to - from < 1.5;
+  write_label(axis, "", "", set);
+  for (int k = (int)floor(from); k <= (int)ceil(to); k++) {
+    double decade = pow(10.0, k);
+    for (int m = 1; m <= 9; m++) {
+      double value = m * decade;
+      if (value < axis->low * (1 - 1e-9) || value > axis->high * (1 + 1e-9)) continue;
+      bool major = few ? m == 1 || m == 2 || m == 5 : m == 1 && k % each == 0;
+      if (major && set->count < STRUT_MOST_TICKS) {
+        char *text = set->text[set->count];
+        set->at[set->count++] = value;
+        if (few && value >= 1e-4 && value < 1e5) {
+          write_number(text, STRUT_TICK_TEXT, "%.*g", 6, value);
+        } else if (m == 1) {
+          write_power(text, STRUT_TICK_TEXT, k);
+        }
+      } else if (!major && to - from < 12 && set->minor_count < STRUT_MOST_MINOR) {
+        set->minor[set->minor_count++] = value;
+      }
+    }
+  }
+}
+
+void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
+  strut_c_locale locale = strut_c_locale_enter();
+  *set = (strut_tick_set){0};
+  if (axis->logarithmic) {
+    logarithmic_ticks(axis, wanted, set);
+  } else {
+    linear_ticks(axis, wanted, set);
+  }
+  strut_c_locale_leave(locale);
+}
 
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TITLE_SIZE = 8.5, TICK = 2.5, GAP = 2.5;
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
+
+/* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's
+   size. */
+static const double ROUNDING = 1e-12, LEAST_LENGTH = 1e-13;
+
+bool strut_is_noise(double *low, double *high, const char *unit) {
+  double size = fmax(fabs(*low), fabs(*high));
+  bool length = unit && (strcmp(unit, "m") == 0 || strcmp(unit, "m/s") == 0);
+  if (length && size < LEAST_LENGTH) *low = *high = 0;
+  return !(*high - *low > ROUNDING * size);
+}
 
 void strut_axis_include(strut_axis *axis, double value) {
   if (!isfinite(value) || (axis->logarithmic && !(value > 0))) return;
@@ -29,9 +199,10 @@ void strut_axis_settle(strut_axis *axis, double room) {
     axis->high = fmax(fmin(axis->high * wider, 1e300), 2 * axis->low);
     return;
   }
+  bool constant = strut_is_noise(&axis->low, &axis->high, axis->unit);
   double span = axis->high - axis->low;
   double size = fmax(fabs(axis->low), fabs(axis->high));
-  if (!(span > 1e-13 * size) || !isfinite(span)) { /* a constant stands in the middle */
+  if (constant || !isfinite(span)) { /* a constant is drawn in the middle */
     span = size > 1e-300 ? fmin(size, 1e300) : 1;
     room = isfinite(axis->high - axis->low) ? 0.1 : 0;
   }
@@ -39,7 +210,7 @@ void strut_axis_settle(strut_axis *axis, double room) {
   axis->high += room * span;
 }
 
-/* How many ticks go along: by the room that their texts take. */
+/* The number of ticks whose texts fit into the width. */
 static int ticks_along_x(strut_canvas *canvas, const strut_axis *axis, double width) {
   for (int wanted = 10; wanted > 1; wanted--) {
     strut_tick_set set;
@@ -71,7 +242,7 @@ static double widest_tick(strut_canvas *canvas, const strut_axis *axis, double h
 }
 
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y,
-                            const char *title) {
+                            const strut_axis *second, const char *title) {
   double width, line, label, above = 0.5 * TICK_SIZE;
   strut_text_size(canvas, "0", (strut_font){.size = TICK_SIZE}, &width, &line);
   strut_text_size(canvas, "0", (strut_font){.size = LABEL_SIZE}, &width, &label);
@@ -85,20 +256,31 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   double height = fmax(box.height - above - below, 10);
   double left = fmax(widest_tick(canvas, &y, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   double right = 10; /* half of the last tick's text */
+  if (second)
+    right = fmax(widest_tick(canvas, second, height) + TICK + GAP, LEAST_LEFT) + label + GAP;
   return (strut_axes){
       .x = x,
       .y = y,
+      .right = second ? *second : (strut_axis){0},
+      .has_right = second != NULL,
       .frame = {box.x + left, box.y + above, fmax(box.width - left - right, 10), height}};
 }
 
-static double place(const strut_axis *axis, double value) {
+strut_axes strut_axes_right(const strut_axes *axes) {
+  assert(axes->has_right);
+  strut_axes swapped = *axes;
+  swapped.y = axes->right;
+  return swapped;
+}
+
+static double axis_fraction(const strut_axis *axis, double value) {
   if (axis->logarithmic) return log10(value / axis->low) / log10(axis->high / axis->low);
   return (value - axis->low) / (axis->high - axis->low);
 }
 
 void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]) {
-  point[0] = axes->frame.x + axes->frame.width * place(&axes->x, x);
-  point[1] = axes->frame.y + axes->frame.height * (1.0 - place(&axes->y, y));
+  point[0] = axes->frame.x + axes->frame.width * axis_fraction(&axes->x, x);
+  point[1] = axes->frame.y + axes->frame.height * (1.0 - axis_fraction(&axes->y, y));
 }
 
 static void draw_x(strut_canvas *canvas, const strut_axes *axes, const strut_tick_set *set) {
@@ -146,6 +328,31 @@ static void draw_y(strut_canvas *canvas, const strut_axes *axes, const strut_tic
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
 }
 
+/* The second y axis; the grid is that of the left one. */
+static void draw_right(strut_canvas *canvas, const strut_axes *axes) {
+  const strut_box *f = &axes->frame;
+  const strut_axes own = strut_axes_right(axes);
+  const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
+  double widest = LEAST_LEFT - TICK - GAP, edge = f->x + f->width, point[2];
+  strut_tick_set set;
+  strut_axis_ticks(&axes->right, ticks_along_y(f->height), &set);
+  for (size_t i = 0; i < set.count; i++) {
+    double width, line;
+    strut_axes_point(&own, own.x.low, set.at[i], point);
+    strut_draw_segment(canvas, edge, point[1], edge + TICK, point[1], tick);
+    strut_draw_text(canvas, edge + TICK + GAP, point[1], set.text[i],
+                    (strut_font){.size = TICK_SIZE, .down = 0.5});
+    strut_text_size(canvas, set.text[i], (strut_font){.size = TICK_SIZE}, &width, &line);
+    widest = fmax(widest, width);
+  }
+  for (size_t i = 0; i < set.minor_count; i++) {
+    strut_axes_point(&own, own.x.low, set.minor[i], point);
+    strut_draw_segment(canvas, edge, point[1], edge + 0.6 * TICK, point[1], tick);
+  }
+  strut_draw_text(canvas, edge + TICK + 2 * GAP + widest, f->y + 0.5 * f->height, set.label,
+                  (strut_font){.size = LABEL_SIZE, .across = 0.5, .upwards = true});
+}
+
 void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes) {
   const strut_box *f = &axes->frame;
   strut_tick_set set;
@@ -163,10 +370,77 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *t
   draw_x(canvas, axes, &set);
   strut_axis_ticks(&axes->y, ticks_along_y(f->height), &set);
   draw_y(canvas, axes, &set);
+  if (axes->has_right) draw_right(canvas, axes);
   strut_draw_box(canvas, *f, NULL, &frame);
   if (title && *title)
     strut_draw_text(
         canvas, f->x + 0.5 * f->width, f->y - GAP, title,
         (strut_font){
             .size = TITLE_SIZE, .bold = true, .across = 0.5, .down = 1, .width = f->width});
+}
+
+/* The scale of colours beside a drawing. */
+
+enum { CELLS = 60 };
+
+static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2;
+
+static strut_colour colour_at(const strut_colour_scale *scale, double part) {
+  double value = scale->low + part * (scale->high - scale->low);
+  return strut_palette_at(scale->colours, value, scale->low, scale->high);
+}
+
+/* The strip: cells overlap, so that no viewer shows seams. */
+static void draw_strip(strut_canvas *canvas, strut_box strip, bool upright,
+                       const strut_colour_scale *scale) {
+  for (int i = 0; i < CELLS; i++) {
+    const strut_fill fill = {.colour = colour_at(scale, (i + 0.5) / CELLS)};
+    strut_box cell = strip;
+    if (upright) { /* from the top: each cell covers the rest of the strip */
+      cell.height = strip.height * (CELLS - i) / CELLS;
+      const strut_fill from_top = {.colour = colour_at(scale, 1 - (i + 0.5) / CELLS)};
+      cell.y = strip.y + strip.height - cell.height;
+      strut_draw_box(canvas, cell, &from_top, NULL);
+    } else {
+      cell.width = strip.width * (CELLS - i) / CELLS;
+      cell.x = strip.x + strip.width - cell.width;
+      strut_draw_box(canvas, cell, &fill, NULL);
+    }
+  }
+  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
+}
+
+void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
+  bool upright = box.height > box.width;
+  const strut_axis axis = {
+      .name = scale->name, .unit = scale->unit, .low = scale->low, .high = scale->high};
+  const strut_font font = {.size = BAR_TEXT};
+  const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
+  strut_tick_set set;
+  double width, line;
+  strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
+  strut_text_size(canvas, "0", font, &width, &line);
+  strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
+                            : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
+  draw_strip(canvas, strip, upright, scale);
+  for (size_t i = 0; i < set.count; i++) {
+    double part = (set.at[i] - scale->low) / (scale->high - scale->low);
+    strut_font own = font;
+    if (upright) {
+      double y = strip.y + strip.height * (1 - part), x = strip.x + BAR;
+      strut_draw_segment(canvas, x, y, x + BAR_TICK, y, pen);
+      own.down = 0.5;
+      strut_draw_text(canvas, x + BAR_TICK + 2, y, set.text[i], own);
+    } else {
+      double x = strip.x + strip.width * part, y = strip.y + BAR;
+      strut_draw_segment(canvas, x, y, x, y + BAR_TICK, pen);
+      own.across = 0.5;
+      strut_draw_text(canvas, x, y + BAR_TICK + 1, set.text[i], own);
+    }
+  }
+  /* A long name ends where the box does, rather than beyond the page. */
+  strut_text_size(canvas, set.label, font, &width, &line);
+  double across = !upright ? 0.5 : width > box.width ? 1 : 0;
+  strut_draw_text(canvas, box.x + across * box.width, box.y, set.label,
+                  (strut_font){.size = BAR_TEXT, .across = across, .halo = strut_grey(1)});
 }

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 #define STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 
-#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/palette.h"
 #include "engine/output/quantity_text.h"
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
@@ -17,53 +17,76 @@ typedef struct strut_axis {
 
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
-  strut_axis x, y; /* ranges settled */
+  strut_axis x, y;  /* ranges settled */
+  strut_axis right; /* a second y axis, on the right; where has_right */
+  bool has_right;
   strut_box frame; /* where data go [pt] */
 } strut_axes;
 
-/** Widens an axis whose range is from the data by a value; not finite ones do nothing. */
+/**
+ * Whether values from low to high [unit] differ by rounding noise only and are drawn as a constant;
+ * a length or velocity far below an atom's size becomes zero.
+ */
+STRUT_API bool strut_is_noise(double *low, double *high, const char *unit);
+/**
+ * Widens an axis whose range is from the data by a value; values that are not finite are ignored.
+ */
 STRUT_API void strut_axis_include(strut_axis *axis, double value);
 /**
- * Makes a range that can be drawn of what was included: at least a point wide, positive on a
- * logarithmic axis, 0 to 1 where nothing was; widened by `room` of itself on either side.
+ * Turns the included values into a range that can be drawn: not empty, positive on a logarithmic
+ * axis, 0 to 1 where nothing was included; widened by `room` of its width on either side.
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
 /**
- * Lays out a frame for settled axes in `box`, leaving room for ticks, labels and a title (NULL:
- * none); panels side by side line up when their boxes do.
+ * Lays out a frame for settled axes in `box`, leaving room for ticks, labels, a second y axis on
+ * the right (NULL: none) and a title (NULL: none); panels side by side line up when their boxes do.
  */
 STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
-                                      strut_axis y, const char *title);
-/** Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid. */
+                                      strut_axis y, const strut_axis *right, const char *title);
+/**
+ * Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid.
+ */
 STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
-/** The y axis alone, with its grid: where what stands along x has no numbers. */
+/** The y axis with its grid only, for diagrams whose x axis has no numbers. */
 STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
-/** Where a pair of values is on the page. */
+/** Where a pair of values is on the page, y on the left axis. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
+/** The same axes with the right one as their y, to place what belongs to it. */
+STRUT_API strut_axes strut_axes_right(const strut_axes *axes);
 
 enum { STRUT_MOST_TICKS = 40 };
 /** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
 STRUT_API size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]);
 /**
- * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). Units
- * that take none: "", "%", "kg", "deg".
+ * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). The
+ * units "", "%", "kg" and "deg" get no prefix.
  */
 STRUT_API const char *strut_prefix(double largest, const char *unit, double *factor);
 
-/** A quantity as drawings write it: as strut_quantity_of, with a real minus sign and Greek micro. */
+/**
+ * A quantity as drawings write it: as strut_quantity_of, with a real minus sign and Greek micro.
+ */
 STRUT_API strut_quantity strut_drawn_quantity(double value, int digits, const char *unit);
 
 enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
-/** The ticks of a settled axis as they are written. */
+/** The ticks of a settled axis and their texts. */
 typedef struct strut_tick_set {
   size_t count, minor_count;
-  double at[STRUT_MOST_TICKS];    /* [SI] */
-  double minor[STRUT_MOST_MINOR]; /* without text: logarithmic axes only */
-  char text[STRUT_MOST_TICKS]
-           [STRUT_TICK_TEXT]; /* in the prefixed unit; "" where none is to stand */
-  char label[200];            /* "velocity in mm/s", with an offset where one was taken */
+  double at[STRUT_MOST_TICKS];                  /* [SI] */
+  double minor[STRUT_MOST_MINOR];               /* without text: logarithmic axes only */
+  char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" for no text */
+  char label[200]; /* "velocity in mm/s", with an offset where one was taken */
 } strut_tick_set;
 /** Fills `set` for an axis that has room for about `wanted` of them. */
 STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
+
+/** A colour bar beside a drawing, with name, ticks and unit. */
+typedef struct strut_colour_scale {
+  const char *name, *unit;
+  double low, high; /* [unit]; ticks are chosen */
+  strut_colours colours;
+} strut_colour_scale;
+STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
+                                       const strut_colour_scale *scale);
 
 #endif

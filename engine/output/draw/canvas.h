@@ -3,7 +3,7 @@
  * A page to draw on: SVG, PDF or PNG, whichever its file's name ends with; or pixels in memory.
  *
  * The only room that sees Cairo and Pango. Lengths are points, 1/72 inch; x runs right and y down
- * from the upper left corner. Drawing never fails: whatever went wrong is told on commit. The same
+ * from the upper left corner. Drawing never fails: strut_canvas_commit reports errors. The same
  * drawing gives the same bytes; there is no date in them.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
@@ -56,22 +56,22 @@ typedef struct strut_font {
   bool bold, italic;
   strut_colour colour; /* alpha 0: black */
   strut_colour halo;   /* drawn around the letters, to be read over lines; alpha 0: none */
-  double across;       /* of the text's width, what lies left of x: 0 left, 0.5 centred, 1 right */
-  double down;         /* of its height, what lies above y: 0 top, 0.5 middle, 1 bottom */
+  double across;       /* part of the text's width left of x: 0 left, 0.5 centred, 1 right */
+  double down;         /* part of its height above y: 0 top, 0.5 middle, 1 bottom */
   bool upwards;        /* turned by a quarter, read from below; across and down turn with it */
   double width;        /* breaks lines at this width [pt]; 0: never */
 } strut_font;
 
 /** STRUT_OK if a picture of that name can be made, else STRUT_USAGE with the endings there are. */
 STRUT_API strut_status strut_canvas_check_name(const char *path, strut_error *error);
-/** A page that becomes the file `path`; `title` goes into what PDF knows of itself. */
+/** A page that becomes the file `path`; `title` goes into the metadata of a PDF. */
 STRUT_API strut_status strut_canvas_open(const char *path, double width, double height,
                                          const char *title, strut_canvas **canvas,
                                          strut_error *error);
 /** A page of width by height pixels, white, on which `scale` pixels are a point. */
 STRUT_API strut_status strut_canvas_open_pixels(int width, int height, double scale,
                                                 strut_canvas **canvas, strut_error *error);
-/** (height, *stride) bytes of such a page as it is now: blue, green, red, unused. Owned by it. */
+/** Its pixels, (height, *stride) bytes: blue, green, red, unused. Owned by the canvas. */
 STRUT_API const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride);
 /** Makes the file appear. */
 STRUT_API strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error);
@@ -80,7 +80,7 @@ STRUT_API void strut_canvas_free(strut_canvas *canvas);
 
 /** Its size [pt]. */
 STRUT_API strut_box strut_canvas_box(const strut_canvas *canvas);
-/** Covers all of it with one colour. */
+/** Fills the page with one colour. */
 STRUT_API void strut_canvas_clear(strut_canvas *canvas, strut_colour colour);
 /** Nothing is drawn outside the box until strut_canvas_unclip. They nest. */
 STRUT_API void strut_canvas_clip(strut_canvas *canvas, strut_box box);
@@ -91,7 +91,9 @@ STRUT_API void strut_draw_line(strut_canvas *canvas, const double (*points)[2], 
                                strut_pen pen);
 STRUT_API void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
                                   strut_pen pen);
-/** (count) separate lines in one piece: ends 2 i and 2 i + 1 of (2 count) points belong together. */
+/**
+ * (count) separate lines in one piece: ends 2 i and 2 i + 1 of (2 count) points belong together.
+ */
 STRUT_API void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
                                    strut_pen pen);
 /** A closed outline through (count) points; a fill or a pen may be NULL. */
@@ -107,8 +109,12 @@ STRUT_API void strut_draw_arrow(strut_canvas *canvas, double x1, double y1, doub
 /** A text at x, y. Any text is allowed: letters of any script, either direction, no markup. */
 STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
                                strut_font font);
-/** Width and height that it takes [pt], not turned. */
+/** Width and height of a text [pt], unrotated. */
 STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_font font,
                                double *width, double *height);
+
+struct strut_file;
+/** The file that a picture is written to, for tests that make writing fail. */
+struct strut_file *strut_canvas_file(strut_canvas *canvas);
 
 #endif

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/curves.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, INSET = 4;
@@ -22,7 +23,7 @@ typedef struct plotter {
   size_t *counts;       /* (series) */
 } plotter;
 
-static size_t look_of(const strut_curves *c, size_t series) {
+static size_t style_of(const strut_curves *c, size_t series) {
   return c->series[series].look >= 0 ? (size_t)c->series[series].look : series;
 }
 
@@ -31,26 +32,37 @@ static bool has_markers(const strut_curves *c, size_t i) {
   return s->points || s->no_line || c->series_count > 1;
 }
 
-static void settle_axes(const strut_curves *c, strut_axis *x, strut_axis *y) {
-  *x = c->x;
-  *y = c->y;
-  bool fit_x = isnan(x->low) || isnan(x->high), fit_y = isnan(y->low) || isnan(y->high);
+/* Settles axes = {x, y, right}: ranges that are not given come from the series. */
+static void settle_axes(const strut_curves *c, strut_axis axes[3]) {
+  bool fit[3];
+  axes[0] = c->x;
+  axes[1] = c->y;
+  axes[2] = c->right ? *c->right : (strut_axis){0};
+  for (int a = 0; a < 3; a++) fit[a] = isnan(axes[a].low) || isnan(axes[a].high);
   for (size_t i = 0; i < c->series_count; i++) {
     const strut_series *s = &c->series[i];
+    int y = s->right ? 2 : 1;
+    assert(!s->right || c->right);
     for (size_t k = 0; k < s->count; k++) {
       if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
-      if (fit_x) strut_axis_include(x, s->x[k]);
-      if (fit_y) strut_axis_include(y, s->y[k]);
+      if (fit[0]) strut_axis_include(&axes[0], s->x[k]);
+      if (fit[y]) strut_axis_include(&axes[y], s->y[k]);
     }
   }
   bool dots = c->series_count && (c->series[0].no_line || c->series[0].points);
-  strut_axis_settle(x, fit_x && dots ? 0.03 : 0);
-  strut_axis_settle(y, fit_y ? 0.06 : 0);
+  strut_axis_settle(&axes[0], fit[0] && dots ? 0.03 : 0);
+  for (int a = 1; a < 3; a++) strut_axis_settle(&axes[a], fit[a] ? 0.06 : 0);
 }
 
-/* The series on the page; where it is broken a point that is not a number. */
-static bool place_series(plotter *p, size_t i) {
+/* The axes that a series is drawn on. */
+static strut_axes axes_of(const plotter *p, const strut_series *s) {
+  return s->right ? strut_axes_right(&p->axes) : p->axes;
+}
+
+/* Places the points of a series on the page; a NAN point separates pieces. */
+static bool place_points(plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
+  const strut_axes axes = axes_of(p, s);
   size_t used = 0, start = 0;
   double(*points)[2] = strut_allocate(2 * s->count + 2, sizeof *points);
   p->points[i] = points;
@@ -58,9 +70,9 @@ static bool place_series(plotter *p, size_t i) {
   for (size_t k = 0; k <= s->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
     if (k < s->count && isfinite(s->x[k]) && isfinite(s->y[k]))
-      strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+      strut_axes_point(&axes, s->x[k], s->y[k], at);
     if (isfinite(at[0]) && isfinite(at[1])) {
-      if (s->steps && used > start) { /* the corner before it */
+      if (s->steps && used > start) { /* corner of the stair */
         points[used][0] = at[0];
         points[used][1] = points[used - 1][1];
         used++;
@@ -77,14 +89,15 @@ static bool place_series(plotter *p, size_t i) {
   return true;
 }
 
-static bool place(plotter *p, strut_box box) {
-  strut_axis x, y;
-  settle_axes(p->curves, &x, &y);
-  p->axes = strut_axes_place(p->canvas, box, x, y, p->curves->title);
+static bool place_curves(plotter *p, strut_box box) {
+  strut_axis axes[3];
+  settle_axes(p->curves, axes);
+  p->axes = strut_axes_place(p->canvas, box, axes[0], axes[1], p->curves->right ? &axes[2] : NULL,
+                             p->curves->title);
   bool good = true;
   for (size_t i = 0; i < p->curves->series_count && good; i++) {
     strut_release(p->points[i]);
-    good = place_series(p, i);
+    good = place_points(p, i);
   }
   return good;
 }
@@ -105,28 +118,29 @@ static void draw_bands(const plotter *p) {
 
 static void draw_markers(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
-  size_t look = look_of(p->curves, i);
+  const strut_axes axes = axes_of(p, s);
+  size_t look = style_of(p->curves, i);
   bool all = s->count <= FEW_POINTS || s->points || s->no_line;
-  /* Few, and not where the other curves have theirs. */
+  /* A few markers, at other points than those of the other curves. */
   size_t every = all ? 1 : s->count / MARKERS;
   size_t first = all ? 0 : (look * every / 3 + every / 2) % every;
   for (size_t k = first; k < s->count; k += every) {
     double at[2];
     if (!isfinite(s->x[k]) || !isfinite(s->y[k])) continue;
-    strut_axes_point(&p->axes, s->x[k], s->y[k], at);
+    strut_axes_point(&axes, s->x[k], s->y[k], at);
     strut_draw_marker(p->canvas, look, at[0], at[1], s->count > 200 && all ? 1.0 : MARKER);
   }
 }
 
 static void draw_series(const plotter *p, size_t i) {
   const strut_series *s = &p->curves->series[i];
-  strut_pen pen = strut_series_pen(look_of(p->curves, i));
+  strut_pen pen = strut_series_pen(style_of(p->curves, i));
   double(*points)[2] = p->points[i];
   for (size_t start = 0; start < p->counts[i] && !s->no_line;) {
     size_t end = start;
     while (end < p->counts[i] && !isnan(points[end][0])) end++;
-    if (end - start == 1) { /* a line of one point would not be seen */
-      strut_draw_marker(p->canvas, look_of(p->curves, i), points[start][0], points[start][1],
+    if (end - start == 1) { /* a line of one point would be invisible */
+      strut_draw_marker(p->canvas, style_of(p->curves, i), points[start][0], points[start][1],
                         LONE_MARKER);
     } else {
       strut_draw_line(p->canvas, (const double(*)[2])points + start, end - start, pen);
@@ -136,7 +150,7 @@ static void draw_series(const plotter *p, size_t i) {
   if (has_markers(p->curves, i)) draw_markers(p, i);
 }
 
-/* Rows of the legend; names that come again stand once. */
+/* Collects the rows of the legend; equal names get one row. */
 static void name_entries(plotter *p) {
   const strut_curves *c = p->curves;
   for (size_t i = 0; i < c->series_count + c->band_count; i++) {
@@ -151,14 +165,14 @@ static void name_entries(plotter *p) {
     if (area) {
       e->fill = strut_band_fill(c->bands[i - c->series_count].look);
     } else {
-      e->look = look_of(c, i);
+      e->look = style_of(c, i);
       e->line = !c->series[i].no_line;
       e->marker = has_markers(c, i);
     }
   }
 }
 
-/* How much of the curves lies in a box: points and, between them, lines. */
+/* Counts samples of the curves' lines that lie in a box. */
 static size_t covered(const plotter *p, strut_box box) {
   size_t count = 0;
   for (size_t i = 0; i < p->curves->series_count; i++)
@@ -176,7 +190,7 @@ static size_t covered(const plotter *p, strut_box box) {
   return count;
 }
 
-/* The emptiest place for a legend of this size; false where every one has curves in it. */
+/* Finds a place for a legend of this size that covers no curve; false where there is none. */
 static bool find_corner(const plotter *p, const double size[2], double corner[2]) {
   const strut_box *f = &p->axes.frame;
   if (size[0] > 0.6 * f->width || size[1] > 0.6 * f->height) return false;
@@ -190,7 +204,8 @@ static bool find_corner(const plotter *p, const double size[2], double corner[2]
   return false;
 }
 
-/* Inside where there is room, else above a frame that gives way. False when memory is out. */
+/* Places the legend inside the frame where it covers no curve, else above a smaller frame. False
+   when memory is out. */
 static bool place_legend(plotter *p, strut_box box, double corner[2], double *width, bool *inside) {
   double size[2];
   *width = 0;
@@ -203,13 +218,13 @@ static bool place_legend(plotter *p, strut_box box, double corner[2], double *wi
   strut_box rest = {box.x, box.y + size[1], box.width, box.height - size[1]};
   corner[0] = p->axes.frame.x;
   corner[1] = box.y;
-  return place(p, rest);
+  return place_curves(p, rest);
 }
 
-static bool draw(plotter *p, strut_box box) {
+static bool draw_all(plotter *p, strut_box box) {
   double corner[2] = {0, 0}, width = 0;
   bool inside = false;
-  if (!place(p, box)) return false;
+  if (!place_curves(p, box)) return false;
   name_entries(p);
   if (!place_legend(p, box, corner, &width, &inside)) return false;
   strut_canvas_clip(p->canvas, p->axes.frame);
@@ -237,7 +252,7 @@ strut_status strut_draw_curves(strut_canvas *canvas, strut_box box, const strut_
   p.entries = strut_allocate(count + curves->band_count, sizeof *p.entries);
   p.points = strut_allocate(count, sizeof *p.points);
   p.counts = strut_allocate(count, sizeof *p.counts);
-  bool good = p.entries && p.points && p.counts && draw(&p, box);
+  bool good = p.entries && p.points && p.counts && draw_all(&p, box);
   for (size_t i = 0; p.points && i < count; i++) strut_release(p.points[i]);
   strut_release(p.points);
   strut_release(p.counts);

@@ -1,30 +1,33 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/legend.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "engine/output/draw/palette.h"
 
-static const double LINE = 11.0, SIGN = 16.0, SCALE = 34.0, GAP = 4.0, BETWEEN = 13.0; /* [pt] */
+static const double LINE = 11.0, SIGN = 16.0, SCALE = 34.0, SIGN_GAP = 4.0,
+                    BETWEEN = 13.0; /* [pt] */
 static const double DOT = 2.6, BAND = 5.0;
 enum { SHADES = 34 };
 
 static strut_font letters(void) { return (strut_font){.size = 7.5, .down = 0.5}; }
 
-static double width_of(strut_canvas *canvas, const char *text) {
+static double text_width(strut_canvas *canvas, const char *text) {
   double width = 0, height;
   if (text && *text) strut_text_size(canvas, text, letters(), &width, &height);
   return width;
 }
 
-/* What stands left of the text. */
+/* Width of the sign left of the text. */
 static double sign_width(strut_canvas *canvas, const strut_key_item *item) {
   switch (item->sign) {
     case STRUT_KEY_LINE:
-    case STRUT_KEY_ARROW: return SIGN + GAP;
+    case STRUT_KEY_ARROW: return SIGN + SIGN_GAP;
     case STRUT_KEY_DOT:
-      return 2 * DOT + GAP + (item->letter ? width_of(canvas, item->letter) + GAP : 0.0);
-    case STRUT_KEY_SIGNED: return width_of(canvas, item->before) + SCALE + 2 * GAP;
+      return 2 * DOT + SIGN_GAP +
+             (item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0.0);
+    case STRUT_KEY_SIGNED: return text_width(canvas, item->before) + SCALE + 2 * SIGN_GAP;
     case STRUT_KEY_WORDS: break;
   }
   return 0.0;
@@ -38,13 +41,13 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
     case STRUT_KEY_DOT:
       strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
       font.bold = true;
-      if (item->letter) strut_draw_text(canvas, x + 2 * DOT + GAP, y, item->letter, font);
+      if (item->letter) strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, font);
       break;
     case STRUT_KEY_SIGNED:
       strut_draw_text(canvas, x, y, item->before, font);
-      x += width_of(canvas, item->before) + GAP;
+      x += text_width(canvas, item->before) + SIGN_GAP;
       for (int i = 0; i < SHADES; i++) {
-        /* Each reaches below the next, or the white between them would show. */
+        /* Shades overlap, so that no viewer shows seams. */
         const strut_fill fill = {.colour = strut_palette_signed(2.0 * i / (SHADES - 1) - 1.0)};
         double at = SCALE * i / SHADES;
         strut_draw_box(canvas, (strut_box){x + at, y - BAND / 2, SCALE - at, BAND}, &fill, NULL);
@@ -54,16 +57,16 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
   }
 }
 
-/* Lays the items out, and draws them where asked to; returns the height. */
-static double lay_out(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                      size_t count, bool draw) {
+/* Lays the items out, draws them if `draw`, and returns the height. */
+static double lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                          size_t count, bool draw) {
   double x = 0.0, y = LINE / 2;
   char fitted[STRUT_FITTED_TEXT];
   for (size_t i = 0; i < count; i++) {
     double sign = sign_width(canvas, &items[i]);
     double room = box.width - sign;
     const char *text = strut_text_fit(canvas, items[i].text, letters(), room, 0.0, fitted);
-    double width = sign + width_of(canvas, text);
+    double width = sign + text_width(canvas, text);
     if (x > 0 && x + width > box.width) x = 0.0, y += LINE;
     if (draw) {
       draw_sign(canvas, &items[i], box.x + x, box.y + y);
@@ -76,12 +79,12 @@ static double lay_out(strut_canvas *canvas, strut_box box, const strut_key_item 
 
 double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
                         size_t count) {
-  return lay_out(canvas, (strut_box){0, 0, width, 0}, items, count, false);
+  return lay_out_key(canvas, (strut_box){0, 0, width, 0}, items, count, false);
 }
 
 void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                     size_t count) {
-  lay_out(canvas, box, items, count, true);
+  lay_out_key(canvas, box, items, count, true);
 }
 
 static bool fits(strut_canvas *canvas, const char *text, strut_font font, double width,
@@ -113,4 +116,147 @@ const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font fo
     if (!whole) length = strut_text_bytes(text, length - 1);
     whole = false;
   }
+}
+
+/* Styles of series, and the legend that names them. */
+
+static const double TEXT = 7.5, SAMPLE = 20, GAP = 4, ROW_GAP = 1.5, PADDING = 3;
+
+strut_pen strut_series_pen(size_t look) {
+  enum { DASHES = 7 };
+  static const double dashes[DASHES][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
+                                           {3, 1.5}, {8, 2}, {2, 3}};
+  strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
+  /* When colours repeat, dashes differ. */
+  size_t dash = (look + 3 * (look / STRUT_PALETTE_THINGS)) % DASHES;
+  for (int i = 0; i < 4; i++) pen.dash[i] = dashes[dash][i];
+  pen.butt = pen.dash[0] > 0;
+  return pen;
+}
+
+void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size) {
+  static const double diamond[4][2] = {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}};
+  static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  static const double up[3][2] = {{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}};
+  static const double down[3][2] = {{0, 1.3}, {1.2, -0.9}, {-1.2, -0.9}};
+  static const struct {
+    const double (*corner)[2];
+    size_t count;
+  } shapes[] = {{NULL, 0}, {square, 4}, {up, 3}, {diamond, 4}, {down, 3}};
+  const strut_fill full = {.colour = strut_palette_thing(look)}, hollow = {.colour = strut_grey(1)};
+  const strut_pen edge = {.colour = strut_palette_thing(look), .width = 0.8};
+  const strut_pen rim = {.colour = strut_grey(1), .width = 0.4};
+  size_t shape = look % 5;
+  bool open = look / 5 % 2 == 1;
+  double corners[4][2];
+  if (shape == 0) {
+    strut_draw_circle(canvas, x, y, size, open ? &hollow : &full, open ? &edge : &rim);
+    return;
+  }
+  for (size_t i = 0; i < shapes[shape].count; i++) {
+    corners[i][0] = x + size * shapes[shape].corner[i][0];
+    corners[i][1] = y + size * shapes[shape].corner[i][1];
+  }
+  strut_draw_polygon(canvas, (const double(*)[2])corners, shapes[shape].count,
+                     open ? &hollow : &full, open ? &edge : &rim);
+}
+
+strut_fill strut_band_fill(int look) {
+  static const strut_hatch hatches[] = {STRUT_HATCH_NONE, STRUT_HATCH_RISING, STRUT_HATCH_FALLING,
+                                        STRUT_HATCH_DOTS, STRUT_HATCH_CROSSED};
+  size_t i = look > 0 ? (size_t)look : 0;
+  return (strut_fill){.colour = strut_grey(i % 2 ? 0.94 : 0.86),
+                      .hatch = hatches[i % 5],
+                      .hatch_colour = strut_grey(0.7)};
+}
+
+size_t strut_thin(double (*points)[2], size_t count, double grain) {
+  size_t kept = 0;
+  for (size_t i = 1; i < count; i++)
+    if (!(points[i][0] >= points[i - 1][0])) return count;
+  for (size_t first = 0; first < count;) {
+    double cell = floor(points[first][0] / grain);
+    size_t last = first, low = first, high = first;
+    while (last + 1 < count && floor(points[last + 1][0] / grain) == cell) {
+      last++;
+      if (points[last][1] < points[low][1]) low = last;
+      if (points[last][1] > points[high][1]) high = last;
+    }
+    size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
+    for (int k = 0; k < 4; k++) {
+      if (k > 0 && pick[k] == pick[k - 1]) continue;
+      points[kept][0] =
+          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
+      points[kept++][1] = points[pick[k]][1];
+    }
+    first = last + 1;
+  }
+  return kept;
+}
+
+/* Lays the entries out, draws them if `draw`, and measures the whole. */
+static void lay_out_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
+                           double width, const double corner[2], bool draw, double size[2]) {
+  double x = 0, y = 0, row = 0;
+  size[0] = size[1] = 0;
+  for (size_t i = 0; i < count; i++) {
+    const strut_legend_entry *e = &entries[i];
+    double text, line;
+    strut_font font = {.size = TEXT, .down = 0.5};
+    strut_text_size(canvas, e->label, font, &text, &line);
+    double wide = SAMPLE + GAP + text;
+    if (i > 0 && (!(width > 0) || x + wide > width)) {
+      x = 0;
+      y += row + ROW_GAP;
+      row = 0;
+    }
+    if (draw) {
+      double left = corner[0] + x, middle = corner[1] + y + 0.5 * line;
+      if (e->area)
+        strut_draw_box(canvas, (strut_box){left, middle - 0.35 * line, SAMPLE, 0.7 * line},
+                       &e->fill, &(strut_pen){.colour = strut_grey(0.4), .width = 0.4});
+      if (e->line)
+        strut_draw_segment(canvas, left, middle, left + SAMPLE, middle, strut_series_pen(e->look));
+      if (e->marker) strut_draw_marker(canvas, e->look, left + 0.5 * SAMPLE, middle, 2);
+      strut_draw_text(canvas, left + SAMPLE + GAP, middle, e->label, font);
+    }
+    x += wide;
+    size[0] = fmax(size[0], x);
+    x += 3 * GAP;
+    row = fmax(row, line);
+  }
+  size[1] = y + row;
+}
+
+void strut_legend_size(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
+                       double width, double size[2]) {
+  const double corner[2] = {0, 0};
+  lay_out_legend(canvas, entries, count, width, corner, false, size);
+  size[0] += 2 * PADDING;
+  size[1] += 2 * PADDING;
+}
+
+void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
+                       double width, double x, double y, bool background) {
+  const double corner[2] = {x + PADDING, y + PADDING};
+  double size[2];
+  strut_legend_size(canvas, entries, count, width, size);
+  if (background) {
+    const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
+    const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
+    strut_draw_box(canvas, (strut_box){x, y, size[0], size[1]}, &white, &edge);
+  }
+  lay_out_legend(canvas, entries, count, width, corner, true, size);
+}
+
+void strut_draw_heading(strut_canvas *canvas, double edge, const char *name, const char *note) {
+  static const double NOTE_BELOW = 12; /* [pt] */
+  const strut_font bold = {.size = 9, .bold = true};
+  const strut_font grey = {.size = 8, .colour = strut_grey(0.3)};
+  double inner = strut_canvas_box(canvas).width - 2 * edge;
+  char fitted[STRUT_FITTED_TEXT];
+  strut_draw_text(canvas, edge, edge, strut_text_fit(canvas, name, bold, inner, 0, fitted), bold);
+  if (*note)
+    strut_draw_text(canvas, edge, edge + NOTE_BELOW,
+                    strut_text_fit(canvas, note, grey, inner, 0, fitted), grey);
 }

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The window, members and nodes. */
 #include "engine/output/draw/structure.h"
+#include "engine/base/vec.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "engine/base/memory.h"
+#include "engine/output/draw/axes.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
-#include "engine/output/draw/structure_parts.h"
+
+/* The window, members and nodes. */
 
 enum { SHADES = 33, BATCH = 256 };
 
@@ -43,26 +48,328 @@ void strut_window_point(const strut_window *w, const double position[2], double 
   point[1] = w->box.y + (w->top - position[1]) * w->scale;
 }
 
-void strut_member_ends(const strut_window *w, const strut_model *model, const double *q,
-                       size_t member, double ends[2][2]) {
+/* Where the ends of a member are on the page [pt]. */
+static void find_member_ends(const strut_window *w, const strut_model *model, const double *q,
+                             size_t member, double ends[2][2]) {
   const strut_member *m = &model->scene->members[member];
   for (int k = 0; k < 2; k++) strut_window_point(w, q + 2 * m->node[k], ends[k]);
 }
 
-/* How much thinner than usual things are, for members of this mean length on the page. */
+/* Around a structure: supports, ground, contact forces, node paths, the scale bar. */
+
+enum { TRAIL_SHADES = 64 };
+
+static const double GROUND_DEPTH = 7.0; /* of the hatching below the ground's line [pt] */
+
+/* A support's triangle, its tip at the node, its base towards `out`; rolling: on two wheels. */
+static void draw_support(strut_canvas *canvas, const double tip[2], const double out[2],
+                         bool rolling, double size, double opacity) {
+  const double across[2] = {-out[1], out[0]}, height = 7.0 * size, half = 4.2 * size;
+  const strut_pen pen = {.colour = strut_faded(strut_grey(0.25), opacity), .width = 0.7 * size};
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), opacity)};
+  const strut_fill hatched = {.hatch = STRUT_HATCH_RISING,
+                              .hatch_colour = strut_faded(strut_grey(0.45), opacity)};
+  double corner[4][2];
+  for (int d = 0; d < 2; d++) {
+    corner[0][d] = tip[d];
+    corner[1][d] = tip[d] + height * out[d] + half * across[d];
+    corner[2][d] = tip[d] + height * out[d] - half * across[d];
+  }
+  strut_draw_polygon(canvas, (const double(*)[2])corner, 3, &white, &pen);
+  double base = height, wheel = 1.1 * size;
+  for (int side = -1; side <= 1 && rolling; side += 2)
+    strut_draw_circle(canvas, tip[0] + (height + wheel) * out[0] + 0.55 * side * half * across[0],
+                      tip[1] + (height + wheel) * out[1] + 0.55 * side * half * across[1], wheel,
+                      &white, &pen);
+  if (rolling) base += 2 * wheel;
+  for (int d = 0; d < 2; d++) {
+    corner[0][d] = tip[d] + base * out[d] + 1.5 * half * across[d];
+    corner[1][d] = tip[d] + base * out[d] - 1.5 * half * across[d];
+    corner[2][d] = corner[1][d] + 3.5 * size * out[d];
+    corner[3][d] = corner[0][d] + 3.5 * size * out[d];
+  }
+  strut_draw_polygon(canvas, (const double(*)[2])corner, 4, &hatched, NULL);
+  strut_draw_segment(canvas, corner[0][0], corner[0][1], corner[1][0], corner[1][1], pen);
+}
+
+/* Triangles below pinned nodes, on wheels where one direction is free. */
+static void draw_supports(strut_canvas *canvas, const strut_window *w, const strut_model *model,
+                          const double *q, double size, double opacity) {
+  double middle = 0;
+  for (int32_t i = 0; i < model->node_count; i++) middle += q[2 * i] / model->node_count;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    const bool *fixed = model->scene->nodes[i].fixed;
+    double tip[2];
+    if (!fixed[0] && !fixed[1]) continue;
+    strut_window_point(w, q + 2 * i, tip);
+    /* Fixed in x only: drawn from the side away from the structure. */
+    const double below[2] = {0, 1}, side[2] = {q[2 * i] <= middle ? -1 : 1, 0};
+    draw_support(canvas, tip, fixed[1] ? below : side, !(fixed[0] && fixed[1]), size, opacity);
+  }
+}
+
+/* Where the ground's line enters and leaves the window's neighbourhood [pt]. */
+static void find_ground_line(const strut_window *w, const strut_model *model, double ends[2][2]) {
+  const strut_ground *ground = &model->scene->ground;
+  for (int k = 0; k < 2; k++) {
+    double x = w->left + (1.2 * k - 0.1) * w->box.width / w->scale;
+    const double position[2] = {x, ground->height + tan(ground->slope) * x};
+    strut_window_point(w, position, ends[k]);
+  }
+}
+
+void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model) {
+  const strut_ground *ground = &model->scene->ground;
+  if (!ground->present) return;
+  double ends[4][2];
+  find_ground_line(w, model, ends);
+  const double down[2] = {GROUND_DEPTH * sin(ground->slope), GROUND_DEPTH * cos(ground->slope)};
+  for (int d = 0; d < 2; d++) {
+    ends[2][d] = ends[1][d] + down[d];
+    ends[3][d] = ends[0][d] + down[d];
+  }
+  const strut_fill fill = {
+      .colour = strut_grey(0.95), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.72)};
+  strut_canvas_clip(canvas, w->box);
+  strut_draw_polygon(canvas, (const double(*)[2])ends, 4, &fill, NULL);
+  strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1],
+                     (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
+  if (ground->belt_speed != 0) {
+    double sign = ground->belt_speed > 0 ? 1 : -1;
+    const double from[2] = {0.5 * (ends[0][0] + ends[1][0]) + 1.9 * down[0],
+                            0.5 * (ends[0][1] + ends[1][1]) + 1.9 * down[1]};
+    strut_draw_arrow(
+        canvas, from[0] - sign * 12 * cos(ground->slope), from[1] + sign * 12 * sin(ground->slope),
+        from[0] + sign * 12 * cos(ground->slope), from[1] - sign * 12 * sin(ground->slope), 5,
+        (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
+  }
+  strut_canvas_unclip(canvas);
+}
+
+void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
+                               const strut_model *model, const double *q, const double (*force)[2],
+                               double limit, double longest) {
+  const strut_contact_table *contacts = &model->contacts;
+  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
+  for (int32_t i = 0; i < contacts->count && limit > 0; i++) {
+    double at[2], normal = force[i][0] / limit * longest, along = force[i][1] / limit * longest;
+    strut_window_point(w, q + contacts->at[i], at);
+    if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
+      strut_draw_arrow(canvas, at[0] - normal * contacts->normal[0],
+                       at[1] + normal * contacts->normal[1], at[0], at[1], 5, pen);
+    if (fabs(along) > 0.3)
+      strut_draw_arrow(canvas, at[0], at[1], at[0] + along * contacts->tangent[0],
+                       at[1] - along * contacts->tangent[1], 5, pen);
+  }
+}
+
+void strut_draw_trail(strut_canvas *canvas, const strut_window *w, const double (*positions)[2],
+                      size_t count, double width) {
+  double points[66][2];
+  strut_pen pen = {.width = width};
+  if (count < 2) return;
+  for (size_t shade = 0; shade < TRAIL_SHADES; shade++) {
+    size_t first = shade * (count - 1) / TRAIL_SHADES;
+    size_t last = (shade + 1) * (count - 1) / TRAIL_SHADES, used = 0;
+    if (last == first) continue;
+    pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
+    for (size_t i = first; i <= last; i++) { /* in pieces of the array's size */
+      strut_window_point(w, positions[i], points[used++]);
+      if (used < 66 && i < last) continue;
+      strut_draw_line(canvas, (const double(*)[2])points, used, pen);
+      points[0][0] = points[used - 1][0];
+      points[0][1] = points[used - 1][1];
+      used = 1;
+    }
+  }
+}
+
+void strut_draw_yardstick(strut_canvas *canvas, const strut_window *w) {
+  double room = 0.3 * w->box.width / w->scale, power = pow(10.0, floor(log10(room)));
+  /* The largest of 1, 2 or 5 times a power of ten that fits. */
+  double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
+  double x = w->box.x + 3, y = w->box.y + w->box.height - 4, end = x + length * w->scale;
+  const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
+  if (!isfinite(length) || !(length > 0)) return;
+  strut_draw_segment(canvas, x, y, end, y, pen);
+  strut_draw_segment(canvas, x, y - 2, x, y + 2, pen);
+  strut_draw_segment(canvas, end, y - 2, end, y + 2, pen);
+  strut_draw_text(canvas, 0.5 * (x + end), y - 2, strut_drawn_quantity(length, 3, "m").text,
+                  (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
+}
+
+/* Names beside nodes and members, where the page is emptiest. */
+
+enum { DIRECTIONS = 16, MOST_NAMED = 60 };
+
+static const double GAP = 3.6, NAME_SIZE = 7.5, MOST_WIDTH = 90;
+static const double SUPPORT = 5.0; /* half the width of a support [pt] */
+static const double HATCHED = 2.0, FREE = 1.0,
+                    FAR = 6.0; /* cost, enough freedom, second try [pt] */
+
+/* What names must not cover. */
+typedef struct obstacles {
+  size_t member_count, label_count;
+  double (*ends)[2]; /* (2 member_count) [pt] */
+  strut_box *labels; /* those placed so far */
+  strut_box inside;  /* names stay in here */
+  bool ground;       /* hatched to GROUND_DEPTH below the segment `surface` */
+  double surface[2][2];
+} obstacles;
+
+double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]) {
+  double along[2] = {b[0] - a[0], b[1] - a[1]}, square = along[0] * along[0] + along[1] * along[1];
+  double t = square > 0 ? ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square : 0;
+  t = fmax(0, fmin(1, t));
+  return hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1]);
+}
+
+/* Whether a point is on the hatching below the ground's line. */
+static bool is_on_hatching(const obstacles *o, const double p[2]) {
+  const double *a = o->surface[0], *b = o->surface[1];
+  double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);
+  double depth = (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / length;
+  return o->ground && depth > 0 && depth < GROUND_DEPTH;
+}
+
+/* Distance of a box from all that is drawn; negative where it covers another name or leaves the
+   page. */
+static double clearance(const obstacles *o, strut_box box) {
+  double least = HUGE_VAL;
+  for (int i = 0; i <= 4; i++)
+    for (int k = 0; k <= 2; k++) {
+      const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
+      if (is_on_hatching(o, p)) least = -HATCHED;
+    }
+  for (size_t j = 0; j < o->member_count; j++)
+    for (int i = 0; i <= 4; i++)
+      for (int k = 0; k <= 2; k++) {
+        const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
+        least = fmin(least, strut_distance_to_segment(p, o->ends[2 * j], o->ends[2 * j + 1]));
+      }
+  for (size_t i = 0; i < o->label_count; i++) {
+    const strut_box *other = &o->labels[i];
+    double dx = fmax(other->x - box.x - box.width, box.x - other->x - other->width);
+    double dy = fmax(other->y - box.y - box.height, box.y - other->y - other->height);
+    double apart = fmax(dx, dy);
+    least = fmin(least, apart < 0 ? apart - 20 : apart);
+  }
+  double out = fmax(fmax(o->inside.x - box.x, o->inside.y - box.y),
+                    fmax(box.x + box.width - o->inside.x - o->inside.width,
+                         box.y + box.height - o->inside.y - o->inside.height));
+  return out > 0 ? fmin(least, -out) : least;
+}
+
+static strut_font name_font(void) {
+  return (strut_font){.size = NAME_SIZE, .italic = true, .halo = strut_faded(strut_grey(1), 0.85)};
+}
+
+/* The box of a name of this size around `at`, in one of the directions. */
+static strut_box beside(const double at[2], int direction, double gap, double width,
+                        double height) {
+  double angle = 2 * STRUT_PI * direction / DIRECTIONS;
+  double x = at[0] + (gap + 0.5 * width) * cos(angle),
+         y = at[1] - (gap + 0.5 * height) * sin(angle);
+  return (strut_box){x - 0.5 * width, y - 0.5 * height, width, height};
+}
+
+static void draw_name(strut_canvas *canvas, obstacles *o, const double at[2], double gap,
+                      const char *name) {
+  double width, height, best = -HUGE_VAL;
+  char fitted[STRUT_FITTED_TEXT];
+  strut_box chosen = {0};
+  name = strut_text_fit(canvas, name, name_font(), MOST_WIDTH, 0, fitted);
+  strut_text_size(canvas, name, name_font(), &width, &height);
+  for (int k = 0; k < 2 * DIRECTIONS; k++) {
+    /* Start at the upper right; any clearance of 4 pt is enough. A second ring is tried if the
+       first is full. */
+    int direction = (k + DIRECTIONS / 8) % DIRECTIONS;
+    if (k == DIRECTIONS && best > FREE) break;
+    strut_box box = beside(at, direction, gap + (k < DIRECTIONS ? 0 : FAR), width, height);
+    double free = fmin(clearance(o, box), 4.0);
+    if (free > best + 1e-9) {
+      best = free;
+      chosen = box;
+    }
+  }
+  o->labels[o->label_count++] = chosen;
+  strut_draw_text(canvas, chosen.x, chosen.y, name, name_font());
+}
+
+/* Adds the sides of supports below nodes as segments. */
+static void add_supports(const strut_window *w, const strut_model *model, const double *q,
+                         obstacles *o) {
+  for (int32_t i = 0; i < model->node_count; i++) {
+    if (!model->scene->nodes[i].fixed[1]) continue;
+    for (int side = -1; side <= 1; side += 2) {
+      double(*ends)[2] = o->ends + 2 * o->member_count++;
+      strut_window_point(w, q + 2 * i, ends[0]);
+      ends[1][0] = ends[0][0] + side * SUPPORT;
+      ends[1][1] = ends[0][1] + 2 * SUPPORT;
+    }
+  }
+}
+
+static bool collect_obstacles(const strut_window *w, const strut_model *model, const double *q,
+                              size_t others, obstacles *o, strut_arena *arena) {
+  size_t members = model->scene->member_count, nodes = (size_t)model->node_count;
+  o->member_count = members;
+  o->ends = strut_arena_allocate(arena, 2 * (members + 1 + 2 * nodes + others), sizeof *o->ends);
+  o->labels = strut_arena_allocate(arena, nodes + members, sizeof *o->labels);
+  o->inside = w->box;
+  if (!o->ends || !o->labels) return false;
+  for (size_t j = 0; j < members; j++) find_member_ends(w, model, q, j, o->ends + 2 * j);
+  if (model->scene->ground.present) { /* its line is one more segment */
+    find_ground_line(w, model, o->ends + 2 * members);
+    memcpy(o->surface, o->ends + 2 * members, sizeof o->surface);
+    o->ground = true;
+    o->member_count++;
+  }
+  add_supports(w, model, q, o);
+  return true;
+}
+
+void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_model *model,
+                      const double *q, bool nodes, bool members, const double (*others)[2],
+                      size_t other_count) {
+  const strut_scene *scene = model->scene;
+  strut_arena arena = {0};
+  obstacles o = {0};
+  if (scene->node_count <= MOST_NAMED && collect_obstacles(w, model, q, other_count, &o, &arena)) {
+    if (other_count) memcpy(o.ends + 2 * o.member_count, others, 2 * other_count * sizeof *others);
+    o.member_count += other_count;
+    for (size_t i = 0; i < scene->node_count && nodes; i++) {
+      double at[2];
+      strut_window_point(w, q + 2 * i, at);
+      if (isfinite(at[0]) && isfinite(at[1])) draw_name(canvas, &o, at, GAP, scene->nodes[i].name);
+    }
+    for (size_t j = 0; j < scene->member_count && members; j++) {
+      /* the middle of its line */
+      const double at[2] = {0.5 * (o.ends[2 * j][0] + o.ends[2 * j + 1][0]),
+                            0.5 * (o.ends[2 * j][1] + o.ends[2 * j + 1][1])};
+      if (isfinite(at[0]) && isfinite(at[1]))
+        draw_name(canvas, &o, at, 1.5, scene->members[j].name);
+    }
+  }
+  strut_arena_free(&arena);
+}
+
+/* Members and nodes. */
+
+/* Factor for line widths, from the mean length of the members on the page. */
 static double thinning(const strut_window *w, const strut_model *model, const double *q) {
   double sum = 0;
   size_t count = model->scene->member_count, finite = 0;
   for (size_t j = 0; j < count; j++) {
     double ends[2][2];
-    strut_member_ends(w, model, q, j, ends);
+    find_member_ends(w, model, q, j, ends);
     double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
     if (isfinite(length)) sum += length, finite++;
   }
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
 }
 
-/* One way to draw some of the members: they share a pen. */
+/* Members drawn together, with one pen. */
 typedef struct batch {
   strut_canvas *canvas;
   strut_pen pen;
@@ -70,49 +377,49 @@ typedef struct batch {
   double ends[2 * BATCH][2];
 } batch;
 
-static void flush(batch *b) {
+static void draw_batch(batch *b) {
   strut_draw_segments(b->canvas, (const double(*)[2])b->ends, b->count, b->pen);
   b->count = 0;
 }
 
-static void add(batch *b, const double ends[2][2]) {
+static void add_segment(batch *b, const double ends[2][2]) {
   for (int k = 0; k < 2; k++)
     for (int d = 0; d < 2; d++) b->ends[2 * b->count + (size_t)k][d] = ends[k][d];
-  if (++b->count == BATCH) flush(b);
+  if (++b->count == BATCH) draw_batch(b);
 }
 
-typedef struct look {
+typedef struct drawing {
   const strut_window *window;
   const strut_model *model;
   const double *q;
   const strut_structure_style *style;
   double thin, opacity;
-} look;
+} drawing;
 
-static bool is_slack(const look *l, size_t j) {
-  if (l->model->scene->members[j].kind != STRUT_CABLE) return false;
-  if (l->style->slack_forces) return !(l->style->slack_forces[j] > 0);
-  const strut_member *m = &l->model->scene->members[j];
-  const double *a = l->q + 2 * m->node[0], *b = l->q + 2 * m->node[1];
-  return hypot(b[0] - a[0], b[1] - a[1]) < l->model->members.rest[j] * (1 - 1e-12);
+static bool is_slack(const drawing *d, size_t j) {
+  if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
+  if (d->style->slack_forces) return !(d->style->slack_forces[j] > 0);
+  const strut_member *m = &d->model->scene->members[j];
+  const double *a = d->q + 2 * m->node[0], *b = d->q + 2 * m->node[1];
+  return hypot(b[0] - a[0], b[1] - a[1]) < d->model->members.rest[j] * (1 - 1e-12);
 }
 
-static double width_of(const look *l, size_t j) {
-  strut_member_kind kind = l->model->scene->members[j].kind;
+static double width_of(const drawing *d, size_t j) {
+  strut_member_kind kind = d->model->scene->members[j].kind;
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
-  return width * l->thin / (1.0 + l->style->thinness);
+  return width * d->thin / (1.0 + d->style->thinness);
 }
 
-/* The shade of a member, -1 where it has none of its own. */
-static int shade_of(const look *l, size_t j) {
-  if (l->style->colouring != STRUT_COLOUR_FORCE || !l->style->values) return -1;
-  double limit = l->style->limit, value = l->style->values[j];
+/* Index of a member's force colour; -1 where members are not coloured by force. */
+static int shade_of(const drawing *d, size_t j) {
+  if (d->style->colouring != STRUT_COLOUR_FORCE || !d->style->values) return -1;
+  double limit = d->style->limit, value = d->style->values[j];
   double part = limit > 0 && isfinite(value) ? fmax(-1.0, fmin(1.0, value / limit)) : 0;
   return (int)lround(0.5 * (part + 1.0) * (SHADES - 1));
 }
 
-static strut_colour colour_of(const look *l, strut_member_kind kind, bool slack, int shade) {
-  if (l->style->colouring == STRUT_COLOUR_ONE) return l->style->colour;
+static strut_colour colour_of(const drawing *d, strut_member_kind kind, bool slack, int shade) {
+  if (d->style->colouring == STRUT_COLOUR_ONE) return d->style->colour;
   if (slack) return strut_grey(0.55);
   if (shade >= 0) return strut_palette_signed(2.0 * shade / (SHADES - 1) - 1.0);
   return kind == STRUT_BAR      ? strut_grey(0.15)
@@ -120,62 +427,62 @@ static strut_colour colour_of(const look *l, strut_member_kind kind, bool slack,
                                 : strut_palette_thing(1);
 }
 
-/* A dark edge keeps light colours apart from the paper. */
-static void draw_casings(strut_canvas *canvas, const look *l, strut_member_kind kind) {
+/* A dark edge separates light colours from the paper. */
+static void draw_casings(strut_canvas *canvas, const drawing *d, strut_member_kind kind) {
   batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(strut_grey(0.1), l->opacity);
-  for (size_t j = 0; j < l->model->scene->member_count; j++) {
+  b.pen.colour = strut_faded(strut_grey(0.1), d->opacity);
+  for (size_t j = 0; j < d->model->scene->member_count; j++) {
     double ends[2][2];
-    if (l->model->scene->members[j].kind != kind) continue;
-    b.pen.width = width_of(l, j) + CASING * l->thin;
-    strut_member_ends(l->window, l->model, l->q, j, ends);
-    add(&b, (const double(*)[2])ends);
+    if (d->model->scene->members[j].kind != kind) continue;
+    b.pen.width = width_of(d, j) + CASING * d->thin;
+    find_member_ends(d->window, d->model, d->q, j, ends);
+    add_segment(&b, (const double(*)[2])ends);
   }
-  flush(&b);
+  draw_batch(&b);
 }
 
-/* All members of one kind, slackness and shade, in one piece. */
-static void draw_alike(strut_canvas *canvas, const look *l, strut_member_kind kind, bool slack,
+/* Draws all members of one kind, slackness and shade. */
+static void draw_alike(strut_canvas *canvas, const drawing *d, strut_member_kind kind, bool slack,
                        int shade) {
   batch b = {.canvas = canvas};
-  b.pen.colour = strut_faded(colour_of(l, kind, slack, shade), l->opacity);
+  b.pen.colour = strut_faded(colour_of(d, kind, slack, shade), d->opacity);
   if (slack) {
-    b.pen.dash[0] = 2.5 * l->thin;
-    b.pen.dash[1] = 2.0 * l->thin;
+    b.pen.dash[0] = 2.5 * d->thin;
+    b.pen.dash[1] = 2.0 * d->thin;
     b.pen.butt = true;
   }
-  for (size_t j = 0; j < l->model->scene->member_count; j++) {
+  for (size_t j = 0; j < d->model->scene->member_count; j++) {
     double ends[2][2];
-    if (l->model->scene->members[j].kind != kind || is_slack(l, j) != slack) continue;
-    if (!slack && shade_of(l, j) != shade) continue;
-    b.pen.width = width_of(l, j);
-    strut_member_ends(l->window, l->model, l->q, j, ends);
-    add(&b, (const double(*)[2])ends);
+    if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
+    if (!slack && shade_of(d, j) != shade) continue;
+    b.pen.width = width_of(d, j);
+    find_member_ends(d->window, d->model, d->q, j, ends);
+    add_segment(&b, (const double(*)[2])ends);
   }
-  flush(&b);
+  draw_batch(&b);
 }
 
-/* Thin things lie above thick ones, so that a cable along a bar is seen. */
-static void draw_members(strut_canvas *canvas, const look *l) {
+/* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
+static void draw_members(strut_canvas *canvas, const drawing *d) {
   static const strut_member_kind order[] = {STRUT_BAR, STRUT_SPRING, STRUT_CABLE};
-  bool shaded = l->style->colouring == STRUT_COLOUR_FORCE && l->style->values;
+  bool shaded = d->style->colouring == STRUT_COLOUR_FORCE && d->style->values;
   for (int k = 0; k < 3; k++) {
-    if (shaded && order[k] != STRUT_CABLE) draw_casings(canvas, l, order[k]);
-    if (order[k] == STRUT_CABLE) draw_alike(canvas, l, order[k], true, -1);
-    if (!shaded) draw_alike(canvas, l, order[k], false, -1);
+    if (shaded && order[k] != STRUT_CABLE) draw_casings(canvas, d, order[k]);
+    if (order[k] == STRUT_CABLE) draw_alike(canvas, d, order[k], true, -1);
+    if (!shaded) draw_alike(canvas, d, order[k], false, -1);
     for (int shade = 0; shaded && shade < SHADES; shade++)
-      draw_alike(canvas, l, order[k], false, shade);
+      draw_alike(canvas, d, order[k], false, shade);
   }
 }
 
-static void draw_nodes(strut_canvas *canvas, const look *l) {
-  double thin = l->thin / (1.0 + l->style->thinness), point[2];
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), l->opacity)};
-  strut_colour edge = l->style->colouring == STRUT_COLOUR_ONE ? l->style->colour : strut_grey(0.1);
-  const strut_pen pen = {.colour = strut_faded(edge, l->opacity), .width = 0.8 * thin};
-  if (l->thin < 0.3) return; /* a texture has none */
-  for (int32_t i = 0; i < l->model->node_count; i++) {
-    strut_window_point(l->window, l->q + 2 * i, point);
+static void draw_nodes(strut_canvas *canvas, const drawing *d) {
+  double thin = d->thin / (1.0 + d->style->thinness), point[2];
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), d->opacity)};
+  strut_colour edge = d->style->colouring == STRUT_COLOUR_ONE ? d->style->colour : strut_grey(0.1);
+  const strut_pen pen = {.colour = strut_faded(edge, d->opacity), .width = 0.8 * thin};
+  if (d->thin < 0.3) return; /* too small to be drawn */
+  for (int32_t i = 0; i < d->model->node_count; i++) {
+    strut_window_point(d->window, d->q + 2 * i, point);
     strut_draw_circle(canvas, point[0], point[1], 1.9 * thin, &white, &pen);
   }
 }
@@ -183,16 +490,15 @@ static void draw_nodes(strut_canvas *canvas, const look *l) {
 void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                           const strut_model *model, const double *q,
                           const strut_structure_style *style) {
-  const look l = {.window = window,
-                  .model = model,
-                  .q = q,
-                  .style = style,
-                  .thin = thinning(window, model, q),
-                  .opacity = style->opacity > 0 ? style->opacity : 1.0};
-  if (!style->no_supports)
-    strut_draw_supports(canvas, window, model, q, fmax(l.thin, 0.3), l.opacity);
-  draw_members(canvas, &l);
-  if (!style->no_nodes) draw_nodes(canvas, &l);
+  const drawing d = {.window = window,
+                     .model = model,
+                     .q = q,
+                     .style = style,
+                     .thin = thinning(window, model, q),
+                     .opacity = style->opacity > 0 ? style->opacity : 1.0};
+  if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(d.thin, 0.3), d.opacity);
+  draw_members(canvas, &d);
+  if (!style->no_nodes) draw_nodes(canvas, &d);
   if (style->node_names || style->member_names)
     strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);
 }

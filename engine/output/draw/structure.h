@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Structures drawn true to scale: members, nodes, supports, ground, forces, and what moves.
+ * Structures drawn to scale: members, nodes, supports, ground, forces and node paths.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
 #define STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
@@ -23,7 +23,9 @@ typedef struct strut_bounds {
 STRUT_API strut_bounds strut_bounds_none(void);
 /** Widens the bounds by all nodes of a shape q (model->length). */
 STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q);
-/** The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows. */
+/**
+ * The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows.
+ */
 STRUT_API strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
 /** Where a point of the plane [m] is on the page [pt]. */
 STRUT_API void strut_window_point(const strut_window *window, const double position[2],
@@ -43,19 +45,21 @@ typedef struct strut_structure_style {
   const double
       *slack_forces;   /* (member_count) [N]: a cable with 0 is drawn slack; NULL: by length */
   strut_colour colour; /* for STRUT_COLOUR_ONE */
-  double opacity;      /* 0 stands for 1 */
+  double opacity;      /* 0: 1 */
   double thinness;     /* widths are divided by 1 + thinness */
   bool node_names, member_names, no_nodes, no_supports;
 } strut_structure_style;
 
-/** Members, nodes and supports of the shape q (model->length). Widths adapt to how many there are. */
+/**
+ * Members, nodes and supports of the shape q (model->length). Widths adapt to how many there are.
+ */
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,
                                     const strut_structure_style *style);
 /**
- * Names beside nodes and members, where the page is emptiest: what the style's node_names and
- * member_names do, for a caller that draws more between the structure and its names. They keep off
- * `other_count` other lines too: (other_count, 2) ends on the page [pt]; may be NULL.
+ * Draws names beside nodes and members where the page is emptiest, as the style's node_names and
+ * member_names do, for callers that draw more before the names. Names also avoid `other_count`
+ * segments given by their ends (other_count, 2) on the page [pt]; may be NULL.
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
                                 const strut_model *model, const double *q, bool nodes, bool members,
@@ -70,19 +74,12 @@ STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *windo
 STRUT_API void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
                                          const strut_model *model, const double *q,
                                          const double (*force)[2], double limit, double longest);
-/** A way of one point through (count) positions [m], dark to bright. */
+/** The path of a point through (count) positions [m], dark to bright. */
 STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window,
                                 const double (*positions)[2], size_t count, double width);
-/** A rod of known length with its name, such as "20 mm", in a lower corner of the window's box. */
+/** A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
-
-/** The scale of colours beside a drawing, from -limit to limit or 0 to limit, named and in its unit. */
-typedef struct strut_colour_scale {
-  const char *name, *unit;
-  double low, high; /* [unit]; ticks are chosen */
-  bool sequence;    /* strut_palette_sequence instead of strut_palette_signed */
-} strut_colour_scale;
-STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
-                                       const strut_colour_scale *scale);
+/** Distance of a point from the segment from a to b. */
+double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]);
 
 #endif

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 
 static const double MARKER = 2.4, STRIP = 18;
@@ -13,7 +13,7 @@ typedef struct diagram {
   strut_canvas *canvas;
   const strut_work_precision *wanted;
   strut_axes axes;
-  strut_box strip; /* above the frame, for those that diverged; no height: none did */
+  strut_box strip; /* above the frame, for diverged points; height 0: none */
   bool *front;     /* (count) */
   size_t *order;   /* (count) of the front by cost */
   strut_legend_entry *entries;
@@ -38,26 +38,30 @@ static void settle_axes(const strut_work_precision *w, strut_axis *cost, strut_a
   *cost = w->cost;
   *error = w->error;
   cost->logarithmic = error->logarithmic = true;
-  cost->low = cost->high = error->low = error->high = (double)NAN;
+  bool fit_cost = !(cost->low < cost->high), fit_error = !(error->low < error->high);
+  if (fit_cost) cost->low = cost->high = (double)NAN;
+  if (fit_error) error->low = error->high = (double)NAN;
   for (size_t i = 0; i < w->count; i++) {
     const strut_saving *b = &w->bargains[i];
-    strut_axis_include(cost, b->cost);
+    if (fit_cost) strut_axis_include(cost, b->cost);
+    if (!fit_error) continue;
     strut_axis_include(error, b->error);
     strut_axis_include(error, b->low);
     strut_axis_include(error, b->high);
   }
-  strut_axis_settle(cost, 0.06);
-  strut_axis_settle(error, 0.08);
+  strut_axis_settle(cost, fit_cost ? 0.06 : 0);
+  strut_axis_settle(error, fit_error ? 0.08 : 0);
 }
 
-static void place(const diagram *d, const strut_saving *b, double at[2]) {
+static void place_point(const diagram *d, const strut_saving *b, double at[2]) {
   double error = diverged(b) || !(b->error > 0) ? d->axes.y.high : b->error;
   strut_axes_point(&d->axes, b->cost, error, at);
-  if (diverged(b)) { /* each group on a line of its own, so that none hides another */
+  if (diverged(b)) { /* each group at its own height, so that none hides another */
     double groups = d->wanted->group_count > 0 ? (double)d->wanted->group_count : 1;
     at[1] = d->strip.y + d->strip.height * (0.2 + 0.6 * (b->group + 0.5) / groups);
   }
-  if (b->error == 0) at[1] = d->axes.frame.y + d->axes.frame.height; /* better than can be drawn */
+  if (b->error == 0)
+    at[1] = d->axes.frame.y + d->axes.frame.height; /* zero is off a logarithmic scale */
 }
 
 static void draw_lines(const diagram *d) {
@@ -69,7 +73,7 @@ static void draw_lines(const diagram *d) {
     for (size_t i = 0; i < w->count; i++) {
       double at[2];
       if (w->bargains[i].group != (int)g || diverged(&w->bargains[i])) continue;
-      place(d, &w->bargains[i], at);
+      place_point(d, &w->bargains[i], at);
       if (started) strut_draw_segment(d->canvas, before[0], before[1], at[0], at[1], pen);
       before[0] = at[0];
       before[1] = at[1];
@@ -78,7 +82,7 @@ static void draw_lines(const diagram *d) {
   }
 }
 
-/* Below and to the left of its steps there is nothing to be had. */
+/* The staircase of the Pareto front. */
 static void draw_front(const diagram *d) {
   const strut_work_precision *w = d->wanted;
   const strut_pen pen = {.colour = strut_grey(0.6), .width = 3.2};
@@ -86,7 +90,7 @@ static void draw_front(const diagram *d) {
   bool started = false;
   for (size_t k = 0; k < w->count && d->order[k] < w->count; k++) {
     double at[2];
-    place(d, &w->bargains[d->order[k]], at);
+    place_point(d, &w->bargains[d->order[k]], at);
     if (started) {
       strut_draw_segment(d->canvas, before[0], before[1], at[0], before[1], pen);
       strut_draw_segment(d->canvas, at[0], before[1], at[0], at[1], pen);
@@ -101,7 +105,7 @@ static bool overlap(strut_box a, strut_box b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/* Whether a label may stand there: inside, and neither on another one nor on a marker. */
+/* Whether a label fits there: inside the frame, on no other label and no marker. */
 static bool is_free(const diagram *d, strut_box box) {
   const strut_box *f = &d->axes.frame;
   if (box.x < f->x + 1 || box.x + box.width > f->x + f->width - 1 || box.y < f->y + 1 ||
@@ -112,14 +116,15 @@ static bool is_free(const diagram *d, strut_box box) {
   for (size_t i = 0; i < d->wanted->count; i++) {
     double at[2];
     if (!(d->wanted->bargains[i].cost > 0)) continue;
-    place(d, &d->wanted->bargains[i], at);
+    place_point(d, &d->wanted->bargains[i], at);
     if (overlap(box, (strut_box){at[0] - MARKER, at[1] - MARKER, 2 * MARKER, 2 * MARKER}))
       return false;
   }
   return true;
 }
 
-/* Below the point on its left, where no other can be, or at another free corner; else nowhere. */
+/* Draws a label at a free corner of its point, first at the lower left, where no better point
+   can be; omitted if all corners are taken. */
 static void draw_label(diagram *d, const double at[2], const char *label) {
   static const double corners[4][2] = {{1, 0}, {0, 1}, {1, 1}, {0, 0}};
   strut_font font = {.size = 7, .halo = strut_grey(1)};
@@ -142,7 +147,7 @@ static void draw_labels(diagram *d) {
     const strut_saving *b = &d->wanted->bargains[d->order[k]];
     double at[2];
     if (!b->label) continue;
-    place(d, b, at);
+    place_point(d, b, at);
     draw_label(d, at, b->label);
   }
 }
@@ -153,7 +158,7 @@ static void draw_points(const diagram *d) {
     const strut_saving *b = &w->bargains[i];
     double at[2], low[2], high[2];
     if (!(b->cost > 0)) continue;
-    place(d, b, at);
+    place_point(d, b, at);
     if (isfinite(b->low) && isfinite(b->high) && b->low > 0) {
       const strut_pen bar = {
           .colour = strut_palette_thing((size_t)b->group), .width = 0.7, .butt = true};
@@ -167,7 +172,7 @@ static void draw_points(const diagram *d) {
   }
 }
 
-/* The front's indices by cost; `count` ends them. */
+/* Sorts the front's indices by cost; `count` terminates them. */
 static void sort_front(diagram *d) {
   const strut_work_precision *w = d->wanted;
   size_t used = 0;
@@ -189,7 +194,7 @@ static void draw_strip(const diagram *d) {
                   (strut_font){.size = 7, .across = 1, .down = 0.5, .colour = strut_grey(0.35)});
 }
 
-static void draw(diagram *d, strut_box box) {
+static void draw_diagram(diagram *d, strut_box box) {
   const strut_work_precision *w = d->wanted;
   strut_axis cost, error;
   double legend[2];
@@ -202,7 +207,7 @@ static void draw(diagram *d, strut_box box) {
   for (size_t i = 0; i < w->count; i++) some_diverged = some_diverged || diverged(&w->bargains[i]);
   double top = legend[1] + (some_diverged ? STRIP : 0);
   const strut_box below = {box.x, box.y + top, box.width, box.height - top};
-  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL);
+  d->axes = strut_axes_place(d->canvas, below, cost, error, NULL, NULL);
   d->strip = d->axes.frame;
   d->strip.height = some_diverged ? STRIP : 0;
   d->strip.y -= d->strip.height;
@@ -232,7 +237,7 @@ strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
       box.y += 14;
       box.height -= 14;
     }
-    draw(&d, box);
+    draw_diagram(&d, box);
   }
   strut_release(d.front);
   strut_release(d.order);

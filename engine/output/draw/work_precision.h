@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Work-precision diagrams: error over cost, both logarithmic, and the front of the best bargains.
+ * Work-precision diagrams: error over cost, both logarithmic, with the Pareto front.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_WORK_PRECISION_H
 #define STRUT_ENGINE_OUTPUT_DRAW_WORK_PRECISION_H
@@ -9,7 +9,7 @@
 
 typedef struct strut_saving {
   int group;         /* index into groups: one method, joined by a line in the order given */
-  const char *label; /* such as the step, beside a point of the front; NULL: none */
+  const char *label; /* text beside a point of the front, such as the step; or NULL */
   double cost;       /* > 0 */
   double error;      /* > 0; not finite: diverged, drawn at the upper edge */
   double low, high;  /* range of the error over several cases; NAN: none */
@@ -17,15 +17,15 @@ typedef struct strut_saving {
 
 typedef struct strut_work_precision {
   const char *title;
-  strut_axis cost, error; /* logarithmic whatever they say */
+  strut_axis cost, error; /* made logarithmic; an empty range: from the data */
   size_t group_count, count;
   const char *const *groups;    /* (group_count) */
   const strut_saving *bargains; /* (count) */
 } strut_work_precision;
 
-/** Which bargains no other beats in both: (count) flags. Diverged ones never are. */
+/** Flags (count) the Pareto-optimal points: no other is better in both. Diverged ones never are. */
 STRUT_API void strut_pareto_front(const strut_saving *bargains, size_t count, bool *front);
-/** Draws it in a box. STRUT_NO_MEMORY when there is none. */
+/** Draws the diagram in a box. STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_draw_work_precision(strut_canvas *canvas, strut_box box,
                                                  const strut_work_precision *diagram);
 

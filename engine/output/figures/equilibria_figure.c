@@ -1,24 +1,158 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/equilibria_figure.h"
-
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
-#include "engine/output/figures/equilibria_parts.h"
+#include "engine/output/draw/structure.h"
+#include "engine/output/figures/statics_figures.h"
+
+static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
+
+/* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
+static const double *drawn_shape(const strut_equilibria *all, size_t i) {
+  const strut_equilibrium *e = &all->list[i];
+  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
+}
+
+/* Its energy there [J]. */
+static double drawn_energy(const strut_equilibria *all, size_t i) {
+  const strut_equilibrium *e = &all->list[i];
+  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
+}
+
+/* The energy ladder: states as levels, with the barriers between them. */
+
+enum { ARC = 40, FEW = 4 };
+
+static const double LEVEL = 0.3; /* half the width of a level, in places */
+
+static int level_of(const size_t *chosen, size_t count, int32_t state) {
+  for (size_t k = 0; k < count; k++)
+    if ((int32_t)chosen[k] == state) return (int)k;
+  return -1;
+}
+
+/* Finds a barrier's two ends among the chosen states; false if one is missing. */
+static bool ends_of(const strut_barrier *b, const size_t *chosen, size_t count, int ends[2]) {
+  ends[0] = level_of(chosen, count, b->from);
+  ends[1] = level_of(chosen, count, b->to);
+  return ends[0] >= 0 && ends[1] >= 0 && ends[0] != ends[1];
+}
+
+/* The height of the direct pass where it is known, else of the lowest path. */
+static double barrier_height(const strut_barrier *b) {
+  return isfinite(b->direct) ? b->direct : b->height;
+}
+
+static bool has_barriers(const strut_equilibria *all, const size_t *chosen, size_t count) {
+  int ends[2];
+  for (size_t i = 0; i < all->barrier_count; i++)
+    if (ends_of(&all->barriers[i], chosen, count, ends)) return true;
+  return false;
+}
+
+/* A smooth curve from one level over the barrier to the other. */
+static void draw_barrier(strut_canvas *canvas, const strut_axes *axes, const int ends[2],
+                         const double energy[2], double top) {
+  double points[ARC + 1][2];
+  bool neighbours = abs(ends[0] - ends[1]) == 1;
+  const strut_pen pen = {.colour = strut_grey(neighbours ? 0.35 : 0.65),
+                         .width = neighbours ? 0.9 : 0.6,
+                         .dash = {neighbours ? 0 : 2.5, 2}};
+  double side = ends[1] > ends[0] ? LEVEL : -LEVEL;
+  for (int i = 0; i <= ARC; i++) {
+    double t = (double)i / ARC, low = t < 0.5 ? energy[0] : energy[1];
+    double rise = 0.5 - 0.5 * cos(4 * acos(0) * t); /* 0, 1, 0 */
+    strut_axes_point(axes, ends[0] + side + t * (ends[1] - ends[0] - 2 * side),
+                     low + rise * (top - low), points[i]);
+  }
+  strut_draw_line(canvas, (const double(*)[2])points, ARC + 1, pen);
+}
+
+static void draw_barriers(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
+                          const size_t *chosen, size_t count, double zero) {
+  for (size_t i = 0; i < all->barrier_count; i++) {
+    const strut_barrier *b = &all->barriers[i];
+    int ends[2];
+    if (!ends_of(b, chosen, count, ends)) continue;
+    const double energy[2] = {drawn_energy(all, (size_t)b->from) - zero,
+                              drawn_energy(all, (size_t)b->to) - zero};
+    double top = energy[0] + barrier_height(b), at[2];
+    /* Among many states, only curves between neighbours remain readable. */
+    bool drawn = abs(ends[0] - ends[1]) == 1 || count <= FEW;
+    if (ends[0] < ends[1] && drawn) draw_barrier(canvas, axes, ends, energy, top);
+    if (abs(ends[0] - ends[1]) != 1) continue;
+    /* The barrier height for this direction, beside its slope. */
+    char text[80];
+    bool right = ends[1] > ends[0];
+    snprintf(text, sizeof text, right ? "%s \xe2\x86\x92" : "\xe2\x86\x90 %s",
+             strut_drawn_quantity(barrier_height(b), 3, "J").text);
+    strut_axes_point(axes, 0.5 * (ends[0] + ends[1]), top, at);
+    strut_draw_text(canvas, at[0], at[1] - (right ? 2 : 11), text,
+                    (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
+  }
+}
+
+static void draw_levels(strut_canvas *canvas, const strut_axes *axes, const strut_equilibria *all,
+                        const size_t *chosen, size_t count, double zero) {
+  /* Many names alternate between two lines, each with the width of two places. */
+  int lines = count <= FEW ? 1 : 2;
+  double room = lines * axes->frame.width / (double)count - 2;
+  for (size_t k = 0; k < count; k++) {
+    double left[2], right[2], energy = drawn_energy(all, chosen[k]) - zero;
+    char fitted[STRUT_FITTED_TEXT];
+    strut_font font = {
+        .size = count <= FEW ? 8 : 7, .bold = count <= FEW, .across = 0.5, .halo = strut_grey(1)};
+    strut_axes_point(axes, (double)k - LEVEL, energy, left);
+    strut_axes_point(axes, (double)k + LEVEL, energy, right);
+    strut_draw_segment(canvas, left[0], left[1], right[0], right[1],
+                       (strut_pen){.colour = strut_palette_thing(0), .width = 2, .butt = true});
+    strut_draw_text(canvas, 0.5 * (left[0] + right[0]), left[1] + 3 + (double)((int)k % lines) * 8,
+                    strut_text_fit(canvas, all->list[chosen[k]].name, font, room, 0, fitted), font);
+  }
+}
+
+static strut_status draw_ladder(strut_canvas *canvas, strut_box box, const strut_equilibria *all,
+                                const size_t *chosen, size_t count) {
+  strut_axis x = {.name = "", .unit = "", .low = -0.5, .high = (double)count - 0.5};
+  if (count > FEW) { /* names are wider than their levels */
+    x.low -= 0.3;
+    x.high += 0.3;
+  }
+  const double any = (double)NAN;
+  strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = any, .high = any};
+  double zero = HUGE_VAL;
+  int ends[2];
+  for (size_t k = 0; k < count; k++) zero = fmin(zero, drawn_energy(all, chosen[k]));
+  for (size_t k = 0; k < count; k++) strut_axis_include(&y, drawn_energy(all, chosen[k]) - zero);
+  for (size_t i = 0; i < all->barrier_count; i++)
+    if (ends_of(&all->barriers[i], chosen, count, ends))
+      strut_axis_include(&y, drawn_energy(all, (size_t)all->barriers[i].from) - zero +
+                                 barrier_height(&all->barriers[i]));
+  strut_axis_settle(&y, 0.2);
+  strut_axes axes = strut_axes_place(canvas, box, x, y, NULL, NULL);
+  axes.frame.height = box.y + box.height - axes.frame.y - 4; /* the x axis has no numbers */
+  strut_draw_vertical_axis(canvas, &axes);
+  strut_canvas_clip(canvas, axes.frame);
+  draw_barriers(canvas, &axes, all, chosen, count, zero);
+  draw_levels(canvas, &axes, all, chosen, count, zero);
+  strut_canvas_unclip(canvas);
+  return STRUT_OK;
+}
 
 static const double ARROW = 20; /* the longest force of the ground [pt] */
 static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110, SCALE = 34,
                     LADDER = 150;
 enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
-/* The figure's plan: which are drawn, and how large. */
+/* Which equilibria are drawn, and how large. */
 typedef struct plan {
   const strut_model *model;
   const strut_equilibria *all;
-  size_t *standing, standing_count; /* those that stand, by energy */
+  size_t *standing, standing_count; /* stable on the ground, by energy */
   size_t *aside, aside_count;       /* further stable ones, by energy */
   size_t cards, columns, small, small_columns;
   double width, size[2], cell[2], small_cell[2], force_limit, contact_limit, largest_energy;
@@ -26,20 +160,8 @@ typedef struct plan {
   strut_arena arena;
 } plan;
 
-static bool on_ground(const strut_equilibrium *e) { return e->rest != NULL; }
-
-const double *strut_drawn_shape(const strut_equilibria *all, size_t i) {
-  const strut_equilibrium *e = &all->list[i];
-  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
-}
-
-double strut_drawn_energy(const strut_equilibria *all, size_t i) {
-  const strut_equilibrium *e = &all->list[i];
-  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
-}
-
-/* What rounding leaves of no energy at all is written as none. */
-static double told_energy(const plan *p, double energy) {
+/* Rounding noise of an energy is written as zero. */
+static double drop_rounding(const plan *p, double energy) {
   return fabs(energy) > 1e-12 * p->largest_energy ? energy : 0;
 }
 
@@ -47,7 +169,7 @@ static double told_energy(const plan *p, double energy) {
 static void by_energy(const strut_equilibria *all, size_t *index, size_t count) {
   for (size_t i = 1; i < count; i++) {
     size_t moved = index[i], k = i;
-    for (; k > 0 && strut_drawn_energy(all, index[k - 1]) > strut_drawn_energy(all, moved); k--)
+    for (; k > 0 && drawn_energy(all, index[k - 1]) > drawn_energy(all, moved); k--)
       index[k] = index[k - 1];
     index[k] = moved;
   }
@@ -57,7 +179,7 @@ static bool is_stable(const strut_equilibrium *e) {
   return e->point.label == STRUT_STABLE || e->point.label == STRUT_FLOPPY;
 }
 
-static bool choose(plan *p) {
+static bool choose_equilibria(plan *p) {
   size_t count = p->all->count;
   p->standing = strut_arena_allocate(&p->arena, count, sizeof *p->standing);
   p->aside = strut_arena_allocate(&p->arena, count, sizeof *p->aside);
@@ -78,12 +200,12 @@ static bool choose(plan *p) {
 
 static strut_bounds bounds_of(const plan *p, size_t i) {
   strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, p->model, strut_drawn_shape(p->all, i));
+  strut_bounds_add(&b, p->model, drawn_shape(p->all, i));
   return b;
 }
 
-/* Largest forces, so that all cards share their scales. */
-static void measure(plan *p, size_t i) {
+/* Widens the scales that all cards share to hold equilibrium i. */
+static void widen_scales(plan *p, size_t i) {
   const strut_equilibrium *e = &p->all->list[i];
   strut_bounds b = bounds_of(p, i);
   for (size_t k = 0; k < p->all->count; k++)
@@ -95,15 +217,15 @@ static void measure(plan *p, size_t i) {
     p->contact_limit = fmax(p->contact_limit, fabs(e->normal[k]));
 }
 
-static void lay_out(plan *p) {
+static void lay_out_cards(plan *p) {
   double inner = p->width - 2 * EDGE;
   p->cards = p->standing_count < MOST_CARDS ? p->standing_count : MOST_CARDS;
-  for (size_t k = 0; k < p->cards; k++) measure(p, p->standing[k]);
+  for (size_t k = 0; k < p->cards; k++) widen_scales(p, p->standing[k]);
   p->small_columns = (size_t)fmax(1, floor(inner / 82));
   if (p->small_columns > MOST_SMALL) p->small_columns = MOST_SMALL;
   p->small = p->aside_count < p->small_columns ? p->aside_count : p->small_columns;
   if (!p->cards)
-    for (size_t k = 0; k < p->small; k++) measure(p, p->aside[k]);
+    for (size_t k = 0; k < p->small; k++) widen_scales(p, p->aside[k]);
   p->columns = (size_t)fmax(1, fmin(3, floor(inner / NARROW)));
   if (p->columns > p->cards && p->cards) p->columns = p->cards;
   p->cell[0] = inner / (double)p->columns;
@@ -112,10 +234,10 @@ static void lay_out(plan *p) {
   p->cell[1] = LINES + fmax(46, fmin(wanted, 1.2 * p->cell[0]));
   p->small_cell[0] = inner / (double)p->small_columns;
   p->small_cell[1] = 26 + fmax(36, fmin(p->small_cell[0] * aspect + 14, p->small_cell[0]));
-  p->ladder = p->cards > 1 && strut_ladder_wanted(p->all, p->standing, p->cards);
+  p->ladder = p->cards > 1 && has_barriers(p->all, p->standing, p->cards);
 }
 
-static double height_of(const plan *p) {
+static double figure_height(const plan *p) {
   double rows = ceil((double)p->cards / (double)p->columns);
   return 2 * EDGE + TITLE + rows * p->cell[1] + (p->cards ? SCALE : 0) + (p->ladder ? LADDER : 0) +
          (p->small ? p->small_cell[1] + 16 : 0);
@@ -176,22 +298,22 @@ static bool draw_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   strut_draw_text(canvas, cell.x + 4, cell.y,
                   strut_text_fit(canvas, e->name, name, cell.width - 8, 0, fitted), name);
   snprintf(text, sizeof text, "%s, %s",
-           strut_drawn_quantity(told_energy(p, strut_drawn_energy(p->all, i)), 6, "J").text,
+           strut_drawn_quantity(drop_rounding(p, drawn_energy(p->all, i)), 6, "J").text,
            e->verdict);
   strut_draw_text(canvas, cell.x + 4, cell.y + 11,
                   strut_text_fit(canvas, text, note, cell.width - 8, 0, fitted), note);
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
-  strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
-  strut_draw_contact_forces(canvas, &window, p->model, strut_drawn_shape(p->all, i),
+  strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
+  strut_draw_contact_forces(canvas, &window, p->model, drawn_shape(p->all, i),
                             (const double(*)[2])force, p->contact_limit, ARROW);
-  bool good = cell.width <= 105 || draw_names(p, canvas, &window, strut_drawn_shape(p->all, i),
-                                              (const double(*)[2])force);
+  bool good = cell.width <= 105 ||
+              draw_names(p, canvas, &window, drawn_shape(p->all, i), (const double(*)[2])force);
   strut_canvas_unclip(canvas);
   return good;
 }
 
-static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
+static void draw_small_card(plan *p, strut_canvas *canvas, size_t i, strut_box cell) {
   const strut_equilibrium *e = &p->all->list[i];
   char text[300], fitted[STRUT_FITTED_TEXT];
   strut_font note = {.size = 6.5, .colour = strut_grey(0.35), .width = cell.width - 6};
@@ -201,9 +323,9 @@ static void draw_small(plan *p, strut_canvas *canvas, size_t i, strut_box cell) 
       .colouring = STRUT_COLOUR_ONE, .colour = strut_grey(0.45), .thinness = 0.4, .no_nodes = true};
   strut_canvas_clip(canvas, cell);
   strut_draw_ground(canvas, &window, p->model);
-  strut_draw_structure(canvas, &window, p->model, strut_drawn_shape(p->all, i), &style);
+  strut_draw_structure(canvas, &window, p->model, drawn_shape(p->all, i), &style);
   snprintf(text, sizeof text, "%s: %s",
-           strut_drawn_quantity(told_energy(p, e->energy), 5, "J").text, e->verdict);
+           strut_drawn_quantity(drop_rounding(p, e->energy), 5, "J").text, e->verdict);
   strut_draw_text(canvas, cell.x + 3, cell.y + cell.height - 25,
                   strut_text_fit(canvas, text, note, cell.width - 6, 24, fitted), note);
   strut_canvas_unclip(canvas);
@@ -222,32 +344,33 @@ static double draw_cards(plan *p, strut_canvas *canvas, double y, bool *good) {
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
-  const strut_colour_scale scale = {
-      .name = "force", .unit = "N", .low = -p->force_limit, .high = p->force_limit};
+  const strut_colour_scale scale = {.name = "force",
+                                    .unit = "N",
+                                    .low = -p->force_limit,
+                                    .high = p->force_limit,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (p->force_limit > 0)
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
   return y + SCALE;
 }
 
-static strut_status draw(plan *p, strut_canvas *canvas) {
+static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   char text[400], fitted[STRUT_FITTED_TEXT];
   bool good = true;
-  strut_font title = {.size = 9, .bold = true};
+
   strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
-  strut_draw_text(canvas, EDGE, EDGE,
-                  strut_text_fit(canvas, p->model->scene->name, title, inner, 0, fitted), title);
-  snprintf(text, sizeof text, "%zu equilibri%s at rest%s", p->standing_count,
+
+  snprintf(text, sizeof text, "%zu equilibri%s on the ground%s", p->standing_count,
            p->standing_count == 1 ? "um" : "a",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
-  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
-                  note);
+  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
   y = draw_cards(p, canvas, y, &good);
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
     double wide = fmin(inner, 90.0 + 120.0 * (double)p->cards);
-    strut_status status = strut_draw_ladder(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8},
-                                            p->all, p->standing, p->cards);
+    strut_status status = draw_ladder(canvas, (strut_box){EDGE, y + 4, wide, LADDER - 8}, p->all,
+                                      p->standing, p->cards);
     if (status != STRUT_OK) return status;
     y += LADDER;
   }
@@ -257,9 +380,9 @@ static strut_status draw(plan *p, strut_canvas *canvas) {
            p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
   strut_draw_text(canvas, EDGE, y + 2, strut_text_fit(canvas, text, note, inner, 0, fitted), note);
   for (size_t k = 0; k < p->small; k++)
-    draw_small(p, canvas, p->aside[k],
-               (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
-                           p->small_cell[1]});
+    draw_small_card(p, canvas, p->aside[k],
+                    (strut_box){EDGE + (double)k * p->small_cell[0], y + 16, p->small_cell[0],
+                                p->small_cell[1]});
   return STRUT_OK;
 }
 
@@ -267,14 +390,15 @@ strut_status strut_equilibria_figure(const char *path, double width, const strut
                                      const strut_equilibria *equilibria, strut_error *error) {
   plan p = {.model = model, .all = equilibria, .width = width};
   strut_canvas *canvas = NULL;
-  strut_status status =
-      choose(&p) ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = choose_equilibria(&p)
+                            ? STRUT_OK
+                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
   if (status == STRUT_OK) {
-    lay_out(&p);
-    status = strut_canvas_open(path, width, height_of(&p), model->scene->name, &canvas, error);
+    lay_out_cards(&p);
+    status = strut_canvas_open(path, width, figure_height(&p), model->scene->name, &canvas, error);
   }
   if (status == STRUT_OK) {
-    status = draw(&p, canvas);
+    status = draw_figure(&p, canvas);
     if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
   }
   if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);

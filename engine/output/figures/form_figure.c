@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/form_figure.h"
+#include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "engine/output/draw/structure.h"
 
 static const double EDGE = 5, TITLE = 28, MARGIN = 24, SCALE = 46;
-/* Below this width the scale stands under the drawing, and names have no room. */
+/* Narrower figures have the colour bar below the drawing and no names. */
 static const double NARROW = 170, FOOT = 50, LEAST_MARGIN = 8;
 
 /* Member forces at the start, of cables that only pull, by rest lengths. Returns the largest. */
@@ -36,18 +36,16 @@ static double farthest(const strut_model *model, const double (*drawn)[2]) {
   return most;
 }
 
-static void draw(strut_canvas *canvas, const strut_model *model, const double *before,
-                 const double (*drawn)[2], const double *force, double limit, strut_bounds bounds) {
+static void draw_form(strut_canvas *canvas, const strut_model *model, const double *before,
+                      const double (*drawn)[2], const double *force, double limit,
+                      strut_bounds bounds) {
   strut_box page = strut_canvas_box(canvas);
   double inner = page.width - 2 * EDGE, moved = farthest(model, drawn);
   bool narrow = page.width < NARROW;
   strut_box box = {EDGE, EDGE + TITLE, inner - (narrow ? 0 : SCALE),
                    page.height - 2 * EDGE - TITLE - (narrow ? FOOT : 0)};
   strut_window window = strut_window_fit(box, bounds, narrow ? LEAST_MARGIN : MARGIN);
-  char text[200], fitted[STRUT_FITTED_TEXT];
-  strut_font bold = {.size = 9, .bold = true}, note = {.size = 8, .colour = strut_grey(0.3)};
-  strut_draw_text(canvas, EDGE, EDGE,
-                  strut_text_fit(canvas, model->scene->name, bold, inner, 0, fitted), bold);
+  char text[200];
   bool same = moved <= 1e-9 * model->size;
   if (same) {
     snprintf(text, sizeof text, "the shape as drawn, and the forces that hold it");
@@ -55,8 +53,7 @@ static void draw(strut_canvas *canvas, const strut_model *model, const double *b
     snprintf(text, sizeof text, "grey: as drawn; nodes moved by up to %s",
              strut_drawn_quantity(moved, 3, "m").text);
   }
-  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
-                  note);
+  strut_draw_heading(canvas, EDGE, model->scene->name, text);
   const strut_structure_style pale = {.colouring = STRUT_COLOUR_ONE,
                                       .colour = strut_grey(0.75),
                                       .thinness = 0.4,
@@ -72,7 +69,8 @@ static void draw(strut_canvas *canvas, const strut_model *model, const double *b
   strut_draw_structure(canvas, &window, model, model->start, &full);
   if (narrow) window.box.height += 14;
   strut_draw_yardstick(canvas, &window);
-  const strut_colour_scale scale = {.name = "force", .unit = "N", .low = -limit, .high = limit};
+  const strut_colour_scale scale = {
+      .name = "force", .unit = "N", .low = -limit, .high = limit, .colours = STRUT_COLOURS_SIGNED};
   const strut_box beside = {EDGE + inner - SCALE + 6, box.y + 4, SCALE - 6,
                             fmin(box.height - 8, 130)};
   const strut_box below = {EDGE, box.y + box.height + FOOT - 34, inner, 34};
@@ -102,7 +100,7 @@ strut_status strut_form_figure(const char *path, double width, const strut_model
   strut_status status =
       strut_canvas_open(path, width, 2 * EDGE + TITLE + high, model->scene->name, &canvas, error);
   if (status == STRUT_OK) {
-    draw(canvas, model, before, drawn, force, limit, bounds);
+    draw_form(canvas, model, before, drawn, force, limit, bounds);
     status = strut_canvas_commit(canvas, error);
   }
   strut_canvas_free(canvas);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/modes_figure.h"
+#include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,21 +7,21 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 
-enum { NAMED = 12, SWUNG = 40, LED = 200, TITLE = 200 }; /* of nodes, members, nodes; bytes */
+enum { NAMED = 12, LED = 200, TITLE = 200 }; /* nodes with names, nodes with arrows; bytes */
 
-static const double TURN = 6.283185307179586476925;
 static const double GAP = 12.0, EDGE = 4.0, MARGIN = 13.0; /* [pt] */
 static const double NARROWEST = 112.0;                     /* panel, for its title [pt] */
 static const double TALLEST = 190.0;                       /* drawing inside a panel [pt] */
 static const double COVERED = 0.12;                        /* of a panel, by names */
 static const double NODE = 2.3;                            /* radius of a node as drawn [pt] */
-static const double TITLE_LINE = 11.5, WORD_LINES = 19.0;
-static const double UNSTRAINED = 1e-9; /* strain that is rounding, in units of motion over size */
+static const double NAME_LINE = 16.0, TITLE_LINE = 11.5, WORD_LINES = 19.0;
+static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
 
 typedef struct figure {
   strut_canvas *canvas;
@@ -29,8 +29,8 @@ typedef struct figure {
   const strut_modes *modes;
   size_t count, columns, rows;
   size_t shown[STRUT_MODES_FIGURE_MOST]; /* indices of modes */
-  double *plus, *minus;                  /* (length) the ends of a swing [m] */
-  double (*ways)[2];                     /* (nodes, 2) ends of arrows on the page [pt] */
+  double *moved;                         /* (length) the shape displaced along the mode [m] */
+  double (*arrows)[2];                   /* (nodes, 2) ends of arrows on the page [pt] */
   double *strain, *taut;                 /* (members); taut: 0 where a cable is slack at rest */
   double size;                           /* larger extent of the shape at rest [m] */
   strut_bounds bounds[STRUT_MODES_FIGURE_MOST], all; /* of the panels, and of all together */
@@ -38,18 +38,17 @@ typedef struct figure {
   strut_arena arena;
 } figure;
 
-static bool take_memory(figure *f) {
+static bool allocate_arrays(figure *f) {
   size_t length = (size_t)f->model->length, members = f->model->scene->member_count + 1;
-  f->plus = strut_arena_allocate(&f->arena, length, sizeof(double));
-  f->minus = strut_arena_allocate(&f->arena, length, sizeof(double));
-  f->ways = strut_arena_allocate(&f->arena, length, sizeof *f->ways);
+  f->moved = strut_arena_allocate(&f->arena, length, sizeof(double));
+  f->arrows = strut_arena_allocate(&f->arena, length, sizeof *f->arrows);
   f->strain = strut_arena_allocate(&f->arena, members, sizeof(double));
   f->taut = strut_arena_allocate(&f->arena, members, sizeof(double));
-  return f->plus && f->minus && f->ways && f->strain && f->taut;
+  return f->moved && f->arrows && f->strain && f->taut;
 }
 
-/* Which modes get a panel: those that are no rigid motion first. */
-static void choose(figure *f, size_t panels) {
+/* Chooses the modes with panels: rigid-body motions only if there are no others. */
+static void choose_modes(figure *f, size_t panels) {
   size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
   if (most > STRUT_MODES_FIGURE_MOST) most = STRUT_MODES_FIGURE_MOST;
   for (size_t i = 0; i < f->modes->count; i++) others += f->modes->list[i].kind != STRUT_MODE_RIGID;
@@ -57,21 +56,20 @@ static void choose(figure *f, size_t panels) {
     if (!others || f->modes->list[i].kind != STRUT_MODE_RIGID) f->shown[f->count++] = i;
 }
 
-/* Both ends of the swing of a mode. */
-static void swing(figure *f, const strut_mode *mode) {
+/* Displaces the shape at rest along a mode, to the amplitude that is drawn. */
+static void displace(figure *f, const strut_mode *mode) {
   const double *q = f->modes->q;
   double most = 0.0;
   for (int32_t i = 0; i < f->model->node_count; i++)
     most = fmax(most, hypot(mode->shape[2 * i], mode->shape[2 * i + 1]));
   double scale = most > 0 ? STRUT_MODES_FIGURE_SWING * f->size / most : 0.0;
   for (int32_t i = 0; i < f->model->length; i++) {
-    f->plus[i] = q[i] + scale * mode->shape[i];
-    f->minus[i] = q[i] - scale * mode->shape[i];
+    f->moved[i] = q[i] + scale * mode->shape[i];
   }
 }
 
-/* How much each member stretches for the swing that is drawn, to first order; the largest. */
-static double strain(figure *f) {
+/* Strains of all members by the displacement drawn, to first order; returns the largest. */
+static double compute_strains(figure *f) {
   const double *q = f->modes->q;
   double largest = 0.0;
   for (size_t j = 0; j < f->model->scene->member_count; j++) {
@@ -80,8 +78,8 @@ static double strain(figure *f) {
     for (int d = 0; d < 2; d++) {
       along[d] = q[2 * node[1] + d] - q[2 * node[0] + d];
       square += along[d] * along[d];
-      change += along[d] * (f->plus[2 * node[1] + d] - q[2 * node[1] + d] -
-                            f->plus[2 * node[0] + d] + q[2 * node[0] + d]);
+      change += along[d] * (f->moved[2 * node[1] + d] - q[2 * node[1] + d] -
+                            f->moved[2 * node[0] + d] + q[2 * node[0] + d]);
     }
     f->strain[j] = square > 0 ? change / square : 0.0;
     largest = fmax(largest, fabs(f->strain[j]));
@@ -116,15 +114,13 @@ static void find_bounds(figure *f) {
   for (size_t k = 0; k < f->count; k++) {
     f->bounds[k] = strut_bounds_none();
     strut_bounds_add(&f->bounds[k], f->model, f->modes->q);
-    swing(f, &f->modes->list[f->shown[k]]);
-    strut_bounds_add(&f->bounds[k], f->model, f->plus);
-    if (f->model->node_count <= LED || f->model->scene->member_count <= SWUNG)
-      strut_bounds_add(&f->bounds[k], f->model, f->minus);
+    displace(f, &f->modes->list[f->shown[k]]);
+    strut_bounds_add(&f->bounds[k], f->model, f->moved);
     widen(&f->all, &f->bounds[k]);
   }
 }
 
-/* What the panels of a row show: as wide as all, as high as the row needs. */
+/* Bounds of the panels in a row: one width for all rows, the height of this row. */
 static strut_bounds row_bounds(const figure *f, size_t row) {
   strut_bounds bounds = f->all;
   bounds.low[1] = HUGE_VAL;
@@ -151,7 +147,7 @@ static void arrange(figure *f, double width) {
     if (panel < NARROWEST && columns > 1) break;
     double tallest = fmin(TALLEST, fmax(width / (double)rows - f->head, 40.0));
     double scale = fmin((panel - 2 * MARGIN) / wide, (tallest - 2 * MARGIN) / high);
-    if (scale < f->scale * (1 - 1e-9)) continue; /* of equal ones the one with fewest rows */
+    if (scale < f->scale * (1 - 1e-9)) continue; /* of equal scales the fewest rows win */
     f->scale = scale;
     f->columns = columns;
     f->rows = rows;
@@ -159,11 +155,11 @@ static void arrange(figure *f, double width) {
   }
 }
 
-static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
+static void write_title(const strut_mode *mode, size_t number, char title[TITLE]) {
   strut_c_locale locale = strut_c_locale_enter();
   if (mode->kind == STRUT_MODE_ELASTIC) {
     int used = snprintf(title, TITLE, "mode %zu: %s", number,
-                        strut_drawn_quantity(mode->angular_frequency / TURN, 4, "Hz").text);
+                        strut_drawn_quantity(mode->angular_frequency / STRUT_TAU, 4, "Hz").text);
     if (isfinite(mode->damping_ratio) && mode->damping_ratio > 0 && used > 0)
       snprintf(title + used, TITLE - (size_t)used, ", \xCE\xB6 = %.2g", mode->damping_ratio);
   } else if (mode->kind == STRUT_MODE_UNSTABLE) {
@@ -175,8 +171,8 @@ static void title_of(const strut_mode *mode, size_t number, char title[TITLE]) {
   strut_c_locale_leave(locale);
 }
 
-/* What moves; which members give way is told by colours. */
-static void words_of(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
+/* Which nodes move. Colours show the strained members. */
+static void describe_mode(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
   const char *end = strchr(mode->description, ';');
   char growth[TITLE / 2] = "";
   if (mode->kind == STRUT_MODE_UNSTABLE) {
@@ -199,48 +195,37 @@ static void draw_head(figure *f, strut_box box, size_t number) {
   const strut_font bold = {.size = 8, .bold = true};
   const strut_font plain = word_font(box.width);
   char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
-  title_of(mode, number + 1, text);
+  write_title(mode, number + 1, text);
   strut_draw_text(f->canvas, box.x, box.y,
                   strut_text_fit(f->canvas, text, bold, box.width, 0, fitted), bold);
-  words_of(mode, text);
+  describe_mode(mode, text);
   strut_draw_text(f->canvas, box.x, box.y + TITLE_LINE,
                   strut_text_fit(f->canvas, text, plain, box.width, WORD_LINES, fitted), plain);
 }
 
-static strut_pen other_end(void) {
-  return (strut_pen){.colour = strut_grey(0.55), .width = 0.6, .dash = {2.2, 1.8}, .butt = true};
+static strut_pen arrow_pen(void) {
+  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
 }
-static strut_pen way(void) { return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8}; }
-static strut_pen touch(void) { return (strut_pen){.colour = strut_grey(0.1), .width = 0.9}; }
+static strut_pen contact_pen(void) { return (strut_pen){.colour = strut_grey(0.1), .width = 0.9}; }
 
-/* The dashed end of the swing, and how every node goes from there to the other. */
-static void draw_motion(figure *f, const strut_window *window) {
-  const strut_scene *scene = f->model->scene;
-  for (size_t j = 0; j < scene->member_count && scene->member_count <= SWUNG; j++) {
-    double ends[2][2];
-    for (int k = 0; k < 2; k++)
-      strut_window_point(window, f->minus + 2 * scene->members[j].node[k], ends[k]);
-    strut_draw_line(f->canvas, (const double(*)[2])ends, 2, other_end());
-  }
-}
-
-/* Returns how many; (2 for each) where they begin and end. */
-static size_t draw_ways(figure *f, const strut_window *window, double (*ways)[2]) {
+/* Arrows from the nodes at rest to where they are displaced; their ends go to f->arrows. Returns
+   how many are long enough to be drawn. */
+static size_t draw_arrows(figure *f, const strut_window *window) {
   size_t count = 0;
   for (int32_t i = 0; i < f->model->node_count && f->model->node_count <= LED; i++) {
-    double *from = ways[2 * count], *to = ways[2 * count + 1];
-    strut_window_point(window, f->minus + 2 * i, from);
-    strut_window_point(window, f->plus + 2 * i, to);
+    double *from = f->arrows[2 * count], *to = f->arrows[2 * count + 1];
+    strut_window_point(window, f->modes->q + 2 * i, from);
+    strut_window_point(window, f->moved + 2 * i, to);
     double length = hypot(to[0] - from[0], to[1] - from[1]), end = 1.0 - NODE / length;
     if (length < 2 * NODE) continue;
     strut_draw_arrow(f->canvas, from[0], from[1], from[0] + end * (to[0] - from[0]),
-                     from[1] + end * (to[1] - from[1]), 4.5, way());
+                     from[1] + end * (to[1] - from[1]), 4.5, arrow_pen());
     count++;
   }
   return count;
 }
 
-/* Whether names cover little enough of the drawing; words name those that matter anyway. */
+/* Whether names cover little of the drawing; the texts name the moving nodes anyway. */
 static bool names_fit(figure *f, strut_box box) {
   double covered = 0.0;
   if (f->model->node_count > NAMED) return false;
@@ -262,8 +247,8 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
                                       .colour = strut_grey(0.8),
                                       .slack_forces = f->taut,
                                       .no_nodes = true};
-  swing(f, &f->modes->list[number]);
-  double largest = strain(f);
+  displace(f, &f->modes->list[number]);
+  double largest = compute_strains(f);
   const strut_structure_style bent = {.colouring = STRUT_COLOUR_FORCE,
                                       .values = f->strain,
                                       .limit = largest > 0 ? largest : 1.0,
@@ -271,22 +256,21 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
                                       .no_supports = true};
   strut_draw_ground(f->canvas, &window, f->model);
   strut_draw_structure(f->canvas, &window, f->model, f->modes->q, &rest);
-  draw_motion(f, &window);
   for (int32_t k = 0; k < f->modes->closed_count; k++) {
     double at[2];
     strut_window_point(&window, f->modes->q + 2 * f->modes->closed[k], at);
-    const strut_pen pen = touch();
+    const strut_pen pen = contact_pen();
     strut_draw_circle(f->canvas, at[0], at[1], 3.4, NULL, &pen);
   }
-  strut_draw_structure(f->canvas, &window, f->model, f->plus, &bent);
-  size_t ways = draw_ways(f, &window, f->ways);
+  strut_draw_structure(f->canvas, &window, f->model, f->moved, &bent);
+  size_t arrows = draw_arrows(f, &window);
   if (names_fit(f, box))
-    strut_draw_names(f->canvas, &window, f->model, f->plus, true, false,
-                     (const double(*)[2])f->ways, ways);
+    strut_draw_names(f->canvas, &window, f->model, f->moved, true, false,
+                     (const double(*)[2])f->arrows, arrows);
 }
 
-/* What is not drawn, in words; empty where all is. */
-static void say_rest(const figure *f, char text[TITLE]) {
+/* Names the modes that have no panel; empty where all have one. */
+static void describe_omitted(const figure *f, char text[TITLE]) {
   size_t rigid = 0, left = f->modes->count - f->count;
   for (size_t i = 0; i < f->modes->count; i++) rigid += f->modes->list[i].kind == STRUT_MODE_RIGID;
   if (f->modes->list[f->shown[0]].kind == STRUT_MODE_RIGID) rigid -= f->count;
@@ -305,30 +289,28 @@ enum { ITEMS = 8 };
 static size_t make_key(const figure *f, char at[TITLE], char rest[TITLE],
                        strut_key_item items[ITEMS]) {
   size_t count = 0;
-  snprintf(at, TITLE, "at %.*s%s", strut_text_bytes(f->modes->at, 150), f->modes->at,
+  snprintf(at, TITLE, "rest shape %.*s%s", strut_text_bytes(f->modes->at, 150), f->modes->at,
            f->modes->at_rest ? "" : " (no equilibrium)");
-  say_rest(f, rest);
+  describe_omitted(f, rest);
   items[count++] = (strut_key_item){
       .sign = STRUT_KEY_LINE, .pen = {.colour = strut_grey(0.8), .width = 1.8}, .text = at};
   if (f->modes->closed_count)
     items[count++] =
-        (strut_key_item){.sign = STRUT_KEY_DOT, .pen = touch(), .text = "touches the ground"};
+        (strut_key_item){.sign = STRUT_KEY_DOT, .pen = contact_pen(), .text = "closed contact"};
   if (f->model->node_count <= LED)
     items[count++] =
-        (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = way(), .text = "way of a node"};
-  if (f->model->scene->member_count && f->model->scene->member_count <= SWUNG)
-    items[count++] = (strut_key_item){
-        .sign = STRUT_KEY_LINE, .pen = other_end(), .text = "other end of the swing"};
+        (strut_key_item){.sign = STRUT_KEY_ARROW, .pen = arrow_pen(), .text = "displacement"};
   if (f->model->scene->member_count)
-    items[count++] = (strut_key_item){
-        .sign = STRUT_KEY_SIGNED, .before = "shortens", .text = "stretches, most in each mode"};
+    items[count++] = (strut_key_item){.sign = STRUT_KEY_SIGNED,
+                                      .before = "shortens",
+                                      .text = "stretches (relative to the largest in each mode)"};
   if (rest[0]) items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = rest};
   return count;
 }
 
-/* Heights of the panels' heads and of the key, by the letters that they are set in. */
-static strut_status measure(figure *f, double width, const strut_key_item *items, size_t count,
-                            double *key, strut_error *error) {
+/* Measures the heights of the panels' texts and of the key. */
+static strut_status measure_texts(figure *f, double width, const strut_key_item *items,
+                                  size_t count, double *key, strut_error *error) {
   strut_canvas *ruler;
   strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &ruler, error);
   if (status != STRUT_OK) return status;
@@ -337,7 +319,7 @@ static strut_status measure(figure *f, double width, const strut_key_item *items
   for (size_t k = 0; k < f->count; k++) {
     char text[TITLE + TITLE / 2], fitted[STRUT_FITTED_TEXT];
     double wide, high;
-    words_of(&f->modes->list[f->shown[k]], text);
+    describe_mode(&f->modes->list[f->shown[k]], text);
     const strut_font font = word_font(f->panel_width);
     strut_text_fit(ruler, text, font, f->panel_width, WORD_LINES, fitted);
     strut_text_size(ruler, fitted, font, &wide, &high);
@@ -348,18 +330,19 @@ static strut_status measure(figure *f, double width, const strut_key_item *items
   return STRUT_OK;
 }
 
-static strut_status draw(figure *f, const char *path, double width, strut_error *error) {
+static strut_status draw_figure(figure *f, const char *path, double width, strut_error *error) {
   char at[TITLE], rest[TITLE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(f, at, rest, items);
   double key, height = 2 * EDGE;
-  strut_status status = measure(f, width, items, count, &key, error);
+  strut_status status = measure_texts(f, width, items, count, &key, error);
   if (status != STRUT_OK) return status;
   for (size_t row = 0; row < f->rows; row++) height += row_height(f, row) + GAP;
-  height += key - 0.5 * GAP;
+  height += NAME_LINE + key - 0.5 * GAP;
   status = strut_canvas_open(path, width, height, f->model->scene->name, &f->canvas, error);
   if (status != STRUT_OK) return status;
-  strut_box box = {EDGE, EDGE, f->panel_width, 0};
+  strut_draw_heading(f->canvas, EDGE, f->model->scene->name, "");
+  strut_box box = {EDGE, EDGE + NAME_LINE, f->panel_width, 0};
   for (size_t row = 0; row < f->rows; row++, box.y += box.height + GAP) {
     box.height = row_height(f, row);
     for (size_t k = row * f->columns; k < (row + 1) * f->columns && k < f->count; k++) {
@@ -377,13 +360,13 @@ static strut_status draw(figure *f, const char *path, double width, strut_error 
 strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
                                 const strut_modes *modes, size_t panels, strut_error *error) {
   figure f = {.model = model, .modes = modes, .head = TITLE_LINE + WORD_LINES + 2.0};
-  choose(&f, panels);
+  choose_modes(&f, panels);
   strut_status status = STRUT_NO_MEMORY;
-  if (take_memory(&f)) {
+  if (allocate_arrays(&f)) {
     find_taut(&f);
     find_bounds(&f);
     arrange(&f, width);
-    status = draw(&f, path, width, error);
+    status = draw_figure(&f, path, width, error);
   } else {
     strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/rigidity_figure.h"
+#include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,7 +40,7 @@ static bool forces_told(const plan *p) {
 }
 
 /* As many as go in; states and mechanisms share the room. */
-static void choose(plan *p) {
+static void choose_panels(plan *p) {
   const strut_rigidity *r = p->rigidity;
   int32_t room = (int32_t)p->columns * ROWS;
   p->forces = forces_told(p) ? 1 : 0;
@@ -53,10 +53,10 @@ static void choose(plan *p) {
   if (p->motions > room - p->states) p->motions = room - p->states;
 }
 
-static void lay_out(plan *p) {
+static void lay_out_panels(plan *p) {
   double inner = p->width - 2 * EDGE;
   p->columns = (size_t)fmax(1, fmin(COLUMNS, floor(inner / NARROW)));
-  choose(p);
+  choose_panels(p);
   size_t panels = panels_of(p) > 0 ? (size_t)panels_of(p) : 1;
   if (p->columns > panels) p->columns = panels;
   p->rows = (panels + p->columns - 1) / p->columns;
@@ -92,7 +92,7 @@ static void draw_forces(const plan *p, strut_canvas *canvas, const strut_window 
   strut_draw_structure(canvas, window, p->model, p->q, &style);
 }
 
-/* The shape in grey, and where a small motion takes it, with an arrow at each node. */
+/* The shape in grey, displaced by a small motion, with an arrow at each node. */
 static void draw_motion(const plan *p, strut_canvas *canvas, const strut_window *window,
                         const double *motion) {
   const strut_equilibrium_matrix *a = &p->rigidity->matrix;
@@ -160,22 +160,18 @@ static void draw_panel(const plan *p, strut_canvas *canvas, int32_t k, strut_box
 
 static void draw_title(const plan *p, strut_canvas *canvas, const char *at) {
   const strut_rigidity *r = p->rigidity;
-  char text[400], fitted[STRUT_FITTED_TEXT];
-  strut_font bold = {.size = 9, .bold = true}, note = {.size = 8, .colour = strut_grey(0.3)};
-  double inner = p->width - 2 * EDGE;
+  char text[400];
   int32_t left_out = r->states.count - p->states + r->mechanisms.count - p->motions;
-  strut_draw_text(canvas, EDGE, EDGE,
-                  strut_text_fit(canvas, p->model->scene->name, bold, inner, 0, fitted), bold);
+
   int used = snprintf(text, sizeof text, "%s: %d state%s of self-stress, %d mechanism%s", at,
                       (int)r->states.count, r->states.count == 1 ? "" : "s",
                       (int)r->mechanisms.count, r->mechanisms.count == 1 ? "" : "s");
   if (left_out > 0)
     snprintf(text + used, sizeof text - (size_t)used, "; %d of them are not drawn", (int)left_out);
-  strut_draw_text(canvas, EDGE, EDGE + 12, strut_text_fit(canvas, text, note, inner, 0, fitted),
-                  note);
+  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
 }
 
-static void draw(const plan *p, strut_canvas *canvas, const char *at) {
+static void draw_figure(const plan *p, strut_canvas *canvas, const char *at) {
   draw_title(p, canvas, at);
   for (int32_t k = 0; k < panels_of(p); k++) {
     size_t row = (size_t)k / p->columns, column = (size_t)k % p->columns;
@@ -195,8 +191,11 @@ static void draw(const plan *p, strut_canvas *canvas, const char *at) {
   foot.box.y = y + SCALE - 8 - foot.box.height;
   strut_draw_yardstick(canvas, &foot);
   double wide = fmin(170, 0.5 * (p->width - 2 * EDGE));
-  const strut_colour_scale scale = {
-      .name = "force, of the largest", .unit = "", .low = -1, .high = 1};
+  const strut_colour_scale scale = {.name = "force, of the largest",
+                                    .unit = "",
+                                    .low = -1,
+                                    .high = 1,
+                                    .colours = STRUT_COLOURS_SIGNED};
   if (p->forces + p->states > 0)
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
 }
@@ -211,12 +210,12 @@ strut_status strut_rigidity_figure(const char *path, double width, const strut_m
   strut_status status =
       p.moved ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
   if (status == STRUT_OK) {
-    lay_out(&p);
+    lay_out_panels(&p);
     double height = 2 * EDGE + TITLE + (double)p.rows * p.cell[1] + SCALE;
     status = strut_canvas_open(path, width, height, model->scene->name, &canvas, error);
   }
   if (status == STRUT_OK) {
-    draw(&p, canvas, at);
+    draw_figure(&p, canvas, at);
     status = strut_canvas_commit(canvas, error);
   }
   strut_canvas_free(canvas);

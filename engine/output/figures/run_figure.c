@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which frames there are to draw, and what they hold. */
 #include "engine/output/figures/run_figure.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
-enum { LEAST_SAMPLES = 8 };         /* of a period, or it is not seen */
-static const double BURST = 10.0;   /* a diverging structure so many times its size is none */
+enum { LEAST_SAMPLES = 8 };         /* per period, for its shape to be visible */
+static const double BURST = 10.0;   /* a diverged shape larger than this, in sizes, is not drawn */
 static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
 static const struct {
@@ -38,18 +39,18 @@ strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_
     if (!(figure->times[i] >= from && figure->times[i] <= to))
       return strut_fail(error, STRUT_USAGE,
                         "nothing is recorded at %s: the record goes from %s to %s ('output: {last: "
-                        "...}' says what is recorded)",
+                        "...}' sets the range)",
                         strut_quantity_of(figure->times[i], 6, "s").text,
                         strut_quantity_of(span.record_start, 6, "s").text,
                         strut_quantity_of(span.duration, 6, "s").text);
   if (figure->view == STRUT_RUN_PERIOD && span.period > 0 &&
       span.period < LEAST_SAMPLES * every * (1 - 1e-9))
-    return strut_fail(error, STRUT_USAGE,
-                      "a period of %s cannot be drawn from a sample each %s: add 'output: {every: "
-                      "%s, last: 10}' to the model",
-                      strut_quantity_of(span.period, 4, "s").text,
-                      strut_quantity_of(every, 4, "s").text,
-                      strut_quantity_of(span.period / 100, 4, "s").text);
+    return strut_fail(
+        error, STRUT_USAGE,
+        "a period of %s cannot be drawn from one sample every %s: add 'output: {every: "
+        "%s, last: 10}' to the model",
+        strut_quantity_of(span.period, 4, "s").text, strut_quantity_of(every, 4, "s").text,
+        strut_quantity_of(span.period / 100, 4, "s").text);
   return STRUT_OK;
 }
 
@@ -155,7 +156,8 @@ strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
   strut_bounds b = strut_bounds_none();
   strut_bounds_add(&b, run->model, strut_run_positions(run, frame));
   double missing = SMALLEST * run->model->size - strut_run_extent(&b);
-  const double share[2] = {0.5, 0.15}; /* wide rather than high */
+  const double share[2] = {0.5,
+                           0.15}; /* the missing extent goes to the width rather than the height */
   for (int d = 0; d < 2 && missing > 0; d++) {
     b.low[d] -= share[d] * missing;
     b.high[d] += share[d] * missing;
@@ -174,4 +176,209 @@ double strut_run_drawing_height(const strut_bounds *b, double width, double marg
   double wide = b->high[0] - b->low[0], high = b->high[1] - b->low[1];
   double wanted = wide > 0 ? (width - 2 * margin) * high / wide + 2 * margin : most * width;
   return fmax(fmax(least * width, 2 * margin + 8), fmin(wanted, most * width));
+}
+
+/* Parts of several views: titles, shapes, contact forces, paths, names. */
+
+enum { MOST_NAMES = 30, MOST_AVOIDED = 1500, PATH_PIECES = 40, LINE = 600 };
+
+static const double DOT = 0.3;       /* [pt] */
+static const double STANDING = 1e-6; /* of the model's size over the whole run: it stands still */
+
+void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
+  const strut_trajectory *m = run->motion;
+  for (size_t i = 0; m->contact && i < 2 * m->contact_count; i++) {
+    double force = fabs(m->contact[2 * frame * m->contact_count + i]);
+    if (isfinite(force)) run->contact_limit = fmax(run->contact_limit, force);
+  }
+}
+
+bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+                          size_t frame) {
+  const strut_trajectory *m = run->motion;
+  double *q = strut_run_shape(run, frame);
+  if (!q) return false;
+  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
+  if (m->force) {
+    style.colouring = STRUT_COLOUR_FORCE;
+    style.values = style.slack_forces = m->force + frame * m->member_count;
+    style.limit = run->force_limit;
+  }
+  strut_draw_ground(canvas, window, run->model);
+  strut_draw_structure(canvas, window, run->model, q, &style);
+  return true;
+}
+
+/* Adds a segment that names avoid; ignored without memory or beyond MOST_AVOIDED. */
+static void add_obstacle(strut_run_scene *run, const double from[2], const double to[2]) {
+  if (!run->avoid)
+    run->avoid = strut_arena_allocate(&run->arena, 2 * MOST_AVOIDED, sizeof *run->avoid);
+  if (!run->avoid || run->avoid_count == MOST_AVOIDED) return;
+  memcpy(run->avoid[2 * run->avoid_count], from, sizeof *run->avoid);
+  memcpy(run->avoid[2 * run->avoid_count + 1], to, sizeof *run->avoid);
+  run->avoid_count++;
+}
+
+void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
+                              const strut_window *window, size_t frame) {
+  const strut_trajectory *m = run->motion;
+  const strut_contact_table *contacts = &run->model->contacts;
+  const double *q = strut_run_positions(run, frame);
+  if (!m->contact || !(run->contact_limit > 0)) return;
+  const double *force = m->contact + 2 * frame * m->contact_count;
+  strut_draw_contact_forces(canvas, window, run->model, q, (const double(*)[2])force,
+                            run->contact_limit, run->arrow);
+  for (int32_t i = 0; i < contacts->count; i++) {
+    double at[2], length = force[2 * i] / run->contact_limit * run->arrow;
+    strut_window_point(window, q + contacts->at[i], at);
+    const double foot[2] = {at[0] - length * contacts->normal[0],
+                            at[1] + length * contacts->normal[1]};
+    if (length > 1) add_obstacle(run, foot, at);
+    length = force[2 * i + 1] / run->contact_limit * run->arrow;
+    const double tip[2] = {at[0] + length * contacts->tangent[0],
+                           at[1] - length * contacts->tangent[1]};
+    if (fabs(length) > 1) add_obstacle(run, at, tip);
+  }
+}
+
+/* Whether a path is longer than a dot on the page. */
+static bool is_visible(const strut_window *window, const double (*path)[2], size_t count) {
+  double first[2], at[2];
+  for (size_t i = 0; i < count; i++) {
+    strut_window_point(window, path[i], i ? at : first);
+    if (i && hypot(at[0] - first[0], at[1] - first[1]) > DOT) return true;
+  }
+  return false;
+}
+
+void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+                         const double (*path)[2], size_t count, double width) {
+  double before[2], at[2];
+  if (!is_visible(window, path, count)) return;
+  strut_canvas_clip(canvas, window->box);
+  strut_draw_trail(canvas, window, path, count, width);
+  strut_canvas_unclip(canvas);
+  for (size_t i = 0; i <= PATH_PIECES && count > 1; i++) {
+    strut_window_point(window, path[i * (count - 1) / PATH_PIECES], at);
+    if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) > 0.5) add_obstacle(run, before, at);
+    if (i > 0 && hypot(at[0] - before[0], at[1] - before[1]) <= 0.5) continue;
+    memcpy(before, at, sizeof before);
+  }
+}
+
+void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
+                          const double *q) {
+  if (run->model->node_count <= MOST_NAMES)
+    strut_draw_names(canvas, window, run->model, q, true, false, (const double(*)[2])run->avoid,
+                     run->avoid_count);
+  run->avoid_count = 0;
+}
+
+void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box) {
+  const strut_colour_scale scale = {.name = "force",
+                                    .unit = "N",
+                                    .low = -run->force_limit,
+                                    .high = run->force_limit,
+                                    .colours = STRUT_COLOURS_SIGNED};
+  if (run->motion->force && run->force_limit > 0) strut_draw_colour_scale(canvas, box, &scale);
+}
+
+bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_item *item) {
+  if (!(run->contact_limit > 0)) return false;
+  snprintf(text, 120, "contact force, up to %s",
+           strut_drawn_quantity(run->contact_limit, 3, "N").text);
+  *item = (strut_key_item){.sign = STRUT_KEY_ARROW,
+                           .pen = {.colour = strut_palette_thing(1), .width = 1.1},
+                           .text = text};
+  return true;
+}
+
+/* The measured velocity; 0 for a structure that stands still. */
+static double shown_velocity(const strut_run_scene *run) {
+  const strut_summary *s = run->summary;
+  double path = fabs(s->velocity) * fmax(s->duration, STRUT_RUN_MOMENT);
+  return path > STANDING * run->model->size ? s->velocity : 0;
+}
+
+/* Appends the velocity to the line, with the measured point's name if it fits. */
+static void append_velocity(const strut_run_scene *run, strut_canvas *canvas, double velocity,
+                            double room, strut_font font, char line[LINE]) {
+  size_t used = strlen(line);
+  double width, height;
+  strut_quantity text = strut_drawn_quantity(velocity, 4, "m/s");
+  snprintf(line + used, LINE - used, "; velocity of %s %s", strut_run_measured_name(run),
+           text.text);
+  strut_text_size(canvas, line, font, &width, &height);
+  if (width > room) snprintf(line + used, LINE - used, "; velocity %s", text.text);
+}
+
+void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, const char *what,
+                          bool velocity) {
+  const strut_summary *s = run->summary;
+  double room = strut_canvas_box(canvas).width - 2 * STRUT_RUN_EDGE, width, height;
+  const double arrow = 18, x = STRUT_RUN_EDGE, y = STRUT_RUN_EDGE + 12;
+  char line[LINE], fitted[STRUT_FITTED_TEXT];
+  const strut_font title = {.size = 9, .bold = true};
+  strut_font below = {.size = 8, .colour = strut_grey(0.3)};
+  bool failed = s && s->status != STRUT_OK;
+  if (failed) below.colour = strut_palette_thing(1);
+  velocity = velocity && !failed && s && isfinite(s->velocity);
+  double v = velocity ? shown_velocity(run) : 0;
+  if (failed)
+    snprintf(line, sizeof line, "%s at %s; %s",
+             s->status == STRUT_DIVERGED ? "diverged" : "stopped",
+             strut_drawn_quantity(s->duration, 4, "s").text, what);
+  else
+    snprintf(line, sizeof line, "%s", what);
+  if (velocity) append_velocity(run, canvas, v, v != 0 ? room - arrow - 6 : room, below, line);
+  strut_draw_text(canvas, x, STRUT_RUN_EDGE,
+                  strut_text_fit(canvas, run->model->scene->name, title, room, 0, fitted), title);
+  strut_text_fit(canvas, line, below, v != 0 ? room - arrow - 6 : room, 0, fitted);
+  strut_draw_text(canvas, x, y, fitted, below);
+  if (v == 0) return;
+  strut_text_size(canvas, fitted, below, &width, &height);
+  double left = x + width + 5, right = left + arrow, middle = y + 0.5 * height;
+  strut_draw_arrow(canvas, v > 0 ? left : right, middle, v > 0 ? right : left, middle, 5,
+                   (strut_pen){.colour = strut_grey(0.3), .width = 1.1});
+}
+
+/* A second motion of the same structure, dashed over the first. */
+
+static const strut_pen PEN = {.colour = {0.05, 0.05, 0.05, 1}, .width = 0.7, .dash = {2.4, 1.6}};
+
+bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
+  *other = (strut_run_scene){.figure = run->figure,
+                             .model = run->model,
+                             .motion = run->figure->other,
+                             .arrow = run->arrow};
+  if (!other->motion || !other->motion->position) return false;
+  strut_run_count_frames(other);
+  return other->frames > 0;
+}
+
+void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
+                          const strut_window *window, size_t frame) {
+  const strut_scene *scene = other->model->scene;
+  const double *q = strut_run_positions(other, frame);
+  for (size_t i = 0; i < scene->member_count; i++) {
+    double from[2], to[2];
+    strut_window_point(window, q + 2 * scene->members[i].node[0], from);
+    strut_window_point(window, q + 2 * scene->members[i].node[1], to);
+    strut_draw_segment(canvas, from[0], from[1], to[0], to[1], PEN);
+  }
+}
+
+bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
+                               const strut_window *window, const double (*path)[2], size_t count) {
+  double(*points)[2] = strut_arena_allocate(&other->arena, count, sizeof *points);
+  for (size_t i = 0; points && i < count; i++) strut_window_point(window, path[i], points[i]);
+  if (points) strut_draw_line(canvas, (const double(*)[2])points, count, PEN);
+  return points != NULL;
+}
+
+void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size) {
+  size_t used = strlen(text);
+  if (run->figure->other)
+    snprintf(text + used, size - used, ", black dashes: %s",
+             run->figure->other_name ? run->figure->other_name : "another");
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What the views of a run share.
+ * Shared by the views of a run.
  */
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_RUN_PARTS_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_RUN_PARTS_H
@@ -17,12 +17,12 @@ typedef struct strut_run_scene {
   const strut_trajectory *motion;
   const strut_summary *summary;
   strut_canvas *ruler;  /* to measure texts before there is a page */
-  size_t frames;        /* of the motion; what came after is no shape any more */
-  double period;        /* [s]; 0: there is none, or too few frames in it */
+  size_t frames;        /* that can be drawn; a diverged run ends earlier */
+  double period;        /* [s]; 0: not periodic, or too few frames */
   double force_limit;   /* largest force of a member in any frame [N] */
   double contact_limit; /* largest force of the ground in the frames drawn [N] */
   double arrow;         /* length of the arrow for that [pt] */
-  double (*avoid)[2];   /* (2 avoid_count) lines that names keep away from [pt] */
+  double (*avoid)[2];   /* (2 avoid_count) ends of segments that names avoid [pt] */
   size_t avoid_count;
   strut_arena arena;
 } strut_run_scene;
@@ -31,10 +31,10 @@ typedef struct strut_run_scene {
 #define STRUT_RUN_EDGE 5.0
 #define STRUT_RUN_TITLE 27.0
 
-/** A length of time [s] less than any between two frames. */
+/** Shorter than the time between any two frames [s]. */
 #define STRUT_RUN_MOMENT 1e-9
 
-/** Finds what is known before anything is drawn: frames, period, force_limit. */
+/** Sets frames, period and force_limit, before anything is drawn. */
 void strut_run_count_frames(strut_run_scene *run);
 /** Positions (nodes, 2) of a frame. */
 const double *strut_run_positions(const strut_run_scene *run, size_t frame);
@@ -52,15 +52,15 @@ const char *strut_run_measured_name(const strut_run_scene *run);
 double strut_run_ground_at(const strut_run_scene *run, double x);
 /** The larger extent of bounds [m]. */
 double strut_run_extent(const strut_bounds *bounds);
-/** Bounds of one frame, not smaller than what can be drawn sensibly. */
+/** Bounds of one frame, with a minimum size. */
 strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame);
-/** Takes the ground into the bounds where it is near them. */
+/** Widens the bounds to the ground where it is near. */
 void strut_run_add_ground(const strut_run_scene *run, strut_bounds *bounds);
 /** Height [pt] of a drawing of these bounds in `width`, between `least` and `most` of the width. */
 double strut_run_drawing_height(const strut_bounds *bounds, double width, double margin,
                                 double least, double most);
 
-/** Takes a frame into account for the length of the ground's arrows, before any is drawn. */
+/** Widens the scale of the contact arrows to a frame, before any is drawn. */
 void strut_run_expect_frame(strut_run_scene *run, size_t frame);
 /** The frame's structure in colours of force, on the ground. */
 bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
@@ -68,36 +68,38 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
 /** The forces of the ground on it. */
 void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
                               const strut_window *window, size_t frame);
-/** A way through (count) positions [m] inside the window's box. */
+/** A path through (count) positions [m], clipped to the window's box. */
 void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
-                         const double (*way)[2], size_t count, double width);
+                         const double (*path)[2], size_t count, double width);
 /**
- * The figure's other motion as one being drawn, in an arena of its own, to be freed; false where there
- * is none.
+ * The figure's second motion, with its own arena, which the caller frees; false where there is
+ * none.
  */
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
 /** Its members in a frame, dashed. */
 void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
                           const strut_window *window, size_t frame);
-/** Its way through (count) positions [m], dashed; false: memory is out. */
+/** Its path through (count) positions [m], dashed; false: memory is out. */
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
-                               const strut_window *window, const double (*way)[2], size_t count);
+                               const strut_window *window, const double (*path)[2], size_t count);
 /** Appends ", black dashes: NAME" to a text where there is another motion. */
 void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size);
-/** Names of the nodes of a shape, off all that was drawn since the last names. */
+/** Names of the nodes of a shape, clear of all that was drawn since the last call. */
 void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                           const double *q);
 /** The scale of the colours of force. */
 void strut_run_draw_scale(const strut_run_scene *run, strut_canvas *canvas, strut_box box);
-/** The model's name and a line below it: `what`, and the velocity where wanted, or what failed. */
+/** The model's name and a line below it: `what`, and the velocity where wanted, or the failure. */
 void strut_run_draw_title(const strut_run_scene *run, strut_canvas *canvas, const char *what,
                           bool velocity);
-/** What the arrows mean, for a key; false where there are none. `text` has room for 120 bytes. */
+/**
+ * The key entry of the contact arrows; false where there are none. `text` has room for 120 bytes.
+ */
 bool strut_run_arrow_item(const strut_run_scene *run, char text[120], strut_key_item *item);
 
 /** Curves over time, a kind of quantity in each panel. */
 enum {
-  STRUT_RUN_WAY,
+  STRUT_RUN_DISPLACEMENT,
   STRUT_RUN_NORMALS,
   STRUT_RUN_DRIVE,
   STRUT_RUN_HEIGHTS,
@@ -111,7 +113,7 @@ bool strut_run_panel_wanted(const strut_run_scene *run, int panel);
 strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
                                   int panel, size_t first);
 
-/** Heights that the views need for a width [pt], and what they draw. */
+/** Height [pt] of each view for the figure's width, and its drawing. */
 double strut_run_overview_height(strut_run_scene *run);
 strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas);
 double strut_run_period_height(strut_run_scene *run);

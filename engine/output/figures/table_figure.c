@@ -6,22 +6,110 @@
 #include <string.h>
 
 #include "engine/output/draw/curves.h"
-#include "engine/output/draw/curves_parts.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/figures/table_parts.h"
-#include "engine/output/figures/table_select.h"
+
+static const double EDGE = 5, TITLE = 15, LOWEST = 165, HIGHEST = 260;
+
+strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
+                                     const char *what, strut_table_groups *g, strut_error *error) {
+  g->count = 1;
+  g->name[0] = NULL;
+  if (column == STRUT_NO_COLUMN) return STRUT_OK;
+  g->count = 0;
+  for (size_t i = 0; i < table->row_count; i++) {
+    const char *text = table->columns[column].text[i];
+    size_t k = 0;
+    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
+    if (k < g->count) continue;
+    if (g->count == most)
+      return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s",
+                        table->columns[column].name, most, what);
+    g->name[g->count++] = text;
+  }
+  return STRUT_OK;
+}
+
+bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row) {
+  return column == STRUT_NO_COLUMN || strcmp(table->columns[column].text[row], name) == 0;
+}
+
+strut_status strut_table_numbers(const strut_table *table, int column, strut_error *error) {
+  if (table->columns[column].value) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE, "column '%s' does not hold numbers",
+                    table->columns[column].name);
+}
+
+void strut_table_panel_title(const strut_table *table, int column, const char *name, size_t panel,
+                             char title[300]) {
+  title[0] = '\0';
+  if (column == STRUT_NO_COLUMN) return;
+  const strut_table_column *c = &table->columns[column];
+  snprintf(title, 300, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)), c->name, name,
+           *c->unit ? " " : "", c->unit);
+}
+
+strut_status strut_panel_page_draw(const char *path, const char *title,
+                                   const strut_panel_page *page,
+                                   void (*head)(void *context, strut_canvas *canvas, strut_box box),
+                                   strut_panel_draw panel, void *context, strut_error *error) {
+  double inner = page->width - 2 * EDGE, top = EDGE + (title ? TITLE : 0);
+  size_t columns = (size_t)fmax(1, fmin(3, floor(inner / page->least_width)));
+  if (columns > page->panels) columns = page->panels;
+  size_t rows = (page->panels + columns - 1) / columns;
+  double wide = inner / (double)columns;
+  double high = fmax(LOWEST, fmin(page->aspect * wide, HIGHEST));
+  strut_canvas *canvas = NULL;
+  strut_status status =
+      strut_canvas_open(path, page->width, top + page->head + (double)rows * high + EDGE,
+                        title ? title : "", &canvas, error);
+  if (status != STRUT_OK) return status;
+  strut_font font = {.size = 9, .bold = true};
+  char fitted[STRUT_FITTED_TEXT];
+  if (title)
+    strut_draw_text(canvas, EDGE, EDGE, strut_text_fit(canvas, title, font, inner, 0, fitted),
+                    font);
+  if (head) head(context, canvas, (strut_box){EDGE, top, inner, page->head});
+  for (size_t k = 0; k < page->panels && status == STRUT_OK; k++)
+    status = panel(context, canvas,
+                   (strut_box){EDGE + (double)(k % columns) * wide,
+                               top + page->head + (double)(k / columns) * high, wide, high},
+                   k);
+  if (status != STRUT_OK) strut_fail(error, status, "out of memory while drawing");
+  if (status == STRUT_OK) status = strut_canvas_commit(canvas, error);
+  strut_canvas_free(canvas);
+  return status;
+}
 
 static const double PANEL_WIDTH = 165, ASPECT = 0.62, INDENT = 30;
+enum { NAME = 48, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
 enum { MOST_ENTRIES = STRUT_MOST_GROUPS * STRUT_MOST_Y + 1 };
 
 typedef struct maker {
   const strut_table_figure *figure;
   const strut_table *table;
   strut_table_groups panels, curves;
-  strut_axis x, y;
+  strut_axis x, y, right;
+  bool two; /* y columns of two units: the second has the right axis */
+  char y_name[2][NAME];
   strut_legend_entry *entries;
   size_t entry_count;
   strut_arena arena;
 } maker;
+
+strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
+                               bool logarithmic) {
+  strut_axis axis = {wanted->label ? wanted->label : name, unit, logarithmic, (double)NAN,
+                     (double)NAN};
+  if (wanted->limited) axis.low = wanted->low, axis.high = wanted->high;
+  return axis;
+}
+
+/* Does the k-th y column belong to the right axis? */
+static bool is_right(const maker *m, int k) {
+  const strut_table_column *columns = m->table->columns;
+  return strcmp(columns[m->figure->y[k]].unit, columns[m->figure->y[0]].unit) != 0;
+}
 
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) {
@@ -34,7 +122,7 @@ static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) 
   return count;
 }
 
-/* Stretches of the rows that carry the band's text, reaching half way to their neighbours. */
+/* Finds the runs of rows with the band's text; bands end midway to the neighbouring rows. */
 static size_t find_bands(const maker *m, const size_t *rows, size_t count, strut_band *bands) {
   const strut_table_column *band = &m->table->columns[m->figure->band];
   const double *x = m->table->columns[m->figure->x].value;
@@ -53,16 +141,18 @@ static size_t find_bands(const maker *m, const size_t *rows, size_t count, strut
   return found;
 }
 
-static bool make_series(maker *m, const size_t *rows, size_t count, int column, size_t look,
+static bool make_series(maker *m, const size_t *rows, size_t count, int k, size_t look,
                         strut_series *series) {
+  int column = m->figure->y[k];
   double *x = strut_arena_allocate(&m->arena, count, sizeof *x);
   double *y = strut_arena_allocate(&m->arena, count, sizeof *y);
   if (!x || !y) return false;
-  for (size_t k = 0; k < count; k++) {
-    x[k] = m->table->columns[m->figure->x].value[rows[k]];
-    y[k] = m->table->columns[column].value[rows[k]];
+  for (size_t i = 0; i < count; i++) {
+    x[i] = m->table->columns[m->figure->x].value[rows[i]];
+    y[i] = m->table->columns[column].value[rows[i]];
   }
-  *series = (strut_series){.count = count, .x = x, .y = y, .look = (int)look};
+  *series =
+      (strut_series){.count = count, .x = x, .y = y, .look = (int)look, .right = is_right(m, k)};
   return true;
 }
 
@@ -84,12 +174,13 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
     size_t count = rows_of(m, panel, c, rows);
     if (f->band != STRUT_NO_COLUMN) bands += find_bands(m, rows, count, band + bands);
     for (int k = 0; k < f->y_count; k++, used++)
-      if (!make_series(m, rows, count, f->y[k], used, &series[used])) return STRUT_NO_MEMORY;
+      if (!make_series(m, rows, count, k, used, &series[used])) return STRUT_NO_MEMORY;
   }
   strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
   const strut_curves curves = {.title = title[0] ? title : NULL,
                                .x = m->x,
                                .y = m->y,
+                               .right = m->two ? &m->right : NULL,
                                .series_count = used,
                                .series = series,
                                .band_count = bands,
@@ -98,21 +189,65 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
   return strut_draw_curves(canvas, box, &curves);
 }
 
-/* All panels share their axes. */
-static void settle_axes(maker *m) {
+/* The label of a y axis: the names of its columns, or "" where they are too long or too many. */
+static const char *name_y_axis(maker *m, bool right) {
   const strut_table_figure *f = m->figure;
-  const strut_table_column *x = &m->table->columns[f->x], *y = &m->table->columns[f->y[0]];
-  m->x = (strut_axis){x->name, x->unit, f->log_x, (double)NAN, (double)NAN};
-  m->y = (strut_axis){f->y_count == 1 ? y->name : "", y->unit, f->log_y, (double)NAN, (double)NAN};
+  char *name = m->y_name[right];
+  size_t used = 0, count = 0;
+  if (f->y_count == 1) return m->table->columns[f->y[0]].name;
+  for (int k = 0; k < f->y_count; k++) {
+    const char *column = m->table->columns[f->y[k]].name;
+    if (is_right(m, k) != right) continue;
+    if (++count > MOST_NAMES || used + strlen(column) + 3 > NAME) return "";
+    used += (size_t)snprintf(name + used, NAME - used, "%s%s", count > 1 ? ", " : "", column);
+  }
+  return name;
+}
+
+/* Finds the axes, which all panels share. */
+static void find_axes(maker *m) {
+  const strut_table_figure *f = m->figure;
+  const strut_table_column *columns = m->table->columns, *x = &columns[f->x];
+  const strut_table_axis own = {0};
+  m->x = strut_table_axis_of(&f->x_axis, x->name, x->unit, f->log_x);
+  m->y = strut_table_axis_of(&f->y_axis, name_y_axis(m, false), columns[f->y[0]].unit, f->log_y);
+  for (int k = 0; k < f->y_count; k++) {
+    if (!is_right(m, k)) continue;
+    m->two = true;
+    m->right = strut_table_axis_of(&own, name_y_axis(m, true), columns[f->y[k]].unit, f->log_y);
+  }
   for (size_t i = 0; i < m->table->row_count; i++)
     for (int k = 0; k < f->y_count; k++) {
-      double value = m->table->columns[f->y[k]].value[i];
+      double value = columns[f->y[k]].value[i];
       if (!isfinite(value) || !isfinite(x->value[i])) continue;
-      strut_axis_include(&m->x, x->value[i]);
-      strut_axis_include(&m->y, value);
+      if (!f->x_axis.limited) strut_axis_include(&m->x, x->value[i]);
+      if (is_right(m, k))
+        strut_axis_include(&m->right, value);
+      else if (!f->y_axis.limited)
+        strut_axis_include(&m->y, value);
     }
   strut_axis_settle(&m->x, 0);
-  strut_axis_settle(&m->y, 0.06);
+  strut_axis_settle(&m->y, f->y_axis.limited ? 0 : 0.06);
+  strut_axis_settle(&m->right, 0.06);
+}
+
+/* Two axes suffice for two units. */
+static strut_status check_units(const strut_table *table, const strut_table_figure *f,
+                                strut_error *error) {
+  const strut_table_column *first = &table->columns[f->y[0]], *second = NULL;
+  for (int k = 1; k < f->y_count; k++) {
+    const strut_table_column *y = &table->columns[f->y[k]];
+    if (strcmp(y->unit, first->unit) == 0) continue;
+    if (!second) second = y;
+    if (strcmp(y->unit, second->unit) == 0) continue;
+    return strut_fail(
+        error, STRUT_USAGE,
+        "a figure has two y axes, but columns '%.60s', '%.60s' and '%.60s' have three "
+        "units (%s, %s, %s): draw them in separate figures",
+        first->name, second->name, y->name, *first->unit ? first->unit : "none",
+        *second->unit ? second->unit : "none", *y->unit ? y->unit : "none");
+  }
+  return STRUT_OK;
 }
 
 /* The legend of all panels. Returns how many rows it has. */
@@ -124,11 +259,14 @@ static size_t name_entries(maker *m, char (*text)[200]) {
     for (int k = 0; k < f->y_count; k++) {
       const char *column = m->table->columns[f->y[k]].name, *group = m->curves.name[c];
       if (m->curves.count * (size_t)f->y_count < 2) continue;
+      const char *side = is_right(m, k) ? " (right)" : "";
       if (!group) {
-        snprintf(text[used], sizeof *text, "%s", column);
+        snprintf(text[used], sizeof *text, "%s%s", column, side);
       } else {
-        snprintf(text[used], sizeof *text, "%s%s%s %s", f->y_count > 1 ? column : "",
-                 f->y_count > 1 ? ", " : "", axis_name(m->table, f->by), group);
+        const strut_table_column *by = &m->table->columns[f->by];
+        snprintf(text[used], sizeof *text, "%s%s%s%s %s%s%s", f->y_count > 1 ? column : "",
+                 f->y_count > 1 ? side : "", f->y_count > 1 ? ", " : "", by->name, group,
+                 by->value && *by->unit ? " " : "", by->value ? by->unit : "");
       }
       entries[used] = (strut_legend_entry){.label = text[used],
                                            .look = c * (size_t)f->y_count + (size_t)k,
@@ -151,7 +289,7 @@ static void draw_legend(void *context, strut_canvas *canvas, strut_box box) {
                     false);
 }
 
-static strut_status draw(maker *m, const char *path, strut_error *error) {
+static strut_status draw_page(maker *m, const char *path, strut_error *error) {
   strut_canvas *ruler = NULL;
   double size[2] = {0, 0};
   m->entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *m->entries);
@@ -179,6 +317,7 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
   strut_status status = strut_table_numbers(table, figure->x, error);
   for (int k = 0; k < figure->y_count && status == STRUT_OK; k++)
     status = strut_table_numbers(table, figure->y[k], error);
+  if (status == STRUT_OK) status = check_units(table, figure, error);
   if (status == STRUT_OK)
     status = strut_table_groups_find(table, figure->panels, STRUT_MOST_PANELS, "panels", &m.panels,
                                      error);
@@ -186,8 +325,8 @@ static strut_status draw_table(const char *path, const strut_table_figure *figur
     status =
         strut_table_groups_find(table, figure->by, STRUT_MOST_GROUPS, "curves", &m.curves, error);
   if (status == STRUT_OK) {
-    settle_axes(&m);
-    status = draw(&m, path, error);
+    find_axes(&m);
+    status = draw_page(&m, path, error);
   }
   strut_arena_free(&m.arena);
   return status;

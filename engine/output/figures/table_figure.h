@@ -8,39 +8,83 @@
 #include <stdbool.h>
 
 #include "engine/base/status.h"
+#include "engine/output/draw/axes.h"
 #include "engine/output/table_data.h"
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 
-/** Which rows are drawn, and against which. */
+/** Which rows are drawn, and whether as differences. */
 typedef struct strut_table_choice {
-  int only; /* those whose column has the text `only_value` */
+  int only; /* rows whose column has the text `only_value` */
   const char *only_value;
-  int difference; /* its two texts are two sides: the second less the first; a map of the second, with
-                     doubt where the first says otherwise */
+  int difference; /* its two texts are two sides: the second minus the first; of categories, the
+                     second with doubt where the first differs */
 } strut_table_choice;
 #define STRUT_TABLE_ALL                                                                            \
   { .only = STRUT_NO_COLUMN, .difference = STRUT_NO_COLUMN }
 
-/** What of a table is drawn how. Columns by number, STRUT_NO_COLUMN for none. */
+/** Label and range that replace those from the column. Zero-initialised: none. */
+typedef struct strut_table_axis {
+  const char *label; /* replaces the column's name; the unit still follows; NULL: the name */
+  bool limited;      /* the axis goes from low to high, in the column's unit */
+  double low, high;
+} strut_table_axis;
+/** The axis for a column named `name` with that unit; its range is NAN where it is not limited. */
+strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
+                               bool logarithmic);
+
+/** Curves from the columns of a table. Columns by number, STRUT_NO_COLUMN for none. */
 typedef struct strut_table_figure {
-  const char *title; /* may be NULL */
-  double width;      /* [pt] */
-  int x, y[STRUT_MOST_Y], y_count;
-  int by;     /* a curve for each of its texts */
-  int panels; /* a panel for each of its texts */
-  int band;   /* grey where it has the text `band_value`: half way to the next points */
+  const char *title;               /* may be NULL */
+  double width;                    /* [pt] */
+  int x, y[STRUT_MOST_Y], y_count; /* y of two units: the second unit has the right axis */
+  strut_table_axis x_axis, y_axis; /* y_axis: the left one */
+  int by;                          /* a curve for each of its texts */
+  int panels;                      /* a panel for each of its texts */
+  int band; /* grey where it has the text `band_value`, midway to the next points */
   const char *band_value;
   bool log_x, log_y;
   strut_table_choice choice;
-  bool between; /* of a difference: straight lines between the points of the first side */
+  bool between; /* of a difference: the first side is interpolated linearly */
 } strut_table_figure;
 
 /**
- * Draws curves into the file `path`. STRUT_USAGE where a column that has to hold numbers does not, or
- * there are too many panels; else as strut_canvas_open and strut_canvas_commit.
+ * Draws curves into the file `path`. STRUT_USAGE for a column without numbers where numbers are
+ * needed, more than two units of y, or too many panels; otherwise as strut_canvas_open and
+ * strut_canvas_commit.
  */
 STRUT_API strut_status strut_table_curves(const char *path, const strut_table_figure *figure,
                                           const strut_table *table, strut_error *error);
+
+/** Columns by number; STRUT_NO_COLUMN for none. */
+typedef struct strut_table_map_figure {
+  const char *title;
+  double width;    /* [pt] */
+  int x, y, value; /* value: texts are categories, numbers get a colour scale */
+  strut_table_axis x_axis, y_axis;
+  strut_colours colours;
+  int panels, doubt; /* doubt: hatched where it is not empty, 0, false or no */
+  strut_table_choice choice;
+} strut_table_map_figure;
+
+/**
+ * Draws a map, or one in each panel, of rows in any order; points of the grid without a row have no
+ * answer. STRUT_USAGE where x or y are no numbers or the grid would be too large.
+ */
+STRUT_API strut_status strut_table_map(const char *path, const strut_table_map_figure *figure,
+                                       const strut_table *table, strut_error *error);
+
+/** x is the cost, y the error (a cell that is not finite: diverged). */
+typedef struct strut_table_savings_figure {
+  const char *title;
+  double width;
+  strut_table_axis x_axis, y_axis;
+  int x, y, by, label; /* by: the method; label: text beside points of the front */
+} strut_table_savings_figure;
+
+/** Draws a work-precision diagram. */
+STRUT_API strut_status strut_table_savings(const char *path,
+                                           const strut_table_savings_figure *figure,
+                                           const strut_table *table, strut_error *error);
 
 #endif

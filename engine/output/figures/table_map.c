@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/table_map.h"
+#include "engine/output/figures/table_figure.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,6 @@
 #include "engine/output/draw/map.h"
 #include "engine/output/draw/work_precision.h"
 #include "engine/output/figures/table_parts.h"
-#include "engine/output/figures/table_select.h"
 
 static const double PANEL_WIDTH = 200, ASPECT = 0.8;
 enum { MOST_CELLS = 4000000 };
@@ -19,7 +18,7 @@ typedef struct mapper {
   strut_table_groups panels, names;
   double *xs, *ys;
   size_t columns, rows;
-  double low, high; /* of the values; equal where there are none or they are all alike */
+  double low, high; /* of the values; equal if there is no or one value */
   bool some;
   strut_arena arena;
 } mapper;
@@ -30,22 +29,22 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* The different finite values of a column, ascending; NULL: no memory. */
-static double *different(mapper *m, int column, size_t *count) {
+static double *distinct_values(mapper *m, int column, size_t *count) {
   const double *value = m->table->columns[column].value;
   double *all = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *all);
   size_t used = 0, kept = 0;
   for (size_t i = 0; all && i < m->table->row_count; i++)
     if (isfinite(value[i])) all[used++] = value[i];
   if (all && used) qsort(all, used, sizeof *all, ascending);
-  double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 and 0.3 are one place */
+  double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
     if (!kept || all[i] - all[kept - 1] > grain) all[kept++] = all[i];
   *count = kept;
   return all;
 }
 
-/* The place of a value among them: the nearest. */
-static size_t place_of(const double *at, size_t count, double value) {
+/* Index of the nearest of (count) ascending positions. */
+static size_t nearest_index(const double *at, size_t count, double value) {
   size_t low = 0, high = count - 1;
   while (low < high) {
     size_t middle = (low + high) / 2;
@@ -58,21 +57,21 @@ static size_t place_of(const double *at, size_t count, double value) {
   return low;
 }
 
-static bool is_doubt(const char *text) {
+static bool is_doubtful(const char *text) {
   static const char *const none[] = {"", "0", "false", "no", "nan", "null"};
   for (size_t i = 0; i < sizeof none / sizeof *none; i++)
     if (strcmp(text, none[i]) == 0) return false;
   return true;
 }
 
-/* What the table says of each cell; arrays of (rows, columns). */
+/* Values of the cells; arrays (rows, columns). */
 typedef struct cells {
   int *category;
   double *value;
   bool *doubtful;
 } cells;
 
-static void fill(const mapper *m, size_t panel, cells *c) {
+static void fill_cells(const mapper *m, size_t panel, cells *c) {
   const strut_table_map_figure *f = m->figure;
   const strut_table_column *columns = m->table->columns;
   for (size_t k = 0; k < m->rows * m->columns; k++) {
@@ -83,11 +82,11 @@ static void fill(const mapper *m, size_t panel, cells *c) {
     double x = columns[f->x].value[i], y = columns[f->y].value[i];
     if (!isfinite(x) || !isfinite(y)) continue;
     if (!strut_table_belongs(m->table, f->panels, m->panels.name[panel], i)) continue;
-    size_t k = place_of(m->ys, m->rows, y) * m->columns + place_of(m->xs, m->columns, x);
+    size_t k = nearest_index(m->ys, m->rows, y) * m->columns + nearest_index(m->xs, m->columns, x);
     if (columns[f->value].value) c->value[k] = columns[f->value].value[i];
     for (size_t g = 0; !columns[f->value].value && g < m->names.count; g++)
       if (strcmp(m->names.name[g], columns[f->value].text[i]) == 0) c->category[k] = (int)g;
-    if (f->doubt != STRUT_NO_COLUMN) c->doubtful[k] = is_doubt(columns[f->doubt].text[i]);
+    if (f->doubt != STRUT_NO_COLUMN) c->doubtful[k] = is_doubtful(columns[f->doubt].text[i]);
   }
 }
 
@@ -102,12 +101,12 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
              .doubtful = strut_arena_allocate(&m->arena, count, sizeof(bool))};
   char title[300];
   if (!c.category || !c.value || !c.doubtful) return STRUT_NO_MEMORY;
-  fill(m, panel, &c);
+  fill_cells(m, panel, &c);
   strut_table_panel_title(m->table, f->panels, m->panels.name[panel], panel, title);
   const strut_map map = {
       .title = title[0] ? title : NULL,
-      .x = {x->name, x->unit, false, (double)NAN, (double)NAN},
-      .y = {y->name, y->unit, false, (double)NAN, (double)NAN},
+      .x = strut_table_axis_of(&f->x_axis, x->name, x->unit, false),
+      .y = strut_table_axis_of(&f->y_axis, y->name, y->unit, false),
       .columns = m->columns,
       .rows = m->rows,
       .xs = m->xs,
@@ -120,12 +119,13 @@ static strut_status draw_panel(void *context, strut_canvas *canvas, strut_box bo
       .value_high = m->high,
       .value_name = value->name,
       .value_unit = value->unit,
+      .colours = f->colours,
       .doubtful = f->doubt == STRUT_NO_COLUMN ? NULL : c.doubtful,
       .doubt = f->doubt == STRUT_NO_COLUMN ? NULL : m->table->columns[f->doubt].name};
   return strut_draw_map(canvas, box, &map);
 }
 
-/* One scale of colours for all panels. */
+/* Finds the colour range, which all panels share. */
 static void find_range(mapper *m) {
   const double *value = m->table->columns[m->figure->value].value;
   for (size_t i = 0; value && i < m->table->row_count; i++) {
@@ -140,8 +140,8 @@ static int by_text(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* The grid's lines and the categories. */
-static strut_status prepare(mapper *m, strut_error *error) {
+/* Finds the grid's positions and the categories. */
+static strut_status prepare_grid(mapper *m, strut_error *error) {
   const strut_table_map_figure *f = m->figure;
   strut_status status = strut_table_numbers(m->table, f->x, error);
   if (status == STRUT_OK) status = strut_table_numbers(m->table, f->y, error);
@@ -153,13 +153,13 @@ static strut_status prepare(mapper *m, strut_error *error) {
                                      error);
   if (status != STRUT_OK) return status;
   qsort(m->names.name, m->names.count, sizeof *m->names.name, by_text);
-  if (m->names.count && !*m->names.name[0]) { /* nothing written is no answer */
+  if (m->names.count && !*m->names.name[0]) { /* an empty text is no category */
     m->names.count--;
     memmove(m->names.name, m->names.name + 1, m->names.count * sizeof *m->names.name);
   }
   find_range(m);
-  m->xs = different(m, f->x, &m->columns);
-  m->ys = different(m, f->y, &m->rows);
+  m->xs = distinct_values(m, f->x, &m->columns);
+  m->ys = distinct_values(m, f->y, &m->rows);
   if (!m->xs || !m->ys) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
   if (!m->columns || !m->rows || m->rows > MOST_CELLS / m->columns)
     return strut_fail(error, STRUT_USAGE,
@@ -171,7 +171,7 @@ static strut_status prepare(mapper *m, strut_error *error) {
 static strut_status draw_table(const char *path, const strut_table_map_figure *figure,
                                const strut_table *table, strut_error *error) {
   mapper m = {.figure = figure, .table = table};
-  strut_status status = prepare(&m, error);
+  strut_status status = prepare_grid(&m, error);
   const strut_panel_page page = {.width = figure->width,
                                  .least_width = PANEL_WIDTH,
                                  .aspect = ASPECT,
@@ -194,35 +194,39 @@ strut_status strut_table_map(const char *path, const strut_table_map_figure *fig
   if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
       !table->columns[figure->value].value)
     drawn.doubt = (int)chosen.table->column_count - 1;
+  if (status == STRUT_OK && figure->choice.difference != STRUT_NO_COLUMN &&
+      drawn.colours == STRUT_COLOURS_AUTO)
+    drawn.colours = STRUT_COLOURS_DIVERGING;
   if (status == STRUT_OK) status = draw_table(path, &drawn, chosen.table, error);
   strut_table_chosen_free(&chosen);
   return status;
 }
 
-typedef struct trader {
+typedef struct diagram_source {
   const strut_table_savings_figure *figure;
   const strut_table *table;
   strut_table_groups methods;
   strut_saving *bargains;
   size_t count;
-} trader;
+} diagram_source;
 
-static strut_status draw_bargains(void *context, strut_canvas *canvas, strut_box box,
-                                  size_t panel) {
-  const trader *t = context;
+static strut_status draw_savings(void *context, strut_canvas *canvas, strut_box box, size_t panel) {
+  const diagram_source *t = context;
   const strut_table_column *x = &t->table->columns[t->figure->x];
   const strut_table_column *y = &t->table->columns[t->figure->y];
-  (void)panel; /* there is one */
-  const strut_work_precision diagram = {.cost = {x->name, x->unit, true, (double)NAN, (double)NAN},
-                                        .error = {y->name, y->unit, true, (double)NAN, (double)NAN},
-                                        .group_count = t->methods.count,
-                                        .groups = t->methods.name,
-                                        .count = t->count,
-                                        .bargains = t->bargains};
+  (void)panel; /* the only one */
+  const strut_table_savings_figure *f = t->figure;
+  const strut_work_precision diagram = {
+      .cost = strut_table_axis_of(&f->x_axis, x->name, x->unit, true),
+      .error = strut_table_axis_of(&f->y_axis, y->name, y->unit, true),
+      .group_count = t->methods.count,
+      .groups = t->methods.name,
+      .count = t->count,
+      .bargains = t->bargains};
   return strut_draw_work_precision(canvas, box, &diagram);
 }
 
-static void find_bargains(trader *t) {
+static void find_savings(diagram_source *t) {
   const strut_table_savings_figure *f = t->figure;
   const strut_table_column *columns = t->table->columns;
   for (size_t i = 0; i < t->table->row_count; i++) {
@@ -242,7 +246,7 @@ static void find_bargains(trader *t) {
 
 strut_status strut_table_savings(const char *path, const strut_table_savings_figure *figure,
                                  const strut_table *table, strut_error *error) {
-  trader t = {.figure = figure, .table = table};
+  diagram_source t = {.figure = figure, .table = table};
   strut_arena arena = {0};
   strut_status status = strut_table_numbers(table, figure->x, error);
   if (status == STRUT_OK) status = strut_table_numbers(table, figure->y, error);
@@ -255,10 +259,10 @@ strut_status strut_table_savings(const char *path, const strut_table_savings_fig
   }
   if (status == STRUT_OK) {
     if (figure->by == STRUT_NO_COLUMN) t.methods.name[0] = table->columns[figure->y].name;
-    find_bargains(&t);
+    find_savings(&t);
     const strut_panel_page page = {
         .width = figure->width, .least_width = PANEL_WIDTH, .aspect = ASPECT, .panels = 1};
-    status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_bargains, &t, error);
+    status = strut_panel_page_draw(path, figure->title, &page, NULL, draw_savings, &t, error);
   }
   strut_arena_free(&arena);
   return status;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What figures of tables share: groups of rows, and a page with a title and panels.
+ * Shared by figures of tables: groups of rows, a page of panels, and tables derived from tables.
  */
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_PARTS_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_PARTS_H
@@ -16,13 +16,13 @@ typedef struct strut_table_groups {
   const char *name[STRUT_MOST_GROUPS];
 } strut_table_groups;
 
-/** STRUT_USAGE where there are more than `most`, which make what `what` says ("panels"). */
+/** STRUT_USAGE where there are more than `most`, named `what` in the message ("panels"). */
 strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
                                      const char *what, strut_table_groups *groups,
                                      strut_error *error);
 /** Whether a row belongs to a group of that column. */
 bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row);
-/** STRUT_USAGE where the column is not one of numbers. */
+/** STRUT_USAGE where the column does not hold numbers. */
 strut_status strut_table_numbers(const strut_table *table, int column, strut_error *error);
 /** "a) friction = 0.1", or "" where there are no panels. */
 void strut_table_panel_title(const strut_table *table, int column, const char *name, size_t panel,
@@ -31,7 +31,7 @@ void strut_table_panel_title(const strut_table *table, int column, const char *n
 /** A page of panels of one size, below a title and `head` [pt] for a legend. */
 typedef struct strut_panel_page {
   double width, head;         /* [pt] */
-  double least_width, aspect; /* of a panel: at least so wide, so high for its width */
+  double least_width, aspect; /* of a panel: least width [pt], height over width */
   size_t panels;
 } strut_panel_page;
 
@@ -43,5 +43,48 @@ strut_status strut_panel_page_draw(const char *path, const char *title,
                                    const strut_panel_page *page,
                                    void (*head)(void *context, strut_canvas *canvas, strut_box box),
                                    strut_panel_draw panel, void *context, strut_error *error);
+
+enum { STRUT_MOST_KEYS_OF_ROWS = 4 };
+
+/** Which rows are compared in which columns. Columns by number. */
+typedef struct strut_table_pairing {
+  int of;                            /* its two texts are the sides: first, second */
+  int keys[STRUT_MOST_KEYS_OF_ROWS]; /* equal in matching rows; -1: unused */
+  size_t key_count;
+  bool between;      /* the first side is interpolated linearly over the last key */
+  const int *values; /* (value_count) compared columns */
+  size_t value_count;
+} strut_table_pairing;
+
+/**
+ * The rows whose column has that text, in their order. `some` shares texts with `table` and has its
+ * own arena, which frees it. STRUT_USAGE where there are none; STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_table_only(const strut_table *table, int column, const char *text,
+                                        strut_table *some, strut_error *error);
+/**
+ * The rows of the second text minus those of the first: compared numbers are subtracted (NAN where
+ * the first has no such row) and their columns renamed; compared texts are kept. An additional last
+ * column is 1 where a text differs, else 0. Fails as strut_table_only, and with STRUT_USAGE where
+ * the column does not have two texts.
+ */
+STRUT_API strut_status strut_table_difference(const strut_table *table,
+                                              const strut_table_pairing *pairing,
+                                              strut_table *difference, strut_error *error);
+
+/** A table chosen from another. Zero-initialise. */
+typedef struct strut_table_chosen {
+  const strut_table *table; /* the result: one of these, or the table itself */
+  strut_table some, difference;
+} strut_table_chosen;
+/**
+ * Applies the choice: first `only`, then `difference`, which sets pairing.of. Free it after a
+ * failure too.
+ */
+STRUT_API strut_status strut_table_choose(const strut_table *table,
+                                          const strut_table_choice *choice,
+                                          strut_table_pairing pairing, strut_table_chosen *chosen,
+                                          strut_error *error);
+STRUT_API void strut_table_chosen_free(strut_table_chosen *chosen);
 
 #endif

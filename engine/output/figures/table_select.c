@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/table_select.h"
+#include "engine/output/figures/table_parts.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/figures/table_parts.h"
-
 static strut_status no_memory(strut_error *error) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
 }
 
 /* A copy of the columns with the rows named (count) and room for one column more. */
-static strut_status take_rows(const strut_table *table, const size_t *rows, size_t count,
+static strut_status copy_rows(const strut_table *table, const size_t *rows, size_t count,
                               strut_table *some, strut_error *error) {
   some->row_count = count;
   some->column_count = table->column_count;
@@ -54,7 +52,7 @@ strut_status strut_table_only(const strut_table *table, int column, const char *
   if (!count)
     return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
                       table->columns[column].name);
-  return take_rows(table, rows, count, some, error);
+  return copy_rows(table, rows, count, some, error);
 }
 
 /* A row that knows where its keys are, to be sorted. */
@@ -64,7 +62,7 @@ typedef struct keyed {
   size_t row;
 } keyed;
 
-/* Numbers by size, those that are none first; texts by their letters. */
+/* Numbers by value, NAN first; texts alphabetically. */
 static int compare_keys(const void *a, const void *b) {
   const keyed *one = a, *two = b;
   for (size_t i = 0; i < one->pairing->key_count; i++) {
@@ -110,13 +108,13 @@ static strut_status find_sides(const strut_table *table, const strut_table_pairi
   return STRUT_OK;
 }
 
-/* The rows of the first side that a row of the second belongs to. */
+/* The rows of the first side matching a row of the second. */
 typedef struct partner {
-  size_t row, next; /* SIZE_MAX: there is none */
+  size_t row, next; /* SIZE_MAX: none */
   double weight;    /* of `next` */
 } partner;
 
-/* Do both differ in the last key alone? */
+/* Whether all keys but the last are equal. */
 static bool alongside(const keyed *a, const keyed *b) {
   strut_table_pairing but_last = *a->pairing;
   but_last.key_count--;
@@ -128,7 +126,7 @@ static bool alongside(const keyed *a, const keyed *b) {
 static partner find_partner(const sides *s, const keyed *wanted) {
   const strut_table_pairing *p = wanted->pairing;
   size_t low = 0, high = s->first_count;
-  while (low < high) { /* the first that is not before */
+  while (low < high) { /* the first not before `wanted` */
     size_t middle = (low + high) / 2;
     if (compare_keys(&s->first[middle], wanted) < 0) {
       low = middle + 1;
@@ -147,7 +145,7 @@ static partner find_partner(const sides *s, const keyed *wanted) {
                    (x[wanted->row] - x[before->row]) / (x[after->row] - x[before->row])};
 }
 
-/* What the rows say of one column: numbers are subtracted, different texts marked. */
+/* Compares one column: numbers are subtracted, different texts marked. */
 static bool compare_column(const strut_table *table, const sides *s, const partner *partners,
                            int column, strut_table *out, const char **mark) {
   strut_table_column *to = &out->columns[column];
@@ -171,8 +169,8 @@ static bool compare_column(const strut_table *table, const sides *s, const partn
   return true;
 }
 
-static strut_status compare(const strut_table *table, const strut_table_pairing *p, const sides *s,
-                            strut_table *out, strut_error *error) {
+static strut_status subtract_sides(const strut_table *table, const strut_table_pairing *p,
+                                   const sides *s, strut_table *out, strut_error *error) {
   partner *partners = strut_arena_allocate(&out->arena, s->second_count, sizeof *partners);
   const char **mark = strut_arena_allocate(&out->arena, s->second_count, sizeof *mark);
   const char *name = strut_arena_format(&out->arena, "%s: other", s->names.name[0]);
@@ -193,8 +191,8 @@ strut_status strut_table_difference(const strut_table *table, const strut_table_
   sides s;
   *difference = (strut_table){0};
   strut_status status = find_sides(table, pairing, &s, &difference->arena, error);
-  if (!status) status = take_rows(table, s.second, s.second_count, difference, error);
-  return status ? status : compare(table, pairing, &s, difference, error);
+  if (!status) status = copy_rows(table, s.second, s.second_count, difference, error);
+  return status ? status : subtract_sides(table, pairing, &s, difference, error);
 }
 
 strut_status strut_table_choose(const strut_table *table, const strut_table_choice *choice,

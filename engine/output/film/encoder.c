@@ -20,7 +20,7 @@ extern char **environ;
 
 static const char *const endings[] = {".mp4", ".webm", ".gif"};
 
-/* Behind the words about the pixels that come in. One thread: the same film has the same bytes. */
+/* Options after those of the input pixels. One thread, so that the same film has the same bytes. */
 static const char *const words_of[][24] = {
     {"-c:v", "libx264", "-preset", "fast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags",
      "+faststart", "-f", "mp4", NULL},
@@ -36,8 +36,8 @@ static const char *const words_of[][24] = {
      "-loop", "0", "-f", "gif", NULL},
 };
 
-/* One palette for all wants every frame in memory, a megabyte each; above so many each frame has its
- * own, which makes larger files. */
+/* One palette for all frames needs all of them in memory, a megabyte each; beyond this number
+   each has its * own, which makes larger files. */
 enum { ONE_PALETTE = 300, GIF_OF_MANY = STRUT_FILM_GIF + 1 };
 
 strut_status strut_encoder_format(const char *path, strut_film_format *format, strut_error *error) {
@@ -72,7 +72,7 @@ strut_status strut_encoder_find(strut_error *error) {
   return found ? STRUT_OK : not_found(error);
 }
 
-/* All words of the command line; texts of this film are kept in `texts`. */
+/* Builds the command line; `texts` holds the arguments of this film. */
 static void command_line(int row, int width, int height, double fps, const char *target,
                          char texts[2][TEXT], const char *words[MOST_WORDS]) {
   const char *const first[] = {"ffmpeg", "-nostdin",   "-hide_banner",  "-v",   "error",
@@ -90,7 +90,8 @@ static void command_line(int row, int width, int height, double fps, const char 
   words[count] = NULL;
 }
 
-/* ffmpeg in a process group of its own: Ctrl-C is this program's business. 0 or an errno. */
+/* Starts ffmpeg in its own process group, since this program handles Ctrl-C. Returns 0 or an
+   errno. */
 static int spawn(strut_encoder *encoder, const char *const *words, const int pipe_ends[2]) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -103,7 +104,7 @@ static int spawn(strut_encoder *encoder, const char *const *words, const int pip
   if (!code) {
     posix_spawn_file_actions_adddup2(&actions, pipe_ends[0], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(encoder->said), STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, fileno(encoder->messages), STDERR_FILENO);
     posix_spawnattr_setsigdefault(&attributes, &plain);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
     code = posix_spawnp(&encoder->process, words[0], &actions, &attributes, (char *const *)words,
@@ -115,7 +116,7 @@ static int spawn(strut_encoder *encoder, const char *const *words, const int pip
   return code;
 }
 
-/* A pipe that no other child gets; 0 or an errno. */
+/* Opens a pipe that other children do not inherit; returns 0 or an errno. */
 static int open_pipe(int ends[2]) {
   if (pipe(ends) != 0) return errno;
   for (int i = 0; i < 2; i++)
@@ -123,10 +124,11 @@ static int open_pipe(int ends[2]) {
   return 0;
 }
 
-static strut_status start(strut_encoder *encoder, const char *const *words, strut_error *error) {
+static strut_status start_process(strut_encoder *encoder, const char *const *words,
+                                  strut_error *error) {
   int ends[2] = {-1, -1};
-  encoder->said = tmpfile();
-  int code = encoder->said ? open_pipe(ends) : errno;
+  encoder->messages = tmpfile();
+  int code = encoder->messages ? open_pipe(ends) : errno;
   if (!code) code = spawn(encoder, words, ends);
   if (ends[0] >= 0) close(ends[0]);
   if (code) {
@@ -148,14 +150,14 @@ strut_status strut_encoder_begin(strut_encoder *encoder, const char *path, int w
   strut_status status = strut_encoder_format(path, &format, error);
   if (status == STRUT_OK) status = strut_file_open_path(&encoder->file, path, error);
   if (status != STRUT_OK) return status;
-  /* "file:", or ffmpeg would take a colon in the name for a protocol and a dash for an option */
+  /* the prefix "file:" keeps ffmpeg from reading a protocol or an option in the name */
   char *target = strut_arena_format(&arena, "file:%s", encoder->file.part);
   if (target) {
     strut_c_locale locale = strut_c_locale_enter();
     bool many = format == STRUT_FILM_GIF && frames > ONE_PALETTE;
     command_line(many ? GIF_OF_MANY : (int)format, width, height, fps, target, texts, words);
     strut_c_locale_leave(locale);
-    status = start(encoder, words, error);
+    status = start_process(encoder, words, error);
   } else {
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing a film");
   }
@@ -164,7 +166,7 @@ strut_status strut_encoder_begin(strut_encoder *encoder, const char *path, int w
   return status;
 }
 
-/* Writes all bytes; false with errno set. A reader that is gone is an error, not a signal. */
+/* Writes all bytes; false with errno set. A closed pipe is an error, not a signal. */
 static bool write_all(int descriptor, const unsigned char *bytes, size_t count) {
   sigset_t broken, before, pending;
   sigemptyset(&broken);
@@ -189,8 +191,8 @@ static bool write_all(int descriptor, const unsigned char *bytes, size_t count) 
   return good;
 }
 
-/* Closes the pipe and waits; whether ffmpeg was content. */
-static bool finish(strut_encoder *encoder) {
+/* Closes the pipe and waits; whether ffmpeg succeeded. */
+static bool finish_encoding(strut_encoder *encoder) {
   int result = -1;
   if (encoder->pipe >= 0) close(encoder->pipe);
   encoder->pipe = -1;
@@ -201,18 +203,18 @@ static bool finish(strut_encoder *encoder) {
   return WIFEXITED(result) && WEXITSTATUS(result) == 0;
 }
 
-/* What ffmpeg said last, in one sentence. */
+/* Reports ffmpeg's last message as an error. */
 static strut_status complaint(strut_encoder *encoder, strut_error *error) {
   char text[SAID] = "";
-  if (encoder->said && fseek(encoder->said, 0, SEEK_SET) == 0) {
+  if (encoder->messages && fseek(encoder->messages, 0, SEEK_SET) == 0) {
     char line[SAID];
-    while (fgets(line, sizeof line, encoder->said)) {
+    while (fgets(line, sizeof line, encoder->messages)) {
       line[strcspn(line, "\r\n")] = '\0';
       if (*line && !*text) memcpy(text, line, sizeof text);
     }
   }
   return strut_fail(error, STRUT_FILE_TROUBLE, "ffmpeg could not write '%s': %s",
-                    encoder->file.path, *text ? text : "it did not say why");
+                    encoder->file.path, *text ? text : "it gave no reason");
 }
 
 strut_status strut_encoder_frame(strut_encoder *encoder, const unsigned char *pixels, int width,
@@ -226,12 +228,12 @@ strut_status strut_encoder_frame(strut_encoder *encoder, const unsigned char *pi
       good = write_all(encoder->pipe, pixels + (size_t)i * stride, row);
   }
   if (good) return STRUT_OK;
-  finish(encoder);
+  finish_encoding(encoder);
   return complaint(encoder, error);
 }
 
 strut_status strut_encoder_end(strut_encoder *encoder, strut_error *error) {
-  strut_status status = finish(encoder) ? STRUT_OK : complaint(encoder, error);
+  strut_status status = finish_encoding(encoder) ? STRUT_OK : complaint(encoder, error);
   if (status == STRUT_OK) status = strut_file_commit(&encoder->file, error);
   strut_encoder_abandon(encoder);
   return status;
@@ -239,8 +241,8 @@ strut_status strut_encoder_end(strut_encoder *encoder, strut_error *error) {
 
 void strut_encoder_abandon(strut_encoder *encoder) {
   if (encoder->process > 0) kill(encoder->process, SIGKILL);
-  finish(encoder);
-  if (encoder->said) fclose(encoder->said);
+  finish_encoding(encoder);
+  if (encoder->messages) fclose(encoder->messages);
   strut_file_abandon(&encoder->file);
   *encoder = (strut_encoder){.pipe = -1};
 }

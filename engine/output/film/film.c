@@ -5,19 +5,19 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/film/encoder.h"
-#include "engine/output/film/scene_frame.h"
+#include "engine/output/film/frame.h"
 
 enum { WIDTH = 1280, HEIGHT = 720, GIF_WIDTH = 640, GIF_HEIGHT = 360 };
 
 static const double PAGE_WIDTH = 512; /* [pt], the same in all sizes */
-static const double LOOK_AHEAD = 0.6; /* how far the camera looks around in time [s of film] */
+static const double LOOK_AHEAD = 0.6; /* time over which the camera averages [s of film] */
 
-/* Everything that one film needs while it is made. */
+/* State while a film is made. */
 typedef struct making {
   const strut_film *film;
   const strut_model *model;
   const strut_trajectory *motion;
-  size_t shown; /* frames of the motion that show something */
+  size_t shown; /* drawable frames of the motion */
   strut_film_made *made;
   strut_camera camera;
   strut_view_frame scenery;
@@ -48,7 +48,7 @@ static strut_status no_memory(strut_error *error) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory while making a film");
 }
 
-/* How many pictures, of what size, and how far apart. */
+/* Sets the number of pictures, their size and their spacing in time. */
 static strut_status count_frames(making *m, strut_film_format format, strut_error *error) {
   const double *time = m->motion->time;
   strut_film_made *made = m->made;
@@ -70,17 +70,17 @@ static strut_status count_frames(making *m, strut_film_format format, strut_erro
   return STRUT_OK;
 }
 
-static double time_of(const making *m, size_t i) {
+static double frame_time(const making *m, size_t i) {
   return m->motion->time[0] + (double)i * m->made->shown;
 }
 
-/* Looks through the whole motion for what all pictures must have in common. */
+/* Finds the scales that all pictures share. */
 static bool survey(making *m) {
   size_t count = m->made->frames;
   strut_bounds *bounds = strut_arena_allocate(&m->arena, count, sizeof *bounds);
   if (!bounds || !strut_moment_create(&m->moment, m->model, m->motion, &m->arena)) return false;
   for (size_t i = 0; i < count; i++) {
-    strut_moment_at(&m->moment, m->motion, m->shown, time_of(m, i));
+    strut_moment_at(&m->moment, m->motion, m->shown, frame_time(m, i));
     bounds[i] = strut_bounds_none();
     strut_bounds_add(&bounds[i], m->model, m->moment.q);
   }
@@ -95,7 +95,7 @@ static double largest(const double *values, size_t count) {
   return most;
 }
 
-static void prepare(making *m) {
+static void find_scales(making *m) {
   strut_view_frame *s = &m->scenery;
   const strut_trajectory *motion = m->motion;
   const double *time = motion->time;
@@ -130,7 +130,7 @@ static strut_status draw_frames(making *m, strut_canvas *canvas, strut_encoder *
     size_t stride = 0;
     if (film->interrupt && *film->interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted: there is no film");
-    strut_moment_at(&m->moment, m->motion, m->shown, time_of(m, i));
+    strut_moment_at(&m->moment, m->motion, m->shown, frame_time(m, i));
     strut_view_frame_draw(&m->scenery, canvas, i, &m->moment);
     const unsigned char *pixels = strut_canvas_pixels(canvas, &stride);
     if (!pixels) return no_memory(error);
@@ -172,7 +172,7 @@ strut_status strut_film_make(const strut_film *film, const strut_model *model,
   if (status == STRUT_OK) status = count_frames(&m, format, error);
   if (status == STRUT_OK && !survey(&m)) status = no_memory(error);
   if (status == STRUT_OK) {
-    prepare(&m);
+    find_scales(&m);
     status = encode(&m, error);
   }
   strut_arena_free(&m.arena);

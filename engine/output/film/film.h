@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Films of a recorded motion: the structure true to scale, its forces in colour, the ground passing.
+ * Films of a recorded motion: the structure true to scale, its forces in colour, the ground
+ * passing.
  */
 #ifndef STRUT_ENGINE_OUTPUT_FILM_FILM_H
 #define STRUT_ENGINE_OUTPUT_FILM_FILM_H
@@ -11,24 +12,24 @@
 #include "engine/output/trajectory.h"
 #include "engine/scene/experiment.h"
 
-/** What a film draws on; strut_trajectory_sink is asked for these. */
+/** Channels that a film needs from strut_trajectory_sink. */
 #define STRUT_FILM_CHANNELS                                                                        \
   ((unsigned)STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT)
 
-/** Longest film [s], and the frames per second that a file of that format has by itself. */
+/** Longest film [s], and the default frames per second of a format. */
 enum { STRUT_FILM_LONGEST = 1800, STRUT_FILM_FPS = 30, STRUT_FILM_GIF_FPS = 25 };
 
 typedef struct strut_film {
   const strut_experiment *experiment; /* of the run: whose travel is shown */
   const char *path; /* .mp4, .webm (1280 x 720 pixels) or .gif (640 x 360); NULL: no film */
-  double speed;     /* of the motion in it: 0.1 is slowed ten times, 1 true */
-  double fps;       /* frames per second; 0: what is usual for the format */
-  const volatile sig_atomic_t *interrupt; /* gives up soon after it becomes non-zero; may be NULL */
+  double speed;     /* 1: real time, 0.1: ten times slower */
+  double fps;       /* frames per second; 0: default of the format */
+  const volatile sig_atomic_t *interrupt; /* stops soon after it becomes non-zero; may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
 } strut_film;
 
-/** What was made. */
+/** Properties of a finished film. */
 typedef struct strut_film_made {
   size_t frames;
   int width, height; /* pixels */
@@ -43,7 +44,7 @@ typedef struct strut_film_made {
  * that is none, STRUT_FILE_TROUBLE for a place that cannot be written to, or without ffmpeg.
  */
 STRUT_API strut_status strut_film_check(const char *path, strut_error *error);
-/** Whether a film of a motion that lasts so long [s] has a sensible length; STRUT_USAGE. */
+/** Checks the length of a film of a motion of this duration [s]; STRUT_USAGE. */
 STRUT_API strut_status strut_film_check_length(const strut_film *film, double motion,
                                                strut_error *error);
 /**

@@ -4,24 +4,27 @@
 (function (page) {
   const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#56b4e9", "#7a7a7a"];
   const MOST_CURVES = 7, POINTS = 1500, SHOWN = 3;
+  const MOST_MOVING = 3, LARGE = 0.3; /* coordinates in the first chart; of the largest motion */
 
   /* A column of the motion as a function of the frame. */
   function column(values, columns, index) {
     return (frame) => values[frame * columns + index];
   }
 
+  function rangeOf(curve, frames) {
+    const step = Math.max(1, Math.floor(frames / 2000));
+    let low = Infinity, high = -Infinity;
+    for (let f = 0; f < frames; f += step) {
+      const value = curve.at(f);
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+    return high > low ? high - low : 0;
+  }
+
   /* Of many curves those that move most. */
   function liveliest(curves, frames) {
-    const step = Math.max(1, Math.floor(frames / 2000));
-    const ranges = curves.map((curve, index) => {
-      let low = Infinity, high = -Infinity;
-      for (let f = 0; f < frames; f += step) {
-        const value = curve.at(f);
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-      return { index, range: high - low };
-    });
+    const ranges = curves.map((curve, index) => ({ index, range: rangeOf(curve, frames) }));
     ranges.sort((a, b) => b.range - a.range);
     const chosen = ranges.slice(0, MOST_CURVES).filter((r) => r.range > 0).map((r) => r.index);
     return chosen.sort((a, b) => a - b).map((index) => curves[index]);
@@ -38,13 +41,26 @@
     };
   };
 
+  /* The measured point's displacement along x, unless nodes move much more: then the coordinates that
+     move most. */
+  function displacements(data, motion, track) {
+    const count = data.nodes.length, node = data.motion.track, first = track(0);
+    const point = { name: (node === null ? "centre of mass" : data.nodes[node].name) + " x",
+      at: (frame) => track(frame) - first };
+    const all = data.nodes.flatMap((n, i) => ["x", "y"].map((axis, d) => {
+      const at = column(motion.position, 2 * count, 2 * i + d), start = at(0);
+      return { name: n.name + " " + axis, at: (frame) => at(frame) - start };
+    })).map((curve) => ({ curve, range: rangeOf(curve, motion.frames) }))
+      .sort((a, b) => b.range - a.range);
+    if (rangeOf(point, motion.frames) >= LARGE * all[0].range) return [point];
+    return all.slice(0, MOST_MOVING).filter((c) => c.range > LARGE * all[0].range)
+      .map((c) => c.curve);
+  }
+
   /* All that can be shown: {name, unit, curves: [{name, at(frame)}]}. */
   function kindsOf(data, motion) {
     const count = data.nodes.length, kinds = [], track = page.trackedX(data, motion);
-    const node = data.motion.track, first = track(0);
-    kinds.push({ name: "displacement", unit: "m", curves: [{
-      name: node === null ? "centre of mass" : data.nodes[node].name,
-      at: (frame) => track(frame) - first }] });
+    kinds.push({ name: "displacement", unit: "m", curves: displacements(data, motion, track) });
     if (motion.contact)
       kinds.push({ name: "contact force", unit: "N", curves: data.contacts.map((n, i) => ({
         name: data.nodes[n].name, at: column(motion.contact, 2 * data.contacts.length, 2 * i) })) });

@@ -20,9 +20,10 @@
  *   equilibria: null or [{name, label, fate, verdict, energy [J], stands: bool,
  *     position: [x, y, ...], force: [N, ...] of members, contacts: [node index, ...],
  *     normal: [N, ...], lowest: smallest eigenvalue [N/m]}]
- *   equilibria_remark: text; equilibria_left_out: how many are not listed for size
- *     those people want to see first come first
+ *   equilibria_remark: text; equilibria_left_out: how many are not listed for size; named ones and
+ *     those that stand come first
  *   barriers: [{from, to, height [J]}]  indices into equilibria; only if both are listed
+ *   parameters: [{label, value}]        as they were used, and a run's method and step
  *   summary: [{label, value}]           rows of text, ready to show
  *   yaml: text of the scene
  *   study: null

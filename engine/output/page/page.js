@@ -56,12 +56,12 @@
     if (used < 1) return [];
     const trails = [];
     for (let i = 0; i < count; i++) {
-      const way = new Float64Array(2 * (used + 1));
+      const path = new Float64Array(2 * (used + 1));
       for (let k = 0; k <= used; k++) {
-        way[2 * k] = motion.position[2 * ((first + k) * count + i)];
-        way[2 * k + 1] = motion.position[2 * ((first + k) * count + i) + 1];
+        path[2 * k] = motion.position[2 * ((first + k) * count + i)];
+        path[2 * k + 1] = motion.position[2 * ((first + k) * count + i) + 1];
       }
-      trails.push(way);
+      trails.push(path);
     }
     return trails;
   }

@@ -1,19 +1,172 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The motion of the page's data: which frames, how fine, and their blocks. */
+#include "engine/output/page/page_motion.h"
+
+#include <assert.h>
+#include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/base64.h"
-#include "engine/output/page/page_blocks.h"
-#include "engine/output/page/page_parts.h"
+
+enum { PIECE = 1 << 16, LONGEST_NUMBER = 10, LEVEL = 9, RAW = -15, MEMORY = 9 };
+
+size_t strut_rows_taken(const strut_rows *rows) {
+  if (rows->frames == 0) return 0;
+  return (rows->frames - 1) / rows->every + 1 + ((rows->frames - 1) % rows->every != 0);
+}
+
+const double *strut_rows_at(const strut_rows *rows, size_t i) {
+  size_t frame = i * rows->every;
+  if (frame >= rows->frames) frame = rows->frames - 1;
+  return rows->values + frame * rows->columns;
+}
+
+double strut_rows_largest(const strut_rows *rows) {
+  double largest = 0;
+  for (size_t i = 0; i < rows->frames * rows->columns; i++)
+    if (fabs(rows->values[i]) > largest) largest = fabs(rows->values[i]);
+  return largest;
+}
+
+/* The double nearest to digit * 10^power, as a reader of the text obtains it. */
+static double decimal(int digit, int power) {
+  char text[32];
+  snprintf(text, sizeof text, "%de%d", digit, power);
+  return strtod(text, NULL);
+}
+
+double strut_round_quantum(double wanted, double largest) {
+  static const int digits[] = {1, 2, 5};
+  double least = largest / STRUT_MOST_QUANTA, quantum = 0;
+  if (least < DBL_MIN) least = DBL_MIN;
+  if (!(wanted > least)) wanted = least;
+  int power = (int)floor(log10(wanted)) - 1;
+  for (int k = 0; k < 9; k++) {
+    double next = decimal(digits[k % 3], power + k / 3);
+    if (isinf(next) || (next > wanted && quantum >= least)) break;
+    quantum = next;
+  }
+  return quantum;
+}
+
+bool strut_rows_multiples(const strut_rows *rows, double quantum) {
+  if (!(quantum > 0)) return false;
+  for (size_t i = 0; i < rows->frames * rows->columns; i++) {
+    double value = rows->values[i], n = round(value / quantum);
+    if (fabs(n) > STRUT_MOST_QUANTA) return false;
+    if (fabs(n * quantum - value) > 4 * DBL_EPSILON * fabs(value)) return false;
+  }
+  return true;
+}
+
+/* Deflates piece by piece into a block that grows. */
+typedef struct packer {
+  z_stream zip;
+  strut_block *block;
+  size_t room, waiting;
+  unsigned char piece[PIECE];
+} packer;
+
+static voidpf zip_allocate(voidpf opaque, uInt count, uInt size) {
+  (void)opaque;
+  return strut_allocate(count, size);
+}
+
+static void zip_release(voidpf opaque, voidpf memory) {
+  (void)opaque;
+  strut_release(memory);
+}
+
+static bool make_room(packer *p) {
+  strut_block *block = p->block;
+  if (block->size < p->room) return true;
+  size_t room = 2 * p->room + 1024;
+  unsigned char *more = strut_reallocate(block->bytes, room, 1);
+  if (!more) return false;
+  block->bytes = more;
+  p->room = room;
+  return true;
+}
+
+/* Passes the waiting bytes to zlib; `flush` as in deflate. */
+static bool deflate_waiting(packer *p, int flush) {
+  int state;
+  p->zip.next_in = p->piece;
+  p->zip.avail_in = (uInt)p->waiting;
+  p->waiting = 0;
+  do {
+    if (!make_room(p)) return false;
+    size_t left = p->room - p->block->size;
+    uInt offered = left < PIECE ? (uInt)left : PIECE;
+    p->zip.next_out = p->block->bytes + p->block->size;
+    p->zip.avail_out = offered;
+    state = deflate(&p->zip, flush);
+    p->block->size += offered - p->zip.avail_out;
+    if (state == Z_STREAM_ERROR) return false;
+  } while (p->zip.avail_in > 0 || (flush == Z_FINISH && state != Z_STREAM_END));
+  return true;
+}
+
+static bool put_number(packer *p, int64_t n) {
+  uint64_t left = n < 0 ? (uint64_t)(-n) * 2 - 1 : (uint64_t)n * 2;
+  assert(left < UINT64_C(1) << 53);
+  if (p->waiting + LONGEST_NUMBER > PIECE && !deflate_waiting(p, Z_NO_FLUSH)) return false;
+  for (; left >= 128; left >>= 7) p->piece[p->waiting++] = (unsigned char)(left | 128);
+  p->piece[p->waiting++] = (unsigned char)left;
+  return true;
+}
+
+/* First the number, then its difference, then second differences. */
+static bool put_column(packer *p, const strut_rows *rows, size_t column, double quantum) {
+  size_t count = strut_rows_taken(rows);
+  int64_t previous = 0, slope = 0;
+  for (size_t i = 0; i < count; i++) {
+    int64_t n = llround(strut_rows_at(rows, i)[column] / quantum);
+    int64_t step = n - previous;
+    if (!put_number(p, i == 0 ? n : i == 1 ? step : step - slope)) return false;
+    previous = n;
+    slope = step;
+  }
+  return true;
+}
+
+bool strut_block_encode(const strut_rows *rows, double quantum, strut_block *block) {
+  *block = (strut_block){.quantum = quantum, .columns = rows->columns};
+  packer *p = strut_allocate(1, sizeof *p);
+  if (!p) return false;
+  p->block = block;
+  p->zip.zalloc = zip_allocate;
+  p->zip.zfree = zip_release;
+  bool good = deflateInit2(&p->zip, LEVEL, Z_DEFLATED, RAW, MEMORY, Z_DEFAULT_STRATEGY) == Z_OK;
+  if (good) {
+    for (size_t c = 0; c < rows->columns && good; c++) good = put_column(p, rows, c, quantum);
+    good = good && deflate_waiting(p, Z_FINISH);
+    deflateEnd(&p->zip);
+  }
+  strut_release(p);
+  if (!good) strut_block_free(block);
+  return good;
+}
+
+void strut_block_free(strut_block *block) {
+  strut_release(block->bytes);
+  *block = (strut_block){0};
+}
+
+/* The motion of the page's data: which frames, how fine, and their blocks. */
 
 /* Quanta: of positions in sizes; of what is drawn as curves and colours in the largest of all, but
    of energies in that of the smallest column; of times that are no whole steps in their span. */
 static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTUM = 1e-3,
                     LEAST_QUANTUM = 1e-10, TIME_QUANTUM = 1e-12;
-/* A diverged run is shown until it is so many sizes from where it began. */
-static const double FAR = 1e3;
+/* A diverged run is shown up to this distance from its start, in sizes. */
+static const double DIVERGED_REACH = 1e3;
 
 enum { TIME, POSITION, FORCE, CONTACT, ENERGY, BLOCKS };
 static const char *const keys[BLOCKS] = {"time", "position", "force", "contact", "energy"};
@@ -36,14 +189,14 @@ typedef struct motion {
   strut_block block[BLOCKS];
 } motion;
 
-static bool finite(const double *values, size_t count) {
+static bool all_finite(const double *values, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (!isfinite(values[i])) return false;
   return true;
 }
 
 /* Whether every node is within reach of its start; `reach` in sizes. */
-static bool near(const strut_model *model, const double *q, double reach) {
+static bool is_within(const strut_model *model, const double *q, double reach) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (fabs(q[i] - model->start[i]) > reach * model->size) return false;
   return true;
@@ -56,15 +209,15 @@ static size_t count_frames(const motion *m) {
   for (size_t f = 0; f < t->frames; f++) {
     for (int b = 0; b < BLOCKS; b++) {
       const strut_rows *rows = &m->rows[b];
-      if (rows->values && !finite(rows->values + f * rows->columns, rows->columns)) return f;
+      if (rows->values && !all_finite(rows->values + f * rows->columns, rows->columns)) return f;
     }
     const double *q = m->rows[POSITION].values + f * m->rows[POSITION].columns;
-    if (!near(m->page->model, q, diverged ? FAR : most)) return f;
+    if (!is_within(m->page->model, q, diverged ? DIVERGED_REACH : most)) return f;
   }
   return t->frames;
 }
 
-static void take_rows(motion *m) {
+static void find_rows(motion *m) {
   const strut_trajectory *t = m->page->motion;
   m->rows[TIME] = (strut_rows){t->time, t->frames, 1, 1};
   m->rows[POSITION] = (strut_rows){t->position, t->frames, 2 * t->node_count, 1};
@@ -85,7 +238,7 @@ static double time_quantum(const motion *m) {
 
 /* The scale of forces and energies: the largest of all, but of a diverged run's first half, for
    beside what it ends with everything else would be nothing. */
-static double scale_of(const motion *m, const strut_rows *rows, double largest) {
+static double largest_shown(const motion *m, const strut_rows *rows, double largest) {
   bool diverged = m->page->motion->status == STRUT_DIVERGED || m->frames < m->page->motion->frames;
   strut_rows half = *rows;
   half.frames = diverged ? (m->frames + 1) / 2 : m->frames;
@@ -110,7 +263,7 @@ static double energy_quantum(const motion *m, const strut_rows *rows, double sca
 
 static double wanted_quantum(const motion *m, int b, double largest) {
   if (b == POSITION) return POSITION_QUANTUM * m->page->model->size;
-  double scale = scale_of(m, &m->rows[b], largest);
+  double scale = largest_shown(m, &m->rows[b], largest);
   return b == ENERGY ? energy_quantum(m, &m->rows[b], scale) : VALUE_QUANTUM * scale;
 }
 
@@ -127,7 +280,7 @@ static void free_blocks(motion *m) {
   for (int b = 0; b < BLOCKS; b++) strut_block_free(&m->block[b]);
 }
 
-/* All blocks of every so many-th frame. Their bytes in base64, or 0 when memory is out. */
+/* Encodes every `every`-th frame. Returns the bytes in base64, or 0 when memory is out. */
 static size_t encode(motion *m, size_t every) {
   size_t bytes = 0;
   free_blocks(m);
@@ -142,7 +295,7 @@ static size_t encode(motion *m, size_t every) {
 
 /* Leaves out half of the frames as often as needed. Half the frames never take less than half the
    bytes, so that two halvings at once are right where four times the room is filled. */
-static bool fit(motion *m, size_t room) {
+static bool choose_frames(motion *m, size_t room) {
   size_t every = 1, bytes;
   while ((bytes = encode(m, every)) > room && strut_rows_taken(&m->rows[TIME]) > 2) {
     size_t more = 2;
@@ -203,13 +356,13 @@ static void add_motion(strut_buffer *buffer, const motion *m) {
 void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
                            strut_page_frames *frames) {
   motion m = {.page = page};
-  if (page->motion && page->motion->position && page->motion->frames > 0) take_rows(&m);
+  if (page->motion && page->motion->position && page->motion->frames > 0) find_rows(&m);
   if (m.frames == 0) {
     strut_buffer_add(buffer, "null");
     return;
   }
   choose_quanta(&m);
-  if (fit(&m, room))
+  if (choose_frames(&m, room))
     add_motion(buffer, &m);
   else
     buffer->failed = true;

@@ -14,6 +14,35 @@ const char *strut_outcome_name(strut_outcome fate) {
   return names[fate];
 }
 
+/* Twice the area of a, b, c: positive where they turn left. */
+static double turn(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static bool members_cross(const strut_model *model, const double *q, int32_t i, int32_t j) {
+  const strut_member_table *t = &model->members;
+  if (t->from[i] == t->from[j] || t->from[i] == t->to[j] || t->to[i] == t->from[j] ||
+      t->to[i] == t->to[j])
+    return false;
+  const double *a = q + t->from[i], *b = q + t->to[i], *c = q + t->from[j], *d = q + t->to[j];
+  double least = 1e-8 * model->size * model->size;
+  double c_side = turn(a, b, c), d_side = turn(a, b, d);
+  double a_side = turn(c, d, a), b_side = turn(c, d, b);
+  bool apart = fmin(fabs(c_side), fabs(d_side)) > least && fmin(fabs(a_side), fabs(b_side)) > least;
+  return apart && (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
+}
+
+strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double *q) {
+  const double least = 1e-4 * model->size;
+  strut_shape_flaws flaws = {0};
+  for (int32_t i = 0; i < model->node_count && !flaws.collapsed; i++)
+    for (int32_t j = 0; j < i && !flaws.collapsed; j++)
+      flaws.collapsed = hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]) < least;
+  for (int32_t i = 0; i < model->members.count; i++)
+    for (int32_t j = 0; j < i; j++) flaws.crossings += members_cross(model, q, i, j);
+  return flaws;
+}
+
 static void add_names(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                       const int32_t *node, size_t count) {
   struct cJSON *names = strut_json_array(json, to, key);
@@ -85,21 +114,25 @@ static void add_down(strut_json *json, struct cJSON *to, const strut_equilibria 
 }
 
 static void add_equilibrium(strut_json *json, struct cJSON *to, const strut_equilibria *all,
-                            const strut_scene *scene, const strut_equilibrium *e) {
+                            const strut_model *model, const strut_equilibrium *e) {
+  const strut_scene *scene = model->scene;
   const strut_critical_point *p = &e->point;
   strut_json_text(json, to, "name", e->name);
   strut_json_text(json, to, "label", strut_stability_name(p->label));
   strut_json_number(json, to, "energy", e->energy);
   strut_json_number(json, to, "potential", p->potential);
   add_supports(json, to, scene, e);
-  strut_json_text(json, to, "fate", strut_outcome_name(e->fate));
+  strut_json_text(json, to, "outcome", strut_outcome_name(e->fate));
   strut_json_text(json, to, "verdict", e->verdict);
   strut_json_text(json, to, "tips_over",
                   e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL);
   strut_json_text(json, to, "ends_as", e->ends_as >= 0 ? all->list[e->ends_as].name : NULL);
   strut_json_integer(json, to, "shape", p->shape);
-  strut_json_integer(json, to, "placements", p->placements);
+  strut_json_integer(json, to, "congruent_copies", p->placements);
   strut_json_integer(json, to, "found", p->found);
+  strut_shape_flaws flaws = strut_find_shape_flaws(model, p->q);
+  strut_json_bool(json, to, "collapsed", flaws.collapsed);
+  strut_json_integer(json, to, "crossings", flaws.crossings);
   add_nodes(json, to, scene, p->q);
   add_forces(json, to, scene, e);
   add_below(json, to, scene, e);
@@ -136,10 +169,10 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_integer(&json, json.root, "seed", (int64_t)all->seed);
   strut_json_integer(&json, json.root, "starts", all->starts);
   struct cJSON *missed = strut_json_object(&json, json.root, "missed");
-  strut_json_number(&json, missed, "chance", all->missed);
-  strut_json_number(&json, missed, "chance_below", all->missed_below);
-  strut_json_integer(&json, missed, "unmet", all->unmet);
-  strut_json_number(&json, missed, "bound", all->missed_one);
+  strut_json_number(&json, missed, "probability", all->missed);
+  strut_json_number(&json, missed, "probability_bound", all->missed_below);
+  strut_json_integer(&json, missed, "unreached", all->unmet);
+  strut_json_number(&json, missed, "smallest_basin", all->missed_one);
   strut_json_bool(&json, missed, "cut_short", all->cut_short);
   strut_json_settle(&json, json.root, &all->settle);
   if (all->settle.evaluations > 0)
@@ -148,7 +181,7 @@ char *strut_equilibria_json(const strut_equilibria *all, const strut_model *mode
   strut_json_text(&json, json.root, "remark", all->remark[0] ? all->remark : NULL);
   struct cJSON *list = strut_json_array(&json, json.root, "equilibria");
   for (size_t i = 0; i < all->count; i++)
-    add_equilibrium(&json, strut_json_object(&json, list, NULL), all, scene, &all->list[i]);
+    add_equilibrium(&json, strut_json_object(&json, list, NULL), all, model, &all->list[i]);
   add_barriers(&json, all);
   return strut_json_end(&json);
 }

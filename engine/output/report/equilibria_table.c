@@ -10,11 +10,21 @@
 #include "engine/output/quantity_text.h"
 #include "engine/output/report/equilibria_report.h"
 
-enum { MOST_ROWS = 80, MOST_SHAPES = 6, MOST_SADDLES = 24, MOST_NODES = 12, NAMES = 64 };
+enum { MOST_ROWS = 80, MOST_BARRIERS = 24, MOST_NODES = 12, NAMES = 64, FLAWS = 11 };
 
-static void list_names(const strut_scene *scene, const int32_t *node, size_t count,
-                       char text[NAMES]) {
-  size_t used = 0;
+/* Rows of one table: those of one kind. */
+typedef enum section { STANDING, HELD, UNSTABLE } section;
+
+static section section_of(const strut_equilibrium *e) {
+  if (e->fate == STRUT_OUTCOME_STANDS) return STANDING;
+  return e->fate == STRUT_OUTCOME_UNSTABLE ? UNSTABLE : HELD;
+}
+
+static void list_names(const strut_scene *scene, const strut_equilibrium *e, char text[NAMES]) {
+  const int32_t *node = e->contacts;
+  size_t count = (size_t)e->contact_count, used = 0;
+  if (e->supports && e->fate != STRUT_OUTCOME_STANDS)
+    node = e->supports->node, count = e->supports->count;
   snprintf(text, NAMES, "-");
   for (size_t i = 0; i < count && used < NAMES; i++) {
     int n = snprintf(text + used, NAMES - used, "%s%s", i ? "," : "", scene->nodes[node[i]].name);
@@ -23,67 +33,77 @@ static void list_names(const strut_scene *scene, const int32_t *node, size_t cou
   }
 }
 
-static void add_row(strut_buffer *table, const strut_scene *scene, const strut_equilibrium *e) {
-  char names[NAMES];
-  list_names(scene, e->supports ? e->supports->node : NULL, e->supports ? e->supports->count : 0,
-             names);
+/* "collapsed", "2 crossings" or "-". */
+static void describe_flaws(strut_shape_flaws flaws, char text[NAMES]) {
+  if (flaws.collapsed)
+    snprintf(text, NAMES, "collapsed");
+  else if (flaws.crossings)
+    snprintf(text, NAMES, "%" PRId32 " crossing%s", flaws.crossings,
+             flaws.crossings == 1 ? "" : "s");
+  else
+    snprintf(text, NAMES, "-");
+}
+
+/* Where a saddle leads down to, else what becomes of the equilibrium; nothing to say of standing. */
+static void add_end(strut_buffer *table, const strut_equilibria *all, const strut_equilibrium *e) {
+  const int32_t *down = e->point.down;
+  if (e->fate == STRUT_OUTCOME_STANDS) return;
+  if (e->point.negative == 1 && down[0] >= 0 && down[1] >= 0)
+    strut_buffer_add(table, "  between %s and %s", all->list[down[0]].name,
+                     all->list[down[1]].name);
+  else
+    strut_buffer_add(table, "  %s", e->verdict);
+}
+
+static void add_row(strut_buffer *table, const strut_equilibria *all, const strut_model *model,
+                    const strut_equilibrium *e) {
+  char names[NAMES], flaws[NAMES];
+  list_names(model->scene, e, names);
+  describe_flaws(strut_find_shape_flaws(model, e->point.q), flaws);
   int32_t first = e->point.label == STRUT_STABLE ? e->point.zero : 0; /* free motions apart */
   double lowest = first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
-  strut_buffer_add(table, "  %-12s %-10s %-8s %14s %13s %7" PRId64 "  %s\n", e->name, names,
+  strut_buffer_add(table, "  %-18s %-12s %-8s %14s %13s %7" PRId64 "  %-*s", e->name, names,
                    strut_stability_name(e->point.label), strut_quantity_of(e->energy, 8, "J").text,
-                   strut_quantity_of(lowest, 5, "N/m").text, e->point.found, e->verdict);
+                   strut_quantity_of(lowest, 5, "N/m").text, e->point.found,
+                   e->fate == STRUT_OUTCOME_STANDS ? 0 : FLAWS, flaws);
+  add_end(table, all, e);
+  strut_buffer_add(table, "\n");
 }
 
-static void add_list(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
-  size_t shown = 0, left = 0, unstable = 0;
-  if (all->count == 0) return;
-  strut_buffer_add(table, "\n  %-12s %-10s %-8s %14s %13s %7s  %s\n", "equilibrium", "held",
-                   "label", "energy", "lowest", "found", "what becomes of it");
+static void add_section(strut_buffer *table, const strut_equilibria *all, const strut_model *model,
+                        section wanted, const char *title, size_t most) {
+  size_t count = 0;
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
-    if (e->fate == STRUT_OUTCOME_UNSTABLE) {
-      unstable++;
-    } else if (shown < MOST_ROWS) {
-      add_row(table, scene, e);
-      shown++;
-    } else {
-      left++;
-    }
+    if (section_of(e) != wanted || count++ >= most) continue;
+    if (count == 1)
+      strut_buffer_add(table, "\n  %-18s %-12s %-8s %14s %13s %7s  %-*s%s\n", title,
+                       wanted == HELD ? "held" : "touching", "label", "energy", "stiffness",
+                       "found", wanted == STANDING ? 0 : FLAWS, "shape",
+                       wanted == STANDING ? "" : "  outcome");
+    add_row(table, all, model, e);
   }
-  if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
-  if (unstable)
-    strut_buffer_add(table, "  and %zu unstable ones, saddles and maxima; --json lists all\n",
-                     unstable);
+  if (count > most)
+    strut_buffer_add(table, "  ... and %zu more; --all lists every row\n", count - most);
 }
 
-/* Saddles with one way down on either side; the real ground's, which are few and matter, first. */
-static void add_saddles(strut_buffer *table, const strut_equilibria *all,
-                        const strut_scene *scene) {
-  size_t shown = 0, left = 0;
-  for (int held = 0; held < 2; held++)
-    for (size_t i = 0; i < all->count; i++) {
-      const strut_equilibrium *e = &all->list[i];
-      const int32_t *down = e->point.down;
-      char names[NAMES];
-      if (e->point.negative != 1 || (e->supports != NULL) != held) continue;
-      if (down[0] < 0 || down[1] < 0) continue;
-      if (shown == MOST_SADDLES) {
-        left++;
-        continue;
-      }
-      if (shown++ == 0)
-        strut_buffer_add(table, "\n  %-12s %-10s %14s %13s  %s\n", "saddle", "held", "energy",
-                         "lowest", "between");
-      list_names(scene, held ? e->supports->node : NULL, held ? e->supports->count : 0, names);
-      strut_buffer_add(table, "  %-12s %-10s %14s %13s  %s, %s\n", e->name, names,
-                       strut_quantity_of(e->energy, 8, "J").text,
-                       strut_quantity_of(e->point.eigenvalues[0], 5, "N/m").text,
-                       all->list[down[0]].name, all->list[down[1]].name);
-    }
-  if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
+/* What the short table leaves out. */
+static void add_counts(strut_buffer *table, const strut_equilibria *all) {
+  size_t fates[STRUT_OUTCOME_NO_REST + 1] = {0}, any = 0;
+  static const char *const words[] = {
+      [STRUT_OUTCOME_TIPS] = "that tip over or move elsewhere once the contacts are released",
+      [STRUT_OUTCOME_BELOW_GROUND] = "with nodes below the ground",
+      [STRUT_OUTCOME_UNSTABLE] = "unstable (saddles and maxima)",
+      [STRUT_OUTCOME_FLOPPY] = "floppy",
+      [STRUT_OUTCOME_NO_REST] = "that come to no rest once released"};
+  for (size_t i = 0; i < all->count; i++) fates[all->list[i].fate]++;
+  for (int f = STRUT_OUTCOME_TIPS; f <= STRUT_OUTCOME_NO_REST; f++) {
+    if (!fates[f]) continue;
+    strut_buffer_add(table, any++ ? ",\n  " : "\n  not shown: ");
+    strut_buffer_add(table, "%zu %s", fates[f], words[f]);
+  }
+  if (any) strut_buffer_add(table, "; --all lists them\n");
 }
-
-static bool is_named(const strut_equilibrium *e) { return strncmp(e->name, "unnamed-", 8) != 0; }
 
 /* Where it rests, and what presses there. */
 static void add_shape(strut_buffer *table, const strut_scene *scene, const strut_equilibrium *e) {
@@ -102,46 +122,40 @@ static void add_shape(strut_buffer *table, const strut_scene *scene, const strut
     strut_buffer_add(table, "  ... and %zu more\n", scene->node_count - MOST_NODES);
 }
 
-/* Those that configurations name first. */
 static void add_shapes(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
-  int shown = 0;
-  for (int named = 1; named >= 0; named--)
-    for (size_t i = 0; i < all->count && shown < MOST_SHAPES; i++) {
-      const strut_equilibrium *e = &all->list[i];
-      if (e->fate != STRUT_OUTCOME_STANDS || is_named(e) != named) continue;
-      add_shape(table, scene, e);
-      shown++;
-    }
+  for (size_t i = 0; i < all->count; i++)
+    if (all->list[i].fate == STRUT_OUTCOME_STANDS) add_shape(table, scene, &all->list[i]);
 }
 
-static void add_barriers(strut_buffer *table, const strut_equilibria *all) {
+static void add_barriers(strut_buffer *table, const strut_equilibria *all, bool everything) {
   bool names = false;
-  size_t shown = 0, left = 0;
+  size_t shown = 0, left = 0, most = everything ? SIZE_MAX : MOST_BARRIERS;
   if (all->barrier_count == 0) return;
-  for (size_t i = 0; i < all->count; i++) names = names || is_named(&all->list[i]);
-  strut_buffer_add(table, "\n  %-12s %-12s %14s %14s  %s\n", "from", "to", "barrier",
-                   "straight there", "over");
+  for (size_t i = 0; i < all->count; i++) names = names || all->list[i].configured;
+  strut_buffer_add(table, "\n  %-18s %-18s %14s %14s  %s\n", "from", "to", "barrier", "direct",
+                   "over");
   for (size_t i = 0; i < all->barrier_count; i++) {
     const strut_barrier *b = &all->barriers[i];
-    bool both = is_named(&all->list[b->from]) && is_named(&all->list[b->to]);
-    if ((names && !both) || shown == MOST_ROWS) {
+    bool both = all->list[b->from].configured && all->list[b->to].configured;
+    if ((names && !both && !everything) || shown == most) {
       left++;
       continue;
     }
     shown++;
-    strut_buffer_add(table, "  %-12s %-12s %14s %14s  %s", all->list[b->from].name,
+    strut_buffer_add(table, "  %-18s %-18s %14s %14s  %s", all->list[b->from].name,
                      all->list[b->to].name, strut_quantity_of(b->height, 6, "J").text,
                      isnan(b->direct) ? "-" : strut_quantity_of(b->direct, 6, "J").text,
                      b->saddle >= 0 ? all->list[b->saddle].name : "-");
     for (int32_t k = 0; k < b->via_count; k++)
-      strut_buffer_add(table, "%s%s", k ? ", " : ", by way of ",
+      strut_buffer_add(table, "%s%s", k ? ", " : ", via ",
                        b->via[k] >= 0 ? all->list[b->via[k]].name : "-");
     strut_buffer_add(table, "\n");
   }
-  if (left) strut_buffer_add(table, "  ... and %zu more; --json lists all\n", left);
+  if (left) strut_buffer_add(table, "  ... and %zu more; --all lists them\n", left);
 }
 
-char *strut_equilibria_table(const strut_equilibria *all, const strut_model *model) {
+char *strut_equilibria_table(const strut_equilibria *all, const strut_model *model,
+                             bool everything) {
   const strut_scene *scene = model->scene;
   strut_buffer table = {0};
   strut_c_locale locale = strut_c_locale_enter();
@@ -150,33 +164,40 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
   if (all->count)
     strut_buffer_add(
         &table,
-        "  chance that one more start finds a new stable one: about %.2g, below %.2g; a "
-        "stable\n  one never met would have less than %.2g of the starts (95 %%)\n",
+        "  probability that one more start finds a new stable one: about %.2g, at most "
+        "%.2g (95 %%);\n  a stable one that was missed attracts less than %.2g of the "
+        "starts (95 %%)\n",
         all->missed, all->missed_below, all->missed_one);
   if (all->unmet)
     strut_buffer_add(&table,
                      "  %" PRId64
-                     " stable %s met by no random start but found from others: small "
-                     "basins, of which\n  there may be more than starts can tell\n",
+                     " stable %s reached by no random start, only from other shapes: more basins "
+                     "this small\n  may be missing\n",
                      all->unmet, all->unmet == 1 ? "one was" : "ones were");
   if (all->cut_short)
     strut_buffer_add(&table,
-                     "  cut short: for its size it would take more starts and climbs; --starts N "
-                     "asks for more\n");
+                     "  cut short: a structure of this size needs more starts and climbs; --starts "
+                     "N asks for more\n");
   if (all->settle.evaluations > 0)
     strut_buffer_add(
         &table, "  the start settles in %s\n",
-        all->start >= 0 ? all->list[all->start].name : "an equilibrium that is not listed here");
+        all->start >= 0 ? all->list[all->start].name : "an equilibrium that is not in this list");
   if (all->start_trouble[0])
     strut_buffer_add(&table, "  the start does not settle: %s\n", all->start_trouble);
   char warning[300];
   if (strut_settle_warning(&all->settle, warning, sizeof warning))
     strut_buffer_add(&table, "  %s\n", warning);
   if (all->remark[0]) strut_buffer_add(&table, "  %s\n", all->remark);
-  add_list(&table, all, scene);
-  add_saddles(&table, all, scene);
-  add_shapes(&table, all, scene);
-  add_barriers(&table, all);
+  size_t most = everything ? SIZE_MAX : MOST_ROWS;
+  add_section(&table, all, model, STANDING, model->contacts.count ? "stands" : "at rest", most);
+  add_barriers(&table, all, everything);
+  if (everything) {
+    add_section(&table, all, model, HELD, "only while held", most);
+    add_section(&table, all, model, UNSTABLE, "unstable", most);
+    add_shapes(&table, all, scene);
+  } else {
+    add_counts(&table, all);
+  }
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }

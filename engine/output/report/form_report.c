@@ -18,26 +18,24 @@ static void add_head(strut_buffer *table, const strut_form *form, const strut_se
   const strut_scene *scene = &setup->scene;
   strut_buffer_add(table, "%s%sform by %s\n", scene->name, *scene->name ? ": " : "",
                    strut_form_source_name(form->from));
-  strut_buffer_add(table, "  nodes moved       up to %s from where they were drawn\n",
+  strut_buffer_add(table, "  displacement      at most %s from the drawn positions\n",
                    in(form->moved, "m").text);
   if (form->from == STRUT_FORM_DENSITIES)
-    strut_buffer_add(table, "  densities changed by %.3g of the largest one\n",
+    strut_buffer_add(table, "  force densities   changed by %.3g of the largest\n",
                      form->density_change);
   if (form->from == STRUT_FORM_PRESTRESS)
-    strut_buffer_add(table, "  cables            pull with %s at least\n",
-                     in(form->least_tension, "N").text);
-  strut_buffer_add(table, "  forces left       %s at the start\n", in(form->residual, "N").text);
+    strut_buffer_add(table, "  cable tension     at least %s\n", in(form->least_tension, "N").text);
+  strut_buffer_add(table, "  residual force    %s at the start\n", in(form->residual, "N").text);
   if (form->run_added)
-    strut_buffer_add(table, "  run added         %s in steps of %s\n",
+    strut_buffer_add(table, "  run added         %s with a step of %s\n",
                      in(setup->experiment.duration, "s").text,
                      in(setup->experiment.step, "s").text);
-  if (form->massless)
-    strut_buffer_add(table, "  no run            some node that can move has no mass\n");
+  if (form->massless) strut_buffer_add(table, "  no run            a free node has no mass\n");
   if (form->driven)
-    strut_buffer_add(table, "  drives            are at rest here; running the model moves it\n");
+    strut_buffer_add(table, "  drives            at rest here; running the model moves them\n");
 }
 
-/* A member as the scene starts. */
+/* A member at the start. */
 typedef struct pose {
   strut_rest rest;
   double length, force, density;

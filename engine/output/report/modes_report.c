@@ -6,14 +6,13 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
+#include "engine/base/vec.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
 
 enum { MOST_ROWS = 40, DIGITS = 6 };
-
-static const double TURN = 6.283185307179586476925;
 
 static const char *name_of(const strut_model *model, int32_t node) {
   return model->scene->nodes[node].name;
@@ -30,11 +29,11 @@ static void add_nodes(strut_json *json, struct cJSON *row, const char *key,
 static void add_mode(strut_json *json, struct cJSON *list, const strut_model *model,
                      const strut_mode *mode) {
   struct cJSON *row = strut_json_object(json, list, NULL);
-  strut_json_number(json, row, "frequency", mode->angular_frequency / TURN);
+  strut_json_number(json, row, "frequency", mode->angular_frequency / STRUT_TAU);
   strut_json_number(json, row, "angular_frequency", mode->angular_frequency);
   strut_json_number(json, row, "eigenvalue", mode->eigenvalue);
   strut_json_number(json, row, "damping_ratio", mode->damping_ratio);
-  strut_json_number(json, row, "damped_frequency", mode->damped_frequency / TURN);
+  strut_json_number(json, row, "damped_frequency", mode->damped_frequency / STRUT_TAU);
   strut_json_number(json, row, "decay_rate", mode->decay_rate);
   strut_json_number(json, row, "residual", mode->residual);
   strut_json_number(json, row, "error", mode->error);
@@ -70,22 +69,22 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
   for (int32_t i = 0; i < modes->closed_count; i++)
     strut_buffer_add(table, "%s%s", i ? ", " : ", on ", name_of(model, modes->closed[i]));
   strut_buffer_add(
-      table, "\n  %d coordinates, %s; the stiffnesses span %.2g\n", (int)modes->coordinates,
+      table, "\n  %d coordinates, %s; condition number %.2g\n", (int)modes->coordinates,
       modes->dense ? "all modes computed" : "the lowest modes computed", modes->condition);
   if (!modes->at_rest)
     strut_buffer_add(table,
-                     "  this shape is no equilibrium: it will not stay to show these modes\n");
+                     "  this shape is not an equilibrium: the structure moves away from it\n");
   char warning[300];
   if (strut_settle_warning(&modes->settle, warning, sizeof warning))
     strut_buffer_add(table, "  %s\n", warning);
   if (!modes->damped_exactly)
     strut_buffer_add(table,
-                     "  damping by the quotient of each mode, coupling between modes left out\n");
+                     "  damping ratios by modal quotient, coupling between modes neglected\n");
 }
 
 static void add_row(strut_buffer *table, size_t i, const strut_mode *mode) {
   char frequency[STRUT_QUANTITY_TEXT], ratio[STRUT_QUANTITY_TEXT] = "";
-  strut_quantity_text(mode->angular_frequency / TURN, DIGITS, "Hz", frequency);
+  strut_quantity_text(mode->angular_frequency / STRUT_TAU, DIGITS, "Hz", frequency);
   if (isfinite(mode->damping_ratio)) snprintf(ratio, sizeof ratio, "%.4g", mode->damping_ratio);
   strut_buffer_add(table, "  %4zu %14s %10s %8.1e  %-10s %s\n", i + 1, frequency, ratio,
                    mode->error, strut_mode_kind_name(mode->kind), mode->description);
@@ -118,9 +117,9 @@ char *strut_modes_csv(const strut_modes *modes) {
   for (size_t i = 0; i < modes->count; i++) {
     const strut_mode *mode = &modes->list[i];
     strut_buffer_add(&csv, "%zu", i + 1);
-    add_number(&csv, mode->angular_frequency / TURN);
+    add_number(&csv, mode->angular_frequency / STRUT_TAU);
     add_number(&csv, mode->damping_ratio);
-    add_number(&csv, mode->damped_frequency / TURN);
+    add_number(&csv, mode->damped_frequency / STRUT_TAU);
     add_number(&csv, mode->decay_rate);
     add_number(&csv, mode->error);
     strut_buffer_add(&csv, ",%s,\"%s\"\n", strut_mode_kind_name(mode->kind), mode->description);

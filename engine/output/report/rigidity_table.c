@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rigidity of a shape as a table of a screenful. */
+/* The rigidity of a shape as a table that fits a screen. */
 #include <math.h>
 
 #include "engine/base/c_locale.h"
@@ -22,12 +22,13 @@ static void add_rank(strut_buffer *table, const strut_rigidity *r) {
   if (s->dense && s->dropped > 0)
     strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
   else
-    strut_buffer_add(table, "%s\n", s->dense ? "none dropped but zeros" : "by sparse QR");
+    strut_buffer_add(table, "%s\n", s->dense ? "the rest are zero" : "by sparse QR");
   if (s->weak > 0)
-    strut_buffer_add(table,
-                     "                     %d of them below a millionth of the largest: nodes\n"
-                     "                     moved by as little may change s and f by that\n",
-                     s->weak);
+    strut_buffer_add(
+        table,
+        "                     %d of them below a millionth of the largest: as small a\n"
+        "                     displacement of nodes may change s and f\n",
+        s->weak);
 }
 
 static void add_counts(strut_buffer *table, const strut_rigidity *r) {
@@ -52,12 +53,13 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
   if (r->bars_at_node > 0)
     strut_buffer_add(
         table, "  class              %d: %s\n", r->bars_at_node,
-        r->bars_at_node == 1 ? "no two bars meet" : "bars that meet at a node, at most");
+        r->bars_at_node == 1 ? "no two bars meet" : "at most so many bars meet at a node");
   strut_buffer_add(table, "  super stable       %s\n", strut_super_stability_words(r, words));
   if (r->has_cables && r->states.force && r->states.count > 0)
     strut_buffer_add(table, "  cables             %s\n",
-                     r->cables_can_pull ? "some self-stress pulls all that any state loads"
-                                        : "no self-stress pulls all that a state loads");
+                     r->cables_can_pull
+                         ? "one self-stress state tensions every cable that any state loads"
+                         : "no self-stress state tensions every cable that some state loads");
   strut_buffer_add(table, "  kind               %s", t->label);
   if (t->judged)
     strut_buffer_add(table, " (%s%s%s%s%s)", t->self_stress ? "S" : "", t->cables ? "C" : "",
@@ -66,7 +68,7 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
   strut_buffer_add(table, "\n  equilibrium        %s: net force on a free coordinate up to %s\n",
                    r->equilibrium ? "yes" : "no", in(r->residual, "N").text);
   if (r->without_length)
-    strut_buffer_add(table, "  without length     %d members: they have no direction here\n",
+    strut_buffer_add(table, "  without length     %d members, which have no direction here\n",
                      r->without_length);
 }
 
@@ -90,7 +92,7 @@ static void add_members(strut_buffer *table, const strut_rigidity *r, const stru
   if (members > MOST_ROWS)
     strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
   if (r->states.count > states)
-    strut_buffer_add(table, "  %d more states of self-stress%s\n", r->states.count - states,
+    strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
                      r->states.force ? "; --json lists all" : ": too many to list");
 }
 
@@ -98,7 +100,7 @@ static void add_modes(strut_buffer *table, const strut_mechanisms *m) {
   char words[STRUT_RIGIDITY_WORDS];
   if (m->count == 0) return;
   if (!m->list) {
-    strut_buffer_add(table, "\n  mechanisms are too many to list\n");
+    strut_buffer_add(table, "\n  too many mechanisms to list\n");
     return;
   }
   strut_buffer_add(table, "\n  mechanism\n");

@@ -15,8 +15,8 @@ const char *strut_member_kind_words(strut_member_kind kind) {
 
 const char *strut_stress_source_words(strut_stress_source source) {
   static const char *const words[] = {
-      "no state of self-stress", "the state of self-stress", "the forces in the shape",
-      "a combination of states that pulls all cables", "the first state of self-stress"};
+      "no self-stress state", "the self-stress state", "the member forces",
+      "a combination of states that tensions all cables", "the first self-stress state"};
   return words[source];
 }
 
@@ -26,21 +26,23 @@ const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mecha
   bool followed = isfinite(motion->moved) && motion->kind == STRUT_MOTION_FINITE;
   words[0] = '\0';
   if (motion->kind == STRUT_MOTION_RIGID_BODY) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "the supports leave it free");
+    snprintf(words, STRUT_RIGIDITY_WORDS, "not prevented by the supports");
   } else if (motion->kind == STRUT_MOTION_INFINITESIMAL && all->by_forces) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "the forces in the shape stiffen it: %s",
+    snprintf(words, STRUT_RIGIDITY_WORDS, "stiffened by the member forces: %s",
              strut_quantity_text(motion->stiffness, DIGITS, "N/m", stiff));
   } else if (motion->kind == STRUT_MOTION_INFINITESIMAL) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "a state of self-stress stiffens it%s",
-             all->stiffener_pulls ? "" : ", but none is known that does so and presses no cable");
+    snprintf(
+        words, STRUT_RIGIDITY_WORDS, "stiffened by a self-stress state%s",
+        all->stiffener_pulls ? "" : ", but none is known that does so without compressing a cable");
   } else if (followed) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "lengths stay within %.0e of themselves after %s",
+    snprintf(words, STRUT_RIGIDITY_WORDS, "member lengths constant within %.0e over %s",
              motion->strain, strut_quantity_text(motion->moved, DIGITS, "m", moved));
   } else if (motion->kind == STRUT_MOTION_FINITE) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "without self-stress no length depends on the others");
+    snprintf(words, STRUT_RIGIDITY_WORDS,
+             "finite: without self-stress the member lengths are independent");
   } else {
     snprintf(words, STRUT_RIGIDITY_WORDS,
-             "no self-stress found that stiffens it, nor could it be followed");
+             "undecided: no stiffening self-stress found, and it could not be followed");
   }
   return words;
 }
@@ -53,8 +55,8 @@ static const char *why_not(const strut_rigidity *r) {
     return "the stress matrix vanishes on more than affine motions";
   if (!r->stress.supported && r->stress.nullity < 3) return "the forces do not balance";
   if (!r->stress.supported && r->stress.on_conic)
-    return "an affine motion keeps all lengths: members have but two directions";
-  return "a cable is pressed";
+    return "an affine motion keeps all lengths: the members have only two directions";
+  return "a cable is in compression";
 }
 
 const char *strut_super_stability_words(const strut_rigidity *r, char words[STRUT_RIGIDITY_WORDS]) {

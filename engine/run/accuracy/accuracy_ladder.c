@@ -177,6 +177,9 @@ static const double SAME_MOTION = 0.03;
 /* Of what is wanted, what may be expected: of runs by two methods, of which one is coarse and nothing is known of
    how fast it converges; and of others. */
 static const double ENOUGH_OF_TWO = 0.2, ENOUGH = 0.3;
+/* The same of the first two runs by error control: their steps may still be the longest allowed, so that their
+   tolerances changed nothing, and no third shows how fast they approach the answer. */
+static const double ENOUGH_OF_FIRST_PAIR = 0.15;
 /* The same of a method that only has itself to be compared with. */
 static const double ENOUGH_ALONE = 0.05;
 /* Least runs by which a mean is known, and standard deviations within which it is said to be. */
@@ -184,7 +187,7 @@ enum { LEAST_MEANS = 5 };
 /* Part of what is wanted within which the means of motions that differ are believed. */
 static const double ENOUGH_OF_MEANS = 0.1;
 /* What is told over what is expected. */
-static const double MARGIN = 2.0;
+static const double MARGIN = 2.0, MARGIN_OF_FIRST_PAIR = 4.0;
 static const double DEVIATIONS = 4.0;
 
 /*
@@ -217,6 +220,7 @@ static double expect_of_means(const ladder *l) {
 /* Whether the latest run does, and how well. */
 static void judge(ladder *l) {
   double wanted = l->a->wanted, enough = l->runs == 2 ? ENOUGH_OF_TWO : ENOUGH;
+  if (l->runs == 3) enough = ENOUGH_OF_FIRST_PAIR;
   if (l->a->halving) enough = ENOUGH_ALONE;
   l->expected = expect_of_motion(l);
   l->same_motion = l->distance <= SAME_MOTION;
@@ -299,13 +303,17 @@ static void explain(const ladder *l, char *why, size_t size) {
              how, apart, l->spent ? "; a larger budget may help" : "");
 }
 
+static double margin_of(const ladder *l) {
+  return l->runs == 3 && !l->a->halving ? MARGIN_OF_FIRST_PAIR : MARGIN;
+}
+
 /* The error to expect of each quantity, and whether it is within what is wanted of that. */
 static void tell_quantities(const ladder *l) {
   strut_summary *s = l->a->summary;
   double factor = l->apart > 0.0 && isfinite(l->expected) ? l->expected / l->apart : 1.0;
   for (size_t i = 0; i < s->measured_count; i++) {
     strut_measured *m = &s->measured[i];
-    m->expected = l->runs > 1 ? MARGIN * factor * l->difference[i] : (double)NAN;
+    m->expected = l->runs > 1 ? margin_of(l) * factor * l->difference[i] : (double)NAN;
     m->kept = l->kept || (l->same_motion && m->expected <= allowed_of(l, m, i));
   }
 }
@@ -313,7 +321,7 @@ static void tell_quantities(const ladder *l) {
 static void tell(ladder *l) {
   strut_accuracy *a = l->a;
   strut_summary *s = a->summary;
-  double expected = l->same_motion ? MARGIN * l->expected : l->expected;
+  double expected = l->same_motion ? margin_of(l) * l->expected : l->expected;
   if (!isfinite(expected)) expected = (double)NAN; /* too few runs to tell */
   s->accuracy = (strut_accuracy_summary){.wanted = a->wanted,
                                          .expected = expected,
@@ -351,7 +359,7 @@ strut_status strut_accuracy_by_repetition(strut_accuracy *a) {
     if (!status && !l.spent && l.runs > 1) judge(&l);
   }
   /* a series of three runs or more that could go no further may do all the same */
-  if (!l.kept && l.same_motion && l.runs > 2) l.kept = MARGIN * l.expected <= a->wanted;
+  if (!l.kept && l.same_motion && l.runs > 2) l.kept = margin_of(&l) * l.expected <= a->wanted;
   if (!status) status = answer(&l);
   if (!status) tell(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);

@@ -3,9 +3,8 @@
 
 #include <math.h>
 
+#include "engine/base/vec.h"
 #include "engine/forces/forces.h"
-
-static const double TWO_PI = 6.283185307179586476925;
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
 static const double FINE = 1e-12, COARSE = 1e-10;
@@ -179,7 +178,7 @@ void strut_columns_evaluate(strut_columns *c, strut_state *state) {
   prepare(c, state);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0, last = c->value[i], now = value_of(c, state, c->column[i], &size);
-    if (is_angle(c->column[i].kind)) now += TWO_PI * round((last - now) / TWO_PI);
+    if (is_angle(c->column[i].kind)) now += STRUT_TAU * round((last - now) / STRUT_TAU);
     c->before[i] = last;
     c->value[i] = now;
     note_extremes(c, i, size < 0.0 ? fabs(now) : size);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/model/pose.h"
 #include "engine/run/measure/hermite.h"
 
 /* A mark this close to a step's end, in steps, counts as being there. */
@@ -103,9 +104,7 @@ static void count_contacts(const strut_model *model, const strut_state *state, s
   const strut_contact_table *c = &model->contacts;
   m->window_steps++;
   for (int32_t i = 0; i < c->count; i++) {
-    const double *q = state->q + c->at[i];
-    double up = q[1] - c->height;
-    double gap = c->normal[0] == 0.0 ? up : q[0] * c->normal[0] + up * c->normal[1];
+    double gap = strut_contact_gap(c, i, state->q);
     if (gap < 0.0) m->contact_steps[i]++;
     if (gap > m->max_height[i]) m->max_height[i] = gap;
   }

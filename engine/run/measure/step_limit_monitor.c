@@ -13,38 +13,32 @@ enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
 static const double GROWTH = 1.0, GROWTH_RK4 = 4.0, HOPELESS = 16.0;
 
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
-static void apply_members(const strut_model *model, const strut_state *state,
-                          strut_step_limit_monitor *g, const strut_monitored_set *w) {
-  const strut_member_table *t = &model->members;
-  const double *q = state->q, *x = w->motion;
-  double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
-  for (int32_t j = 0; j < t->count; j++) {
-    uint32_t a = t->from[j], b = t->to[j];
-    double dx = q[b] - q[a], dy = q[b + 1] - q[a + 1];
-    double length = sqrt(dx * dx + dy * dy), stretch = length - state->rest[j];
-    if (!(stretch > t->slack[j]) || !(length > 0.0)) continue;
-    double ux = dx / length, uy = dy / length, c = t->stiffness[j];
-    double mx = x[b] - x[a], my = x[b + 1] - x[a + 1], along = ux * mx + uy * my;
-    double across = hk * c * stretch / length;
-    double pull = (hk * c - across + hd * t->damping[j]) * along;
-    double fx = across * mx + pull * ux, fy = across * my + pull * uy;
-    g->image[a] -= fx, g->image[a + 1] -= fy;
-    g->image[b] += fx, g->image[b + 1] += fy;
-  }
+typedef struct product {
+  const strut_model *model;
+  const double *motion;
+  double *image, stiff, damp; /* factors of K and D */
+} product;
+
+static void apply_member(void *context, int32_t j, const strut_member_tangent *m) {
+  const product *p = context;
+  const strut_member_table *t = &p->model->members;
+  strut_vec2 u = m->pose.unit, motion = strut_member_span(t, j, p->motion);
+  if (!(m->pose.length > 0.0)) return;
+  double along = u.x * motion.x + u.y * motion.y, across = p->stiff * m->across;
+  double pull = (p->stiff * m->along - across + p->damp * t->damping[j]) * along;
+  double fx = across * motion.x + pull * u.x, fy = across * motion.y + pull * u.y;
+  double *a = p->image + t->from[j], *b = p->image + t->to[j];
+  a[0] -= fx, a[1] -= fy;
+  b[0] += fx, b[1] += fy;
 }
 
-static void apply_contacts(const strut_model *model, const strut_state *state,
-                           strut_step_limit_monitor *g, const strut_monitored_set *w) {
-  const strut_contact_table *c = &model->contacts;
-  double hk = g->step * g->step * w->stiff, hd = g->step * w->damp;
-  for (int32_t i = 0; i < c->count; i++) {
-    const double *q = state->q + c->at[i], *x = w->motion + c->at[i];
-    if (!(q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1] < 0.0)) continue;
-    double in = c->normal[0] * x[0] + c->normal[1] * x[1];
-    double push = (hk * c->entry[i].stiffness + hd * c->entry[i].damping) * in;
-    g->image[c->at[i]] += push * c->normal[0];
-    g->image[c->at[i] + 1] += push * c->normal[1];
-  }
+static void apply_contact(void *context, int32_t i, const strut_closed_contact *contact) {
+  const product *p = context;
+  const strut_contact_table *c = &p->model->contacts;
+  double push = (p->stiff * contact->stiffness + p->damp * c->entry[i].damping) *
+                strut_contact_along_normal(c, i, p->motion);
+  p->image[c->at[i]] += push * c->normal[0];
+  p->image[c->at[i] + 1] += push * c->normal[1];
 }
 
 /* So that no motion is left out for ever. */
@@ -63,16 +57,18 @@ static void stir(const strut_model *model, strut_step_limit_monitor *g, strut_mo
 static void iterate(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
                     strut_monitored_set *w) {
   int32_t n = 2 * model->node_count;
-  double product = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
+  double work = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
   memset(g->image, 0, (size_t)model->length * sizeof *g->image);
-  apply_members(model, state, g, w);
+  product p = {model, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
   /* where the ground's dampers are implicit, steps are refined while it is touched */
-  if (!g->method->implicit_damper) apply_contacts(model, state, g, w);
+  strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
+  strut_tangent_visit(model, state->q, state->rest, -HUGE_VAL, closed, &p, apply_member,
+                      apply_contact);
   for (int32_t i = 0; i < n; i++)
     if (model->fixed[i]) g->image[i] = 0.0;
   strut_mass_solve(model, g->image, g->divided, g->scratch);
   for (int32_t i = 0; i < n; i++) {
-    product += w->motion[i] * g->image[i];
+    work += w->motion[i] * g->image[i];
     square += g->divided[i] * g->image[i];
     largest = fmax(largest, fabs(g->divided[i]));
   }
@@ -83,7 +79,7 @@ static void iterate(const strut_model *model, const strut_state *state, strut_st
   }
   for (int32_t i = 0; i < n; i++) w->motion[i] = g->divided[i] / largest;
   w->weight = square / largest / largest;
-  w->strength = weight > 0.0 ? product / weight : 0.0;
+  w->strength = weight > 0.0 ? work / weight : 0.0;
 }
 
 /*

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/model/pose.h"
+
 /* Accelerations are asked for at every so many looks. */
 enum { EVERY = 4, LEAST = 4 };
 /*
@@ -52,9 +54,7 @@ static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
 static bool is_stuck(const strut_model *model, const strut_state *state, int32_t i,
                      double *normal) {
   const strut_contact_table *c = &model->contacts;
-  const double *q = state->q + c->at[i], *v = state->v + c->at[i];
-  double gap = q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1];
-  double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
+  double gap = strut_contact_gap(c, i, state->q), slip = strut_contact_slip(c, i, state->v);
   *normal = -gap * c->entry[i].stiffness;
   return gap < 0.0 && fabs(slip) < c->entry[i].stick_velocity;
 }
@@ -63,8 +63,8 @@ static void look_at_tie(const strut_model *model, const strut_state *state, doub
                         strut_band_tie *tie) {
   const strut_member_table *t = &model->members;
   const strut_contact_entry *e = model->contacts.entry;
-  const double *a = state->q + t->from[tie->member], *b = state->q + t->to[tie->member];
-  double length = hypot(b[0] - a[0], b[1] - a[1]), change = length - tie->length, normal[2];
+  double length = strut_member_length(t, tie->member, state->q), change = length - tie->length,
+         normal[2];
   double creep = 0.0, holds = HUGE_VAL;
   bool held = true;
   for (int k = 0; k < 2; k++) {
@@ -120,13 +120,11 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   bool ask = band->looks++ % EVERY == 0 && state->evaluations > 0;
   if (ask) strut_mass_solve(model, state->force, band->a, band->scratch);
   for (int32_t i = 0; i < c->count; i++) {
-    const double *q = state->q + c->at[i], *v = state->v + c->at[i], *a = band->a + c->at[i];
     strut_stick_band_monitor *w = &band->watch[i];
-    if (!(q[0] * c->normal[0] + (q[1] - c->height) * c->normal[1] < 0.0)) continue;
-    double slip = v[0] * c->tangent[0] + v[1] * c->tangent[1] - c->belt_speed;
-    if (!ask || fabs(slip) < c->entry[i].stick_velocity) continue;
+    if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;
+    if (!ask || fabs(strut_contact_slip(c, i, state->v)) < c->entry[i].stick_velocity) continue;
     w->sliding++;
-    w->change += band->step * fabs(a[0] * c->tangent[0] + a[1] * c->tangent[1]);
+    w->change += band->step * fabs(strut_contact_along_ground(c, i, band->a));
   }
 }
 

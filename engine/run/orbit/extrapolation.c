@@ -3,11 +3,12 @@
 
 #include <math.h>
 
+#include "engine/base/vec.h"
+
 enum { WINDOW = STRUT_EXTRAPOLATION_WINDOW };
 
 /* Weights beyond this lose more digits than they win. */
 static const double MOST_WEIGHT = 100.0;
-static const double TURN = 6.28318530717958647692;
 
 /* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
 static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
@@ -31,7 +32,7 @@ bool strut_extrapolation_weights(const strut_period_map *map, double *const *d, 
                                  double *weight) {
   int32_t length = map->model->length, nodes = 2 * map->model->node_count;
   double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
-  double in = map->model->size, speed = in * TURN / map->period;
+  double in = map->model->size, speed = in * STRUT_TAU / map->period;
   for (int32_t i = 0; i < count; i++)
     for (int32_t j = 0; j <= i; j++) {
       double product = 0.0;

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double TURN = 6.28318530717958647692;
+#include "engine/base/vec.h"
+
 /* Members and nodes times steps between two looks at the interrupt flag. */
 static const int64_t STRETCH = 200000;
 
@@ -100,7 +101,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
 
 double strut_period_map_size(const strut_period_map *map, const double *d) {
   const strut_model *model = map->model;
-  double speed = model->size * TURN / map->period, most = 0.0;
+  double speed = model->size * STRUT_TAU / map->period, most = 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
     most = fmax(most, fabs(d[i]) / model->size);
     most = fmax(most, fabs(d[model->length + i]) / speed);

@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double TURN = 6.28318530717958647692;
+#include "engine/base/vec.h"
+
 static const double DIFFERENCE = 1e-6; /* of the scaled unknowns */
 static const double EXACT = 1e-13;     /* a residual of that size is rounding */
 static const double GOOD = 1e-8;       /* above this the orbit is not called found */
@@ -47,7 +48,8 @@ static void choose_unknowns(shot *s) {
   for (size_t i = 0; i < 2 * nodes; i++) {
     if (m->fixed[i]) continue;
     s->place[k] = i, s->unit[k] = m->size;
-    s->place[half + k] = (size_t)m->length + i, s->unit[half + k] = m->size * TURN / s->map->period;
+    s->place[half + k] = (size_t)m->length + i,
+                    s->unit[half + k] = m->size * STRUT_TAU / s->map->period;
     if (s->map->travels) s->along[k] = m->contacts.tangent[i % 2] / sqrt((double)nodes);
     k++;
   }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 /* Repetitions looked for, in drive periods; the first that holds is reported. */
 static const int32_t repeats[STRUT_REPEATS] = {1, 2, 3, 4, 6, 8};
 /* Velocities below this part of size times frequency are not told from standing still. */
@@ -19,8 +21,6 @@ static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
 /* As many factors alike are growth. */
 enum { GROWTH = 3 };
-
-static const double TURN = 6.28318530717958647692;
 
 /* When the last signal has begun, ended or run through: before that nothing can be called steady. */
 static double last_change(const strut_scene *scene) {
@@ -94,7 +94,7 @@ static double travel(const strut_steady_detector *w, const double *from, const d
 static double distance(const strut_steady_detector *w, const double *a, const double *b) {
   const double *t = w->model->contacts.tangent;
   double along = travel(w, a, b), shift[2] = {along * t[0], along * t[1]};
-  double size = w->model->size, speed = size * TURN / w->period, most = 0.0;
+  double size = w->model->size, speed = size * STRUT_TAU / w->period, most = 0.0;
   int32_t length = w->model->length;
   for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
     most = fmax(most, fabs(b[i] - a[i] - (w->travels ? shift[i % 2] : 0.0)) / size);
@@ -126,7 +126,7 @@ static double step_of(const strut_steady_detector *w, const double *a, const dou
                       double along, int32_t i, double *speed) {
   int32_t length = w->model->length;
   double shift = w->travels ? along * w->model->contacts.tangent[i % 2] : 0.0;
-  *speed = (a[length + i] - b[length + i]) * w->period / (w->model->size * TURN);
+  *speed = (a[length + i] - b[length + i]) * w->period / (w->model->size * STRUT_TAU);
   return (a[i] - b[i] - shift) / w->model->size;
 }
 

@@ -2,7 +2,6 @@
 #include "engine/statics/equilibria/barriers.h"
 
 #include <math.h>
-#include <string.h>
 
 /* The first that stands in each of the landscape's minima, or -1. */
 static void represent(const strut_equilibrium_search *h, int32_t *of_state) {
@@ -15,7 +14,7 @@ static void represent(const strut_equilibrium_search *h, int32_t *of_state) {
 }
 
 static bool is_named(const strut_equilibrium_search *h, int32_t find) {
-  return find >= 0 && strncmp(h->finds[find].e.name, "unnamed-", 8) != 0;
+  return find >= 0 && h->finds[find].e.configured;
 }
 
 static bool next_to_named(const strut_equilibrium_search *h, const int32_t *of_state, int32_t s) {

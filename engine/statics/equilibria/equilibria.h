@@ -23,7 +23,8 @@ typedef enum strut_outcome {
 
 /** One equilibrium: on held contacts (supports not NULL), or as the scene itself stands. */
 typedef struct strut_equilibrium {
-  const char *name;               /* a configuration's, or unnamed-1, ... unique in the list */
+  const char *name;               /* unique in the list; see strut_name_equilibria */
+  bool configured;                /* a configuration of the scene gave the name */
   const strut_node_set *supports; /* contact nodes held, or NULL */
   strut_critical_point point;     /* shape, label, eigenvalues, starts; `down` in the list */
   double energy;                  /* (13) [J] */
@@ -39,7 +40,7 @@ typedef struct strut_equilibrium {
   int32_t contact_count;
   int32_t *contacts; /* nodes that touch at the end; before it is followed: supports */
   double *normal;    /* (contact_count) [N] */
-  char verdict[160]; /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
+  char verdict[208]; /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
 } strut_equilibrium;
 
 /** The lowest way known between two stable equilibria on the real ground. */

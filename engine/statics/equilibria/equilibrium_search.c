@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
 #include "engine/statics/equilibria/naming.h"
 
 /* Depth and pull below these are rounding: in model sizes, in weights. */
@@ -44,10 +45,8 @@ static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *
 static void measure_members(const strut_model *model, const double *q, double *force) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
-    const double *a = q + t->from[j], *b = q + t->to[j];
-    double dx = b[0] - a[0], dy = b[1] - a[1];
-    double stretch = sqrt(dx * dx + dy * dy) - t->rest[j];
-    force[j] = stretch > t->slack[j] ? t->stiffness[j] * stretch : 0.0;
+    strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
+    force[j] = strut_member_elastic_force(t, j, &pose);
   }
 }
 
@@ -74,7 +73,7 @@ static void find_nodes_below(const strut_equilibrium_search *h, const uint8_t *h
   const strut_contact_table *c = &h->model->contacts;
   for (int32_t i = 0; i < c->count && h->on_ground; i++) {
     uint32_t at = c->at[i];
-    double gap = e->point.q[at] * c->normal[0] + (e->point.q[at + 1] - c->height) * c->normal[1];
+    double gap = strut_contact_gap(c, i, e->point.q);
     if (held && !held[at + 1] && gap < -DEEP * h->model->size) e->below[at / 2] = 1;
   }
 }
@@ -118,9 +117,7 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
   if (!e->contacts || !e->normal) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
   e->contact_count = 0;
   for (size_t i = 0; i < most; i++) {
-    uint32_t at = c->at[i];
-    double gap = q[at] * c->normal[0] + (q[at + 1] - c->height) * c->normal[1];
-    double normal = -c->entry[i].stiffness * gap;
+    double normal = -c->entry[i].stiffness * strut_contact_gap(c, (int32_t)i, q);
     if (!(normal > PULL * h->world->force_scale)) continue;
     e->contacts[e->contact_count] = c->entry[i].node;
     e->normal[e->contact_count++] = normal;

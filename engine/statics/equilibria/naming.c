@@ -3,7 +3,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "engine/base/memory.h"
 
 enum { MOST_LISTED = 4 };
 
@@ -153,6 +156,112 @@ static bool name_on_set(const strut_model *model, const strut_configuration *c, 
   }
 }
 
+/* ---- names by contacts and order of energy, for what no configuration names ---- */
+
+enum { KINDS = 3, MOST_IN_STEM = 6, STEM = 300 };
+static const char HELD[] = "held-";
+static const char *const kind_names[KINDS] = {"equilibrium", "saddle", "maximum"};
+
+/* Energies and shapes closer than this, relative, are equal but for rounding. */
+static const double SAME = 1e-7;
+
+typedef struct unnamed {
+  strut_equilibrium *e;
+  const char *stem; /* the name without its number */
+} unnamed;
+
+static int kind_of(const strut_equilibrium *e) {
+  if (e->point.label == STRUT_SADDLE) return 1;
+  return e->point.label == STRUT_MAXIMUM ? 2 : 0;
+}
+
+/* "n1-n4", "n1-n4-saddle", "held-n1-n4" (at rest only while held), "saddle" (touches nothing). */
+static const char *make_stem(const strut_scene *scene, const strut_equilibrium *e,
+                             strut_arena *arena) {
+  char text[STEM] = "";
+  size_t used = 0;
+  int shown = 0;
+  if (e->contact_count == 0) return kind_names[kind_of(e)];
+  bool held = e->supports && e->fate != STRUT_OUTCOME_STANDS;
+  if (held) used = (size_t)snprintf(text, sizeof text, "%s", HELD);
+  for (size_t i = 0; i < scene->node_count && used < sizeof text; i++) {
+    bool touches = false;
+    for (int32_t k = 0; k < e->contact_count; k++)
+      touches = touches || e->contacts[k] == (int32_t)i;
+    if (!touches || ++shown > MOST_IN_STEM) continue;
+    int n = snprintf(text + used, sizeof text - used, "%s%s", shown > 1 ? "-" : "",
+                     scene->nodes[i].name);
+    if (n > 0) used += (size_t)n;
+  }
+  if (shown > MOST_IN_STEM && used < sizeof text)
+    used += (size_t)snprintf(text + used, sizeof text - used, "+%d", shown - MOST_IN_STEM);
+  if (kind_of(e) > 0 && used < sizeof text)
+    snprintf(text + used, sizeof text - used, "-%s", kind_names[kind_of(e)]);
+  return strut_arena_format(arena, "%s", text);
+}
+
+/* The i-th number of a description of the shape that no rigid motion changes; mirroring does. */
+static double invariant(const strut_model *model, const double *q, int32_t i) {
+  int32_t node = i / 2, second = model->node_count > 1 ? 1 : 0;
+  double x = q[2 * node] - q[0], y = q[2 * node + 1] - q[1];
+  if (i % 2 == 0) return hypot(x, y) / model->size;
+  double dx = q[2 * second] - q[0], dy = q[2 * second + 1] - q[1];
+  return (x * dy - y * dx) / (model->size * model->size);
+}
+
+/* Order within one stem: by energy, and for equal energies by shape, so that no start matters. */
+static bool comes_before(const strut_model *model, const strut_equilibrium *a,
+                         const strut_equilibrium *b) {
+  double scale = fmax(fabs(a->energy), fabs(b->energy));
+  if (fabs(a->energy - b->energy) > SAME * scale) return a->energy < b->energy;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    double x = invariant(model, a->point.q, i), y = invariant(model, b->point.q, i);
+    if (fabs(x - y) > 100 * SAME) return x < y;
+  }
+  return false;
+}
+
+/* Insertion sort: few share a stem, and it stands a comparison that rounding makes intransitive. */
+static void sort_by_energy(const strut_model *model, size_t count, unnamed *rows) {
+  for (size_t i = 1; i < count; i++) {
+    unnamed row = rows[i];
+    size_t k = i;
+    for (; k > 0 && comes_before(model, row.e, rows[k - 1].e); k--) rows[k] = rows[k - 1];
+    rows[k] = row;
+  }
+}
+
+static int by_stem(const void *a, const void *b) {
+  const unnamed *x = a, *y = b;
+  int order = strcmp(x->stem, y->stem);
+  if (order) return order;
+  return (x->e->energy > y->e->energy) - (x->e->energy < y->e->energy);
+}
+
+static strut_status name_by_contacts(const strut_model *model, size_t count,
+                                     strut_equilibrium **list, strut_arena *arena) {
+  unnamed *rows = strut_allocate(count + 1, sizeof *rows);
+  size_t rest = 0;
+  bool good = rows;
+  for (size_t i = 0; i < count && good; i++) {
+    if (list[i]->name) continue;
+    rows[rest] = (unnamed){list[i], make_stem(model->scene, list[i], arena)};
+    good = rows[rest++].stem;
+  }
+  if (good && rest) qsort(rows, rest, sizeof *rows, by_stem);
+  for (size_t from = 0, to; from < rest && good; from = to) {
+    int n = 1;
+    for (to = from + 1; to < rest && strcmp(rows[to].stem, rows[from].stem) == 0;) to++;
+    sort_by_energy(model, to - from, rows + from);
+    for (size_t i = from; i < to && good; i++) {
+      rows[i].e->name = numbered(count, list, model->scene, rows[i].stem, &n, arena);
+      good = rows[i].e->name;
+    }
+  }
+  strut_release(rows);
+  return good ? STRUT_OK : STRUT_NO_MEMORY;
+}
+
 strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
                                    strut_arena *arena) {
   const strut_scene *scene = model->scene;
@@ -168,11 +277,30 @@ strut_status strut_name_equilibria(const strut_model *model, size_t count, strut
     for (size_t k = 0; !c->shaped && k < c->set_count; k++)
       if (!name_on_set(model, c, k, count, list, &n, arena)) return STRUT_NO_MEMORY;
   }
-  int n = 1;
-  for (size_t i = 0; i < count; i++) {
-    if (list[i]->name) continue;
-    list[i]->name = numbered(count, list, scene, "unnamed", &n, arena);
-    if (!list[i]->name) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < count; i++) list[i]->configured = list[i]->name != NULL;
+  return name_by_contacts(model, count, list, arena);
+}
+
+static bool starts_with(const char *text, const char *start) {
+  return strncmp(text, start, strlen(start)) == 0;
+}
+
+bool strut_is_listed_name(const strut_scene *scene, const char *name) {
+  const char *dash = strrchr(name, '-');
+  if (!dash || dash[1] == 0 || dash[1 + strspn(dash + 1, "0123456789")] != 0) return false;
+  size_t stem = (size_t)(dash - name);
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const char *own = scene->configurations[i].name;
+    if (strlen(own) == stem && strncmp(own, name, stem) == 0) return true;
   }
-  return STRUT_OK;
+  if (starts_with(name, HELD)) name += strlen(HELD);
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const char *node = scene->nodes[scene->contacts[i].node].name;
+    const char *after = name + strlen(node);
+    if (starts_with(name, node) && (*after == '-' || *after == '+')) return true;
+  }
+  for (int i = 0; i < KINDS; i++)
+    if (starts_with(name, kind_names[i]) && strlen(kind_names[i]) == (size_t)(dash - name))
+      return true;
+  return false;
 }

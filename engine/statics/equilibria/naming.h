@@ -21,13 +21,18 @@ strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, d
                                 double *softest);
 
 /**
- * Names the list (count): equilibria that stand by configurations where they fit, the others
- * unnamed-1, ... in order. Where a configuration without a shape fits several, they are NAME,
- * NAME-2, ...: by its contact sets in their order, then by energy. Names are the scene's or in the
- * arena.
+ * Names the list (count). Equilibria that stand take the names of configurations where they fit;
+ * where one without a shape fits several, they are NAME, NAME-2, ...: by its contact sets in their
+ * order, then by energy. The others are named by the nodes that touch the ground and numbered by
+ * energy: n1-n4-2, n1-n4-saddle-1, held-n1-n4-3 for what rests only while its contacts are held,
+ * equilibrium-1 and saddle-1 where nothing touches. A search with another seed gives the same names
+ * as long as it finds the same shapes. Names are the scene's or in the arena.
  */
 strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
                                    strut_arena *arena);
+
+/** Could strut_name_equilibria give this name? */
+bool strut_is_listed_name(const strut_scene *scene, const char *name);
 
 /** True where the set holds the same nodes, in any order. */
 bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count);

@@ -138,7 +138,7 @@ static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibr
   strut_list_nodes(scene, flag, sizeof names, names);
   const char *end = e->ends_as >= 0 ? finds[e->ends_as].e.name : NULL;
   (void)f;
-  snprintf(e->verdict, sizeof e->verdict, "%s%.24s onto %s%s%.24s",
+  snprintf(e->verdict, sizeof e->verdict, "%s%.24s onto %s%s%.60s",
            over ? "tips over " : "gives way", over ? over : "", names, end ? ": " : "",
            end ? end : "");
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
@@ -181,13 +182,6 @@ static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, con
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
 }
 
-static double largest(const double *x, int32_t n) {
-  double most = 0.0;
-  for (int32_t i = 0; i < n; i++)
-    if (!(fabs(x[i]) <= most)) most = fabs(x[i]);
-  return most;
-}
-
 /* The paper's break-off with all speeds 0: the residual, and what it accelerates. */
 static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed) {
   const strut_model *model = r->model;
@@ -196,7 +190,7 @@ static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed
   memset(r->state->v, 0, bytes);
   memset(r->last, 0, bytes);
   strut_forces_acceleration(model, r->state, 0.0, q, r->state->v, r->last);
-  relaxed->acceleration = largest(r->last, 2 * model->node_count);
+  relaxed->acceleration = strut_largest_magnitude(r->last, 2 * model->node_count);
 }
 
 /* Downhill from where it is, with the centre of mass brought to x. */

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -14,20 +15,12 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
-static double largest(const double *x, int32_t n) {
-  double most = 0.0;
-  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  return most;
-}
-
 static double member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
-    const double *a = q + t->from[j], *b = q + t->to[j];
-    double dx = b[0] - a[0], dy = b[1] - a[1];
-    double stretch = sqrt(dx * dx + dy * dy) - t->rest[j];
-    if (stretch > t->slack[j]) sum += fabs(t->stiffness[j] * stretch);
+    strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
+    sum += fabs(strut_member_elastic_force(t, j, &pose));
   }
   return sum;
 }
@@ -38,8 +31,7 @@ static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest
   stand->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->normal);
   if (!stand->closed || !stand->normal) return false;
   for (int32_t i = 0; i < c->count; i++) {
-    const double *at = stand->q + c->at[i];
-    double gap = at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
+    double gap = strut_contact_gap(c, i, stand->q);
     if (!(gap < 0)) continue;
     stand->closed[stand->closed_count] = c->entry[i].node;
     stand->normal[stand->closed_count++] = -c->entry[i].stiffness * gap;
@@ -56,7 +48,7 @@ static strut_status judge(const strut_model *model, strut_arena *arena, strut_re
   double *g = strut_allocate((size_t)potential->n, sizeof *g);
   if (g && find_closed(model, arena, stand)) {
     strut_potential_gradient(potential, stand->q, g);
-    stand->residual = largest(g, potential->n);
+    stand->residual = strut_largest_magnitude(g, potential->n);
     stand->scale = potential->force_scale;
     if (!(stand->scale > 0)) stand->scale = member_forces(model, stand->q);
     double rounding = 4 * strut_potential_rounding(potential, stand->q);
@@ -231,19 +223,6 @@ static strut_status unknown(const strut_scene *scene, const char *name, strut_er
                     names);
 }
 
-/* Names that only a search gives: unnamed-3, or III-2 where a configuration has several. */
-static bool is_listed(const strut_scene *scene, const char *name) {
-  const char *dash = strrchr(name, '-');
-  if (!dash || dash[1] == 0 || dash[1 + strspn(dash + 1, "0123456789")] != 0) return false;
-  size_t stem = (size_t)(dash - name);
-  if (stem == strlen("unnamed") && strncmp(name, "unnamed", stem) == 0) return true;
-  for (size_t i = 0; i < scene->configuration_count; i++) {
-    const char *own = scene->configurations[i].name;
-    if (strlen(own) == stem && strncmp(own, name, stem) == 0) return true;
-  }
-  return false;
-}
-
 /* The equilibrium of that name in the list that the scene's own search makes. */
 static strut_status from_list(const strut_model *model, const strut_experiment *experiment,
                               const char *name, strut_arena *arena, strut_rest_state *stand,
@@ -310,7 +289,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
   if (!c && !start && !drawn) {
-    if (!is_listed(scene, name)) return unknown(scene, name, error);
+    if (!strut_is_listed_name(scene, name)) return unknown(scene, name, error);
     strut_status status = from_list(model, experiment, name, arena, stand, error);
     return status ? status : judge(model, arena, stand, error);
   }

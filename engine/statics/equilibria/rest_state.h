@@ -26,7 +26,7 @@ typedef struct strut_rest_state {
  * name NULL or "start": the equilibrium that the scene's start comes to rest in, where the scene
  * settles the very positions that its run starts from (engine/run/settle.h); "drawn": the drawn
  * shape as it is; else a configuration of the scene: from its positions where it has some, else by a
- * search on its contacts; "unnamed-3" and the like: from the list that strut_equilibria_find makes
+ * search on its contacts; "n1-n4-2" and the like: from the list that strut_equilibria_find makes
  * with the scene's own effort. All in the arena. Fails with STRUT_USAGE and a suggestion for an unknown
  * name, STRUT_NOT_SETTLED where there is no such equilibrium, with a sentence that says which nodes
  * move, STRUT_NO_MEMORY.

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/base/vec.h"
+
 /* Rank of the rows (1, 0, -y) and (0, 1, x) of coordinates: of all nodes, or of those held. */
 static int rank_of_rigid(const strut_scene *scene, bool only_fixed) {
   double rows[3][3] = {{0}}, size = 0.0;
@@ -124,10 +126,10 @@ void strut_supports_hold(const strut_supports *supports, const strut_node_set *s
 /* Turns and moves the shape so that `a` comes to x, height and `b` level with it, on its side. */
 static void lay_down(const strut_scene *flat, int32_t a, int32_t b, double x, double height,
                      double (*shape)[2]) {
-  double dx = shape[b][0] - shape[a][0], dy = shape[b][1] - shape[a][1];
-  double length = sqrt(dx * dx + dy * dy), from[2] = {shape[a][0], shape[a][1]};
-  double c = length > 0 ? fabs(dx) / length : 1, s = length > 0 ? dy / length : 0;
-  if (dx < 0) s = -s;
+  strut_vec2 d = strut_vec2_between(shape[a], shape[b]);
+  double length = strut_vec2_length(d), from[2] = {shape[a][0], shape[a][1]};
+  double c = length > 0 ? fabs(d.x) / length : 1, s = length > 0 ? d.y / length : 0;
+  if (d.x < 0) s = -s;
   for (size_t i = 0; i < flat->node_count; i++) {
     double rx = shape[i][0] - from[0], ry = shape[i][1] - from[1];
     shape[i][0] = x + c * rx + s * ry;

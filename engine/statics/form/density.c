@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/form/parts.h"
 
 static const double DETERMINED = 1e-12; /* least reciprocal condition of D */
@@ -132,7 +133,7 @@ static strut_status apply(density_problem *p, strut_error *error) {
   for (size_t j = 0; j < scene->member_count && status == STRUT_OK; j++) {
     const double *a = scene->nodes[scene->members[j].node[0]].position;
     const double *b = scene->nodes[scene->members[j].node[1]].position;
-    double length = hypot(b[0] - a[0], b[1] - a[1]), force = p->q[j] * length;
+    double force = p->q[j] * strut_distance(a, b);
     if (scene->members[j].kind == STRUT_CABLE && force < 0)
       return strut_fail(error, STRUT_NOT_SETTLED,
                         "the nearest densities in equilibrium make cable %s push (%.4g N/m); "

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/statics/form/parts.h"
 #include "engine/statics/minimise.h"
@@ -49,7 +50,7 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
     const strut_member *m = &scene->members[j];
     const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
     strut_rest rest;
-    bool apart = hypot(b->start[0] - a->start[0], b->start[1] - a->start[1]) > MEET * f->size;
+    bool apart = strut_distance(a->start, b->start) > MEET * f->size;
     if (strut_member_rest(scene, j, &rest) && (apart || f->form->from != STRUT_FORM_DENSITIES))
       continue;
     return strut_fail(error, STRUT_NOT_SETTLED,
@@ -110,8 +111,7 @@ static bool lay_back(const strut_former *f, double *q) {
 static double farthest(const strut_scene *scene, const double *q, size_t *node) {
   double most = -1;
   for (size_t i = 0; i < scene->node_count; i++) {
-    double moved =
-        hypot(q[2 * i] - scene->nodes[i].start[0], q[2 * i + 1] - scene->nodes[i].start[1]);
+    double moved = strut_distance(scene->nodes[i].start, q + 2 * i);
     if (moved > most) most = moved, *node = i;
   }
   return most;

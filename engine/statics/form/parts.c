@@ -6,12 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
+
 static const double TOUCH = 1e-6; /* of the size: nearer to the ground is drawn on it */
 
 double strut_form_depth(const strut_former *f, int32_t contact) {
   const strut_contact_table *c = &f->model->contacts;
   const double *at = f->scene->nodes[c->entry[contact].node].position;
-  return -(at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1]);
+  return -strut_ground_gap(c, at);
 }
 
 bool strut_form_touches(const strut_former *f, int32_t contact) {
@@ -28,7 +30,7 @@ strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut
   strut_member *m = &f->scene->members[j];
   const double *a = f->scene->nodes[m->node[0]].start;
   const double *b = f->scene->nodes[m->node[1]].start;
-  double length = hypot(b[0] - a[0], b[1] - a[1]);
+  double length = strut_distance(a, b);
   double rest = m->axial_stiffness > 0 ? m->axial_stiffness * length / (m->axial_stiffness + force)
                 : m->stiffness > 0     ? length - force / m->stiffness
                                        : length;

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/form/parts.h"
 #include "engine/statics/linear_program.h"
 
@@ -35,7 +36,7 @@ typedef struct prestress {
 static double length_of(const strut_former *f, int32_t j) {
   const strut_member *m = &f->scene->members[j];
   const double *a = f->scene->nodes[m->node[0]].start, *b = f->scene->nodes[m->node[1]].start;
-  return hypot(b[0] - a[0], b[1] - a[1]);
+  return strut_distance(a, b);
 }
 
 static bool can_carry(const strut_member *m) { return m->stiffness > 0 || m->axial_stiffness > 0; }
@@ -73,7 +74,7 @@ static void fill_rows(prestress *p) {
     const strut_member *m = &f->scene->members[j];
     const double *a = f->scene->nodes[m->node[0]].start;
     const double *b = f->scene->nodes[m->node[1]].start;
-    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    double length = strut_distance(a, b);
     for (int c = 0; c < 2 && length > 0; c++) {
       double u = (b[c] - a[c]) / length;
       int32_t row[2] = {row_of[2 * m->node[0] + c], row_of[2 * m->node[1] + c]};

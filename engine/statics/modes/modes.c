@@ -5,9 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/modes/parts.h"
 
-static const double TURN = 6.283185307179586476925;
 static const double ENOUGH = 1e-8;   /* relative error of an eigenvalue that is worth printing */
 static const double LARGEST = 1e150; /* eigenvalue; products of two of them are numbers */
 
@@ -150,7 +150,7 @@ static strut_status check_errors(const strut_modes_work *work, const strut_modes
                       "so much (condition about %.1g) that %s; bring them closer together, or ask "
                       "for fewer modes "
                       "with --count",
-                      i + 1, sqrt(fabs(value)) / TURN, wrong, modes->condition,
+                      i + 1, sqrt(fabs(value)) / STRUT_TAU, wrong, modes->condition,
                       set->noise[i] > set->error[i]
                           ? "the last bits of rest lengths and positions decide"
                           : "rounding decides");

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/modes/lanczos.h"
 #include "engine/statics/modes/parts.h"
 
@@ -64,6 +65,6 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   if (status == STRUT_OK && !(set->value[below - 1] < 1.001 * bound))
     status = strut_fail(error, STRUT_SINGULAR,
                         "Lanczos's method missed some of the %d modes below %.4g Hz that there are",
-                        (int)below, sqrt(bound) / 6.283185307179586);
+                        (int)below, sqrt(bound) / STRUT_TAU);
   return status;
 }

@@ -3,14 +3,14 @@
 
 #include <string.h>
 
-enum { MEMBER_ENTRIES = 10, CONTACT_ENTRIES = 3 };
+#include "engine/forces/tangent.h"
 
 static void place_member(strut_vibration *v, int32_t j) {
   const strut_member_table *t = &v->model->members;
   strut_vibration_member *m = &v->member[j];
   uint32_t a = t->from[j], b = t->to[j];
   strut_dd dx = dd_sub(v->q[b], v->q[a]), dy = dd_sub(v->q[b + 1], v->q[a + 1]);
-  strut_dd length = dd_sqrt(dd_add(dd_mul(dx, dx), dd_mul(dy, dy)));
+  strut_dd length = dd_length(dx, dy);
   bool any = length.hi > 0;
   m->length = length.hi;
   m->stretch = dd_sub(length, dd_of(t->rest[j]));
@@ -24,9 +24,6 @@ static void place_member(strut_vibration *v, int32_t j) {
     m->across = dd_of(t->rest[j] > 0 ? 0.0 : t->stiffness[j]);
 }
 
-/* B at both ends, -B between them: entry (i, j) of the member's 4 x 4 block. */
-static bool negative_entry(int i, int j) { return i / 2 != j / 2; }
-
 static void add_member(strut_vibration *v, int32_t j) {
   const strut_vibration_member *m = &v->member[j];
   if (!m->taut) return;
@@ -34,24 +31,23 @@ static void add_member(strut_vibration *v, int32_t j) {
   strut_dd block[3] = {dd_add(m->across, dd_mul(along, dd_mul(m->ux, m->ux))),
                        dd_mul(along, dd_mul(m->ux, m->uy)),
                        dd_add(m->across, dd_mul(along, dd_mul(m->uy, m->uy)))};
-  double k = v->model->members.damping[j], x = m->ux.hi, y = m->uy.hi;
-  double damper[3] = {k * x * x, k * x * y, k * y * y};
-  const int32_t *place = v->shape->place + MEMBER_ENTRIES * j;
-  for (int r = 0; r < 4; r++)
-    for (int c = 0; c <= r; c++, place++) {
-      if (*place < 0) continue;
-      int which = r % 2 + c % 2;
-      bool minus = negative_entry(r, c);
-      v->k[*place] = dd_add(v->k[*place], minus ? dd_negative(block[which]) : block[which]);
-      v->d[*place] += minus ? -damper[which] : damper[which];
-    }
+  const strut_block damper =
+      strut_block_of(v->model->members.damping[j], 0.0, (strut_vec2){m->ux.hi, m->uy.hi});
+  const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * j;
+  for (int i = 0; i < STRUT_MEMBER_ENTRIES; i++, place++) {
+    const strut_block_entry *e = &strut_block_entries[i];
+    if (*place < 0) continue;
+    strut_dd part = e->opposite ? dd_negative(block[e->part]) : block[e->part];
+    v->k[*place] = dd_add(v->k[*place], part);
+  }
+  strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place - STRUT_MEMBER_ENTRIES, v->d);
 }
 
 static void add_contact(strut_vibration *v, int32_t i) {
   const strut_contact_table *c = &v->model->contacts;
   if (!v->closed[i]) return;
-  const int32_t *place = v->shape->place + MEMBER_ENTRIES * v->model->members.count;
-  place += CONTACT_ENTRIES * i;
+  const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * v->model->members.count;
+  place += STRUT_CONTACT_ENTRIES * i;
   for (int a = 0; a < 2; a++)
     for (int b = 0; b <= a; b++, place++) {
       if (*place < 0) continue;
@@ -67,14 +63,14 @@ static void add_masses(strut_vibration *v) {
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   const int32_t *place = v->shape->place;
   for (int32_t j = 0; j < t->count; j++)
-    for (int r = 0; r < 4; r++)
-      for (int c = 0; c <= r; c++, place++) {
-        if (*place < 0 || r % 2 != c % 2 || !(t->mass[j] > 0)) continue;
-        if (!negative_entry(r, c))
-          v->m[*place] += consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
-        else if (consistent)
-          v->m[*place] += t->mass[j] / 6.0;
-      }
+    for (int i = 0; i < STRUT_MEMBER_ENTRIES; i++, place++) {
+      const strut_block_entry *e = &strut_block_entries[i];
+      if (*place < 0 || e->part == 1 || !(t->mass[j] > 0)) continue; /* x and y are apart */
+      if (!e->opposite)
+        v->m[*place] += consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
+      else if (consistent)
+        v->m[*place] += t->mass[j] / 6.0;
+    }
   const strut_sparse *a = v->shape->pattern;
   for (int32_t i = 0; i < v->n; i++)
     v->m[a->start[i]] += model->point_mass[v->shape->coordinate[i] / 2];

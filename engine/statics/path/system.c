@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
 #include "engine/statics/path/system.h"
+#include "engine/forces/tangent.h"
 #include "engine/statics/lu.h"
 
 #include <gsl/gsl_blas.h>
@@ -124,7 +125,7 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
   const strut_dd rest = {s->terms.rest[j], s->terms.rest_low[j]};
   strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
   strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
-  strut_dd length = dd_sqrt(dd_add(dd_mul(dx, dx), dd_mul(dy, dy)));
+  strut_dd length = dd_length(dx, dy);
   *m = (strut_path_member){.length = dd_double(length)};
   if (m->length > 0) m->ux = dd_double(dd_div(dx, length)), m->uy = dd_double(dd_div(dy, length));
   return dd_double(dd_sub(length, rest));
@@ -142,12 +143,6 @@ static void add_stiffness(strut_path_system *s, const int32_t *row, int count, d
     for (int b = 0; b < count; b++)
       if (row[a] >= 0 && row[b] >= 0)
         *gsl_matrix_ptr(s->hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
-}
-
-static void member_rows(const strut_path_system *s, int32_t j, int32_t row[4]) {
-  uint32_t a = s->model->members.from[j], b = s->model->members.to[j];
-  row[0] = s->potential->row_of[a], row[1] = s->potential->row_of[a + 1];
-  row[2] = s->potential->row_of[b], row[3] = s->potential->row_of[b + 1];
 }
 
 /* How a member's force on its second node changes with the parameter, its free ends held. */
@@ -180,7 +175,7 @@ static void add_members(strut_path_system *s) {
     int32_t row[4];
     double block[4][4], along = k - m->across;
     const double u[2] = {m->ux, m->uy}, force[2] = {m->tension * m->ux, m->tension * m->uy};
-    member_rows(s, j, row);
+    strut_member_rows(s->model, s->potential->row_of, j, row);
     member_rate(s, j, rate);
     for (int a = 0; a < 4; a++) {
       double sign = a < 2 ? -1.0 : 1.0;

@@ -4,15 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { ENTRIES = 4 }; /* of a column at most */
+#include "engine/forces/tangent.h"
+#include "engine/model/pose.h"
 
-static void number_rows(const strut_model *model, strut_equilibrium_matrix *a) {
-  for (int32_t at = 0; at < model->length; at++) {
-    bool free = at < 2 * model->node_count && !model->fixed[at];
-    a->row_of[at] = free ? a->rows : -1;
-    if (free) a->coordinate[a->rows++] = at;
-  }
-}
+enum { ENTRIES = 4 }; /* of a column at most */
 
 static void add_entry(strut_equilibrium_matrix *a, int32_t row, double value) {
   if (row < 0 || value == 0.0) return;
@@ -25,18 +20,18 @@ static void add_entry(strut_equilibrium_matrix *a, int32_t row, double value) {
 static void add_column(const strut_model *model, const double *q, strut_equilibrium_matrix *a) {
   int32_t j = a->columns;
   uint32_t from = model->members.from[j], to = model->members.to[j];
-  double dx = q[to] - q[from], dy = q[to + 1] - q[from + 1], length = hypot(dx, dy);
-  double ux = length > 0 ? dx / length : 0.0, uy = length > 0 ? dy / length : 0.0;
-  a->length[j] = length;
-  a->direction[j][0] = ux, a->direction[j][1] = uy;
+  strut_vec2 span = strut_member_span(&model->members, j, q);
+  double length = a->length[j] = strut_vec2_length(span);
+  strut_vec2 u = strut_vec2_unit(span, length);
+  a->direction[j][0] = u.x, a->direction[j][1] = u.y;
   double sign = from < to ? -1.0 : 1.0;
   uint32_t first = from < to ? from : to, second = from < to ? to : from;
   a->columns++;
   a->start[j + 1] = a->start[j];
-  add_entry(a, a->row_of[first], sign * ux);
-  add_entry(a, a->row_of[first + 1], sign * uy);
-  add_entry(a, a->row_of[second], -sign * ux);
-  add_entry(a, a->row_of[second + 1], -sign * uy);
+  add_entry(a, a->row_of[first], sign * u.x);
+  add_entry(a, a->row_of[first + 1], sign * u.y);
+  add_entry(a, a->row_of[second], -sign * u.x);
+  add_entry(a, a->row_of[second + 1], -sign * u.y);
 }
 
 strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *q,
@@ -53,7 +48,7 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   if (!a->coordinate || !a->row_of || !a->length || !a->direction || !a->start || !a->row ||
       !a->value)
     return STRUT_NO_MEMORY;
-  number_rows(model, a);
+  a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
   for (int32_t j = 0; j < model->members.count; j++) add_column(model, q, a);
   return STRUT_OK;
 }

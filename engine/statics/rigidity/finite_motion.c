@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 enum { STEPS = 10, MOST_CORRECTIONS = 12 };
 
 static const double STRIDE = 0.01;       /* of the size, by the node that moves most */
@@ -118,8 +120,8 @@ static double change_of_shape(const walker *w) {
   for (int32_t i = 0; i < w->model->node_count; i++)
     for (int32_t k = 0; k < i; k++) {
       const double *p = w->q, *s = w->start;
-      double now = hypot(p[2 * i] - p[2 * k], p[2 * i + 1] - p[2 * k + 1]);
-      double then = hypot(s[2 * i] - s[2 * k], s[2 * i + 1] - s[2 * k + 1]);
+      double now = strut_distance(p + 2 * k, p + 2 * i);
+      double then = strut_distance(s + 2 * k, s + 2 * i);
       largest = fmax(largest, fabs(now - then));
     }
   return largest;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/rigid_motions.h"
 #include "engine/statics/rigidity/finite_motion.h"
 #include "engine/statics/rigidity/stress_matrix.h"
@@ -36,14 +37,8 @@ const char *strut_motion_kind_name(strut_motion_kind kind) {
   return names[kind];
 }
 
-static double dot(const double *x, const double *y, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 static void remove_direction(double *x, const double *unit, size_t n) {
-  double sum = dot(x, unit, n);
+  double sum = strut_dot(x, unit, (ptrdiff_t)n);
   for (size_t c = 0; c < n; c++) x[c] -= sum * unit[c];
 }
 
@@ -57,14 +52,14 @@ static void collect(sorter *s, const double *space, size_t count, size_t rigid) 
   for (size_t k = 0; k < s->n; k++) {
     double best = -1.0, *chosen = s->inner + k * s->rows;
     for (size_t i = 0; i < count; i++) {
-      double left = dot(rest + i * s->rows, rest + i * s->rows, s->rows);
+      double left = strut_dot(rest + i * s->rows, rest + i * s->rows, (ptrdiff_t)s->rows);
       if (left <= best * 1.0001) continue;
       best = left;
       memcpy(chosen, rest + i * s->rows, s->rows * sizeof *rest);
     }
     for (size_t r = 0; r < rigid + k; r++) /* again: once leaves rounding */
       remove_direction(chosen, s->motion + r * s->rows, s->rows);
-    double norm = sqrt(dot(chosen, chosen, s->rows));
+    double norm = sqrt(strut_dot(chosen, chosen, (ptrdiff_t)s->rows));
     for (size_t c = 0; c < s->rows; c++) chosen[c] /= norm;
     for (size_t i = 0; i < count; i++) remove_direction(rest + i * s->rows, chosen, s->rows);
   }
@@ -137,7 +132,7 @@ static bool separate(sorter *s, size_t *silent) {
     double size = s->scale[i];
     for (size_t r = 0; r < n && size > 0; r++)
       for (size_t c = 0; c < n; c++)
-        s->form[r * n + c] += dot(f + r * n, f + c * n, n) / (size * size);
+        s->form[r * n + c] += strut_dot(f + r * n, f + c * n, (ptrdiff_t)n) / (size * size);
   }
   if (!rotate(s, s->form)) return false;
   *silent = 0;

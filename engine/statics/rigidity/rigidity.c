@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
 #include "engine/statics/rigidity/tensegrity.h"
 
 static bool measure_forces(const strut_model *model, strut_rigidity *r) {
@@ -33,8 +34,7 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
     *scale = fmax(*scale, fabs(model->constant_force[at]));
   }
   for (int32_t i = 0; i < c->count; i++) {
-    const double *p = q + c->at[i];
-    double gap = p[0] * c->normal[0] + (p[1] - c->height) * c->normal[1];
+    double gap = strut_contact_gap(c, i, q);
     if (!(gap < 0)) continue;
     for (int k = 0; k < 2; k++)
       net[c->at[i] + (uint32_t)k] -= c->entry[i].stiffness * gap * c->normal[k];

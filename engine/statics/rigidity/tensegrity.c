@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/base/vec.h"
+
 static const double NONE = 1e-9;    /* of the largest force: no force */
 static const double ON_LINE = 1e-9; /* of the size: a node on the outline */
 
@@ -19,10 +21,11 @@ static int32_t root(int32_t *parent, int32_t i) {
 
 /* Is the line through a and b one that all nodes lie on one side of? */
 static bool on_outline(const strut_model *model, const double *q, uint32_t a, uint32_t b) {
-  double dx = q[b] - q[a], dy = q[b + 1] - q[a + 1], length = hypot(dx, dy);
+  strut_vec2 d = strut_vec2_between(q + a, q + b);
+  double length = strut_vec2_length(d);
   bool left = false, right = false;
   for (int32_t i = 0; i < model->node_count; i++) {
-    double off = dx * (q[2 * i + 1] - q[a + 1]) - dy * (q[2 * i] - q[a]);
+    double off = d.x * (q[2 * i + 1] - q[a + 1]) - d.y * (q[2 * i] - q[a]);
     left |= off > ON_LINE * model->size * length;
     right |= off < -ON_LINE * model->size * length;
   }

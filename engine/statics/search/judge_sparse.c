@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/search/judge_parts.h"
 
 enum { WANTED = 6, SPACE = 12, TURNS = 40 };
@@ -18,22 +19,16 @@ typedef struct lowest {
   gsl_eigen_symmv_workspace *workspace;
 } lowest;
 
-static double dot(const double *a, const double *b, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 static void make_orthonormal(lowest *l) {
   size_t n = (size_t)l->hessian->n;
   for (size_t k = 0; k < SPACE; k++) {
     double *x = l->space + k * n;
     for (int again = 0; again < 2; again++)
       for (size_t e = 0; e < k; e++) {
-        double share = dot(x, l->space + e * n, n);
+        double share = strut_dot(x, l->space + e * n, (ptrdiff_t)n);
         for (size_t i = 0; i < n; i++) x[i] -= share * l->space[e * n + i];
       }
-    double length = sqrt(dot(x, x, n));
+    double length = sqrt(strut_dot(x, x, (ptrdiff_t)n));
     for (size_t i = 0; i < n; i++) x[i] /= length;
   }
 }
@@ -46,7 +41,8 @@ static void project(lowest *l) {
     strut_sparse_multiply(l->hessian, l->space + k * n, l->image + k * n);
   for (size_t i = 0; i < SPACE; i++)
     for (size_t k = 0; k <= i; k++)
-      l->form[i * SPACE + k] = l->form[k * SPACE + i] = dot(l->space + i * n, l->image + k * n, n);
+      l->form[i * SPACE + k] = l->form[k * SPACE + i] =
+          strut_dot(l->space + i * n, l->image + k * n, (ptrdiff_t)n);
   gsl_matrix_view form = gsl_matrix_view_array(l->form, SPACE, SPACE);
   gsl_matrix_view basis = gsl_matrix_view_array(l->basis, SPACE, SPACE);
   gsl_vector_view value = gsl_vector_view_array(raw, SPACE);

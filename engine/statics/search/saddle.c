@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+#include "engine/model/pose.h"
 #include "engine/statics/spectrum.h"
 #include "engine/statics/trust_step.h"
 
@@ -53,17 +55,11 @@ void strut_climber_free(strut_climber *c) {
 
 int64_t strut_climber_hessian_count(const strut_climber *c) { return c->looks; }
 
-static double dot(const double *a, const double *b, int32_t n) {
-  double sum = 0.0;
-  for (int32_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* Shares of the gradient, and which modes have neither stiffness nor force. */
 static void look(strut_climber *c, double still) {
   int32_t n = c->now.n;
   for (int32_t i = 0; i < n; i++) {
-    c->part[i] = dot(c->now.vector + (size_t)i * (size_t)n, c->g, n);
+    c->part[i] = strut_dot(c->now.vector + (size_t)i * (size_t)n, c->g, n);
     c->value[i] = c->now.value[i];
     c->idle[i] = fabs(c->value[i]) <= 4.0 * c->now.noise[i] && fabs(c->part[i]) <= still;
   }
@@ -74,7 +70,7 @@ static int32_t mode_to_follow(strut_climber *c) {
   int32_t n = c->now.n, best = -1;
   double largest = 0.0;
   for (int32_t i = 0; i < n; i++) {
-    double lean = c->idle[i] ? 0.0 : dot(c->now.vector + (size_t)i * (size_t)n, c->follow, n);
+    double lean = c->idle[i] ? 0.0 : strut_dot(c->now.vector + (size_t)i * (size_t)n, c->follow, n);
     if (fabs(lean) > fabs(largest)) largest = lean, best = i;
   }
   for (int32_t i = 0; best >= 0 && i < n; i++)
@@ -108,7 +104,7 @@ static double assemble(strut_climber *c, double *length) {
     const double *mode = c->now.vector + (size_t)i * (size_t)n;
     if (c->x[i] == 0.0) continue;
     square += c->x[i] * c->x[i];
-    change += c->x[i] * (dot(mode, c->g, n) + 0.5 * c->now.value[i] * c->x[i]);
+    change += c->x[i] * (strut_dot(mode, c->g, n) + 0.5 * c->now.value[i] * c->x[i]);
     for (int32_t k = 0; k < n; k++) c->step[k] += c->x[i] * mode[k];
   }
   *length = sqrt(square);
@@ -135,7 +131,7 @@ static bool straighten(strut_climber *c, double mu, double scale) {
   for (int32_t i = 0; i < n; i++) {
     const double *mode = c->now.vector + (size_t)i * (size_t)n;
     if (!(c->value[i] > stiff && c->now.value[i] > stiff)) continue;
-    double far = dot(mode, c->g_trial, n) / c->now.value[i];
+    double far = strut_dot(mode, c->g_trial, n) / c->now.value[i];
     for (int32_t k = 0; k < n; k++) c->step[k] -= far * mode[k];
     any = true;
   }
@@ -220,8 +216,7 @@ static void polish(strut_climber *c, double *q) {
 static bool has_collapsed(const strut_climber *c, const double *q) {
   const strut_member_table *t = &c->potential->model->members;
   for (int32_t j = 0; j < t->count; j++) {
-    const double *a = q + t->from[j], *b = q + t->to[j];
-    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    double length = strut_member_length(t, j, q);
     if (t->slack[j] != 0.0 && t->rest[j] > 0 && t->stiffness[j] > 0 && length < 1e-7 * t->rest[j])
       return true;
   }

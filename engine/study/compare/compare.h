@@ -146,4 +146,24 @@ STRUT_API strut_status strut_compare_make(const strut_compare_input *inputs, siz
 /** A zeroed struct is allowed. */
 STRUT_API void strut_compare_free(strut_compare *result);
 
+/**
+ * Texts in blocks of strut_allocate; NULL: memory was out. The CPU time in them is a measurement and
+ * differs from run to run; nothing else does.
+ */
+STRUT_API char *strut_compare_table(const strut_compare *result, int columns);
+/** Units in the header; empty where there is no value. */
+STRUT_API char *strut_compare_csv(const strut_compare *result);
+/** With the reasons of what is empty, all states, barriers, contacts, nodes and differences. */
+STRUT_API char *strut_compare_json(const strut_compare *result);
+
+/**
+ * Draws the structures [first, first + count) of a comparison into the file `path`, `width` [pt] wide:
+ * each in the shape in which it stands, members by kind, driven ones marked, its name and a few of its
+ * numbers above. All to one scale unless some are more than four times as large as others; a rod tells
+ * it. Fails as strut_canvas_open and strut_canvas_commit; STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_compare_figure(const char *path, double width,
+                                            const strut_compare *result, size_t first, size_t count,
+                                            strut_error *error);
+
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/compare/compare_figure.h"
+#include "engine/study/compare/compare.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -153,9 +153,9 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
   e->accuracy = work->options->accuracy;
   e->steady.wanted = e->periods > 0.0;
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};
-  double began = strut_study_clock();
+  double began = strut_tradeoff_cpu_clock();
   strut_status status = strut_simulate_accurately(model, e, &wanted, &summary, &error);
-  double cpu = strut_study_clock() - began;
+  double cpu = strut_tradeoff_cpu_clock() - began;
   if (status == STRUT_OK)
     status = tell(work, &summary, &end, cpu);
   else

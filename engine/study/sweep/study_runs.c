@@ -167,7 +167,7 @@ static strut_status add_run(builder *b, const strut_study_run *run, strut_error 
 /* Copies into the table's arena, which owns all of it. */
 static const void *owned(builder *b, const void *block, size_t size) {
   void *copy = strut_arena_allocate(&b->table->arena, b->rows, size);
-  if (copy) memcpy(copy, block, b->rows * size);
+  if (copy && b->rows) memcpy(copy, block, b->rows * size); /* no rows: block may be NULL */
   return copy;
 }
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/sweep.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -69,7 +71,28 @@ static void stop(sweep *s, strut_status status, const strut_error *error) {
   }
 }
 
-static void count_point(sweep *s, int64_t point, const strut_slot *row) {
+/* Counts the warnings of a run by their code, and keeps the text of the first point. */
+static void count_warnings(strut_sweep_state *state, const strut_sweep_job *job) {
+  for (size_t i = 0; i < job->warning_count; i++) {
+    const strut_warning *warning = &job->warnings[i];
+    size_t at = 0;
+    while (at < state->warning_count && strcmp(state->warnings[at].code, warning->code) < 0) at++;
+    bool known = at < state->warning_count && strcmp(state->warnings[at].code, warning->code) == 0;
+    if (!known && state->warning_count == STRUT_SWEEP_MOST_WARNINGS) continue;
+    strut_sweep_warning *to = &state->warnings[at];
+    if (!known) {
+      memmove(to + 1, to, (state->warning_count++ - at) * sizeof *to);
+      *to = (strut_sweep_warning){.code = warning->code, .point = INT64_MAX};
+    }
+    to->runs++;
+    if (job->point >= to->point) continue;
+    to->point = job->point;
+    snprintf(to->text, sizeof to->text, "%s", warning->text);
+  }
+}
+
+static void count_point(sweep *s, const strut_sweep_job *job) {
+  const strut_slot *row = &job->room.row;
 #ifdef _OPENMP
 #pragma omp critical(strut_sweep_report_progress)
 #endif
@@ -79,7 +102,8 @@ static void count_point(sweep *s, int64_t point, const strut_slot *row) {
     state->done++;
     state->computed++;
     state->failed += row->status != STRUT_OK;
-    state->last = point;
+    state->last = job->point;
+    count_warnings(state, job);
     state->row = row;
     state->seconds = now - s->began;
     if (s->worker.options->progress && now - s->told > OFTEN) {
@@ -113,7 +137,7 @@ static void take_point(void *context, const strut_sweep_job *job) {
   if (status)
     stop(s, status, job->status ? &job->error : &error);
   else
-    count_point(s, job->point, &job->room.row);
+    count_point(s, job);
 }
 
 static void work(sweep *s, int threads, int32_t lanes, strut_sweep_job *jobs) {

@@ -31,6 +31,7 @@ typedef struct strut_sweep_plan {
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;       /* each point is run twice; and outcomes are compared */
+  bool start;              /* a column says whether the start settled on an unstable equilibrium */
   size_t axis_columns;     /* the first columns */
   size_t column_count;
   strut_slot_column *columns; /* of the axes, of what is kept, of the check */
@@ -46,6 +47,15 @@ STRUT_API strut_status strut_sweep_plan_make(const strut_study *study,
                                              strut_sweep_plan *plan, strut_error *error);
 STRUT_API void strut_sweep_plan_free(strut_sweep_plan *plan);
 
+/** A warning that runs of a sweep gave. */
+typedef struct strut_sweep_warning {
+  const char *code; /* as in strut_warning */
+  int64_t runs;     /* how many of the runs computed now gave it */
+  int64_t point;    /* the first of those points */
+  char text[600];   /* what it said there */
+} strut_sweep_warning;
+enum { STRUT_SWEEP_MOST_WARNINGS = 16 };
+
 /** How far a sweep is. */
 typedef struct strut_sweep_state {
   int64_t points, done, failed; /* of the file's; done: with those before, failed too */
@@ -53,6 +63,8 @@ typedef struct strut_sweep_state {
   double seconds;               /* since it began, or went on */
   int64_t last;                 /* the latest point */
   const strut_slot *row;        /* and its row */
+  size_t warning_count;
+  strut_sweep_warning warnings[STRUT_SWEEP_MOST_WARNINGS]; /* by code */
 } strut_sweep_state;
 
 typedef struct strut_sweep_options {

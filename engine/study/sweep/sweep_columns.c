@@ -117,6 +117,7 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
       fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
   fine = fine && add_things(plan, &setup->scene) && add_quantities(plan, &setup->experiment);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
+  if (fine && plan->start) fine = add_column(plan, "", "start_unstable", "1", false);
   if (fine && plan->check)
     fine = add_column(plan, "check_", "velocity", "m/s", false) &&
            add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
@@ -131,12 +132,13 @@ static strut_status make(strut_sweep_plan *plan, const strut_setup *setup, strut
   bool usual = !study->keep && !study->quantity_count;
   plan->keep = usual ? USUAL : study->keep;
   if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
+  plan->start = usual && setup->experiment.settle.wanted;
   plan->check = study->half_step || study->check_accuracy > 0.0;
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
   size_t quantities = setup->experiment.quantity_count;
-  size_t most = plan->axis_columns + ENTRIES + 4 + 2 * scene->contact_count +
+  size_t most = plan->axis_columns + ENTRIES + 5 + 2 * scene->contact_count +
                 2 * scene->node_count + quantities;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
@@ -252,4 +254,6 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
   for (size_t i = 0; i < plan->quantity_count; i++)
     strut_sweep_number(room, summary ? measured(summary, plan->quantities[i]) : (double)NAN);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(room, outcome);
+  if (plan->start)
+    strut_sweep_number(room, summary ? (double)summary->settle.unstable : (double)NAN);
 }

@@ -53,6 +53,8 @@ typedef struct strut_sweep_job {
   struct strut_sweep_record *files;
   char first[STRUT_SLOT_WORD]; /* what the first run came to, while the second is made */
   bool second;
+  size_t warning_count; /* of the first run */
+  strut_warning warnings[STRUT_MOST_WARNINGS];
   strut_status status; /* at the end: STRUT_OK, and room.row is filled; else what stops the sweep */
   strut_error error;
 } strut_sweep_job;

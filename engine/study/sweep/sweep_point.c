@@ -70,6 +70,7 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   job->point = point;
   job->model = NULL;
   job->second = false;
+  job->warning_count = 0;
   job->error = (strut_error){0};
   strut_grid_values(plan->study, point, room->values);
   for (size_t i = 0; i < plan->axis_columns; i++) {
@@ -130,6 +131,8 @@ static bool take_first(const strut_sweep_worker *w, strut_sweep_job *job, strut_
   }
   if (!status) status = name_outcome(w, job, summary, outcome);
   if (status) return end_scene(w, job, status);
+  job->warning_count = summary->warning_count;
+  memcpy(job->warnings, summary->warnings, sizeof job->warnings);
   strut_sweep_fill(w->plan, &job->setup, summary, outcome, &job->room);
   if (!w->plan->check) return end_scene(w, job, STRUT_OK);
   snprintf(job->first, sizeof job->first, "%s", told(w, summary, outcome));

@@ -1,20 +1,328 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of things: the base, the references, the ladders, other models. */
+/* Errors from values and references; spreads over the operating points; fronts; best savings. */
 #include "engine/study/tradeoff/tradeoff.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "engine/model/model.h"
-#include "engine/study/tradeoff/step_refinement.h"
+#include "engine/output/quantity_text.h"
+#include "engine/study/tradeoff/tradeoff_parts.h"
+
+/* ---- errors, spreads over the operating points, and the Pareto front ---- */
+
+static const double levels[STRUT_TRADEOFF_LEVELS] = {0.05, 0.01, 0.005, 0.001};
+
+double strut_tradeoff_level(int i) { return levels[i]; }
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+strut_spread strut_spread_of(const double *values, size_t count, double *scratch) {
+  if (count == 0) return (strut_spread){(double)NAN, (double)NAN, (double)NAN};
+  for (size_t i = 0; i < count; i++) scratch[i] = values[i];
+  qsort(scratch, count, sizeof *scratch, ascending);
+  size_t half = count / 2, rank = (9 * count + 9) / 10;
+  double median = count % 2 ? scratch[half] : 0.5 * (scratch[half - 1] + scratch[half]);
+  return (strut_spread){median, scratch[rank - 1], scratch[count - 1]};
+}
+
+static void evaluate_errors(tradeoff_study *s, strut_tradeoff_row *row) {
+  strut_tradeoff *r = s->result;
+  const strut_model_variant *own = &r->variants[0], *f = &r->variants[row->variant];
+  for (size_t p = 0; p < r->point_count; p++) {
+    const double *value = row->value + p * r->value_count;
+    double error = strut_tradeoff_distance(s, p, value, f->value + p * r->value_count);
+    double total = strut_tradeoff_distance(s, p, value, own->value + p * r->value_count);
+    row->error[p] = fmax(error, f->floor[p]);
+    row->total[p] = fmax(total, own->floor[p]);
+  }
+  row->error_spread = strut_spread_of(row->error, r->point_count, s->scratch);
+  row->total_spread = strut_spread_of(row->total, r->point_count, s->scratch);
+}
+
+static void find_fronts(strut_tradeoff *r) {
+  for (size_t i = 0; i < r->row_count; i++) {
+    strut_tradeoff_row *a = &r->rows[i];
+    a->front = isfinite(a->error_spread.worst);
+    for (size_t k = 0; k < r->row_count && a->front; k++) {
+      const strut_tradeoff_row *b = &r->rows[k];
+      if (b->variant != a->variant || !isfinite(b->error_spread.worst)) continue;
+      bool no_worse =
+          b->evaluations <= a->evaluations && b->error_spread.worst <= a->error_spread.worst;
+      bool better =
+          b->evaluations < a->evaluations || b->error_spread.worst < a->error_spread.worst;
+      a->front = !(no_worse && better);
+    }
+  }
+}
+
+void strut_tradeoff_judge(tradeoff_study *s) {
+  strut_tradeoff *r = s->result;
+  for (size_t i = 0; i < r->variant_count; i++) {
+    strut_model_variant *f = &r->variants[i];
+    for (size_t p = 0; p < r->point_count && i > 0 && f->run; p++)
+      f->model_error[p] = strut_tradeoff_distance(s, p, f->value + p * r->value_count,
+                                                  r->variants[0].value + p * r->value_count);
+    f->model_spread = strut_spread_of(f->model_error, r->point_count, s->scratch);
+    f->floor_spread = strut_spread_of(f->floor, r->point_count, s->scratch);
+  }
+  for (size_t i = 0; i < r->row_count; i++) evaluate_errors(s, &r->rows[i]);
+  find_fronts(r);
+}
+
+double strut_tradeoff_smallest_error(const tradeoff_study *s, int variant) {
+  const strut_tradeoff *r = s->result;
+  double smallest = 1;
+  for (size_t i = 0; i < r->row_count; i++) {
+    double worst = r->rows[i].error_spread.worst;
+    if (r->rows[i].variant == variant && worst > 0 && worst < smallest) smallest = worst;
+  }
+  return smallest;
+}
+
+/* Whether b is a is_finer setting of the same group, or a itself. */
+static bool is_finer(const strut_tradeoff_row *a, const strut_tradeoff_row *b) {
+  if (a->group != b->group) return false;
+  return isfinite(a->tolerance) ? b->tolerance <= a->tolerance : b->step <= a->step;
+}
+
+double strut_tradeoff_promise(const strut_tradeoff *r, int row) {
+  double most = 0;
+  for (size_t k = 0; k < r->row_count; k++)
+    if (is_finer(&r->rows[row], &r->rows[k])) most = fmax(most, r->rows[k].total_spread.worst);
+  return most;
+}
+
+int strut_tradeoff_best(const strut_tradeoff *r, int variant, double level) {
+  int best = -1;
+  for (size_t i = 0; i < r->row_count; i++) {
+    const strut_tradeoff_row *row = &r->rows[i];
+    if (row->variant != variant || !(strut_tradeoff_promise(r, (int)i) <= level)) continue;
+    if (best < 0 || row->evaluations < r->rows[best].evaluations) best = (int)i;
+  }
+  return best;
+}
+
+/* ---- models of the scene besides its own ---- */
+
+/* All there can be, in the order in which they are run: the dearest last. */
+typedef enum kind { OWN, MASS, RIGID, GROUND, KARNOPP, COULOMB, SMOOTH, KINDS } kind;
+
+static bool has_member_mass(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->member_count; i++)
+    if (scene->members[i].mass > 0) return true;
+  return false;
+}
+
+/* Whether there are bars that could be rigid: none of them is driven. */
+static bool has_still_bars(const strut_scene *scene) {
+  bool any = false;
+  for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    any = any && scene->members[scene->actuators[i].member].kind != STRUT_BAR;
+  return any;
+}
+
+static bool has_friction(const strut_scene *scene, strut_friction_law law) {
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (scene->contacts[i].friction.law == law) return true;
+  return false;
+}
+
+static bool has_any_friction(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (scene->contacts[i].friction.law != STRUT_FRICTION_NONE) return true;
+  return false;
+}
+
+/* Depth of a contact at rest if all of them carried the weight alike [m]; 0 without gravity. */
+static double depth_at_rest(const strut_scene *scene, const strut_contact *contact) {
+  double mass = 0, gravity = hypot(scene->gravity[0], scene->gravity[1]);
+  for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
+  for (size_t i = 0; i < scene->member_count; i++) mass += scene->members[i].mass;
+  return mass * gravity / (contact->stiffness * (double)scene->contact_count);
+}
+
+static bool has_damped_ground(const strut_scene *scene) {
+  bool any = false;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *c = &scene->contacts[i];
+    any = any || c->damping > 0 || c->dissipation > 0;
+    if (!(depth_at_rest(scene, c) > 0)) return false;
+  }
+  return any;
+}
+
+static bool makes_sense(const strut_scene *scene, kind what) {
+  switch (what) {
+    case OWN: return true;
+    case MASS: return has_member_mass(scene);
+    case RIGID: return has_still_bars(scene);
+    case KARNOPP: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
+    case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
+    case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
+    case GROUND: return scene->contact_count > 0 && has_damped_ground(scene);
+    default: return false;
+  }
+}
+
+/* The speed over which a law of friction that needs one goes through zero [m/s]. */
+static double regularisation_speed(const tradeoff_study *s, const strut_friction *friction) {
+  if (friction->stick_velocity > 0) return friction->stick_velocity;
+  return friction->width > 0 ? friction->width : s->scale[0];
+}
+
+static void describe(const tradeoff_study *s, kind what, strut_model_variant *f) {
+  const strut_scene *scene = &s->setups[0]->scene;
+  if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
+  if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
+  if (what == MASS)
+    snprintf(f->name, sizeof f->name, "%s masses",
+             scene->mass_model == STRUT_MASS_LUMPED ? "consistent" : "lumped");
+  if (what == RIGID)
+    snprintf(f->name, sizeof f->name, "%s bars",
+             scene->bar_model == STRUT_BARS_RIGID ? "elastic" : "rigid");
+  if (what == KARNOPP || what == SMOOTH) {
+    double speed = regularisation_speed(s, &scene->contacts[0].friction);
+    snprintf(f->name, sizeof f->name, "%s friction, %s", what == SMOOTH ? "smooth" : "Karnopp",
+             strut_quantity_of(speed, 3, "m/s").text);
+  }
+  if (what != GROUND) return;
+  bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
+  snprintf(f->name, sizeof f->name, "%s",
+           printed ? "Hunt-Crossley ground" : "printed ground damping");
+  snprintf(f->remark, sizeof f->remark,
+           "damps as the scene's law does at the depth at which the ground carries the weight, %s",
+           strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
+}
+
+/* The kind of the i-th variant in the list. */
+static kind kind_of(const tradeoff_study *s, int variant) {
+  int found = -1;
+  for (int what = OWN; what < KINDS; what++)
+    if (makes_sense(&s->setups[0]->scene, (kind)what) && ++found == variant) return (kind)what;
+  return OWN;
+}
+
+strut_status strut_tradeoff_list_variants(tradeoff_study *s) {
+  strut_tradeoff *r = s->result;
+  bool all = !s->options->own_model && r->measure != STRUT_TRADEOFF_ENERGY;
+  r->variants = strut_arena_allocate(&r->arena, KINDS, sizeof *r->variants);
+  if (!r->variants) return STRUT_NO_MEMORY;
+  for (int what = OWN; what < KINDS; what++) {
+    if (!makes_sense(&s->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
+    strut_model_variant *f = &r->variants[r->variant_count++];
+    describe(s, (kind)what, f);
+    f->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof *f->value);
+    f->floor = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->floor);
+    f->model_error = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->model_error);
+    if (!f->value || !f->floor || !f->model_error) return STRUT_NO_MEMORY;
+  }
+  return STRUT_OK;
+}
+
+static void change_contact(const tradeoff_study *s, kind what, const strut_scene *scene,
+                           strut_contact *contact) {
+  double depth = depth_at_rest(scene, contact), slope = contact->stiffness * depth;
+  bool rough = contact->friction.law != STRUT_FRICTION_NONE;
+  double speed = regularisation_speed(s, &contact->friction);
+  if (what == GROUND && scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY)
+    contact->dissipation = contact->damping / slope;
+  else if (what == GROUND)
+    contact->damping = contact->dissipation * slope;
+  if (!rough) return;
+  if (what == KARNOPP) contact->friction.law = STRUT_FRICTION_KARNOPP;
+  if (what == COULOMB) contact->friction.law = STRUT_FRICTION_COULOMB;
+  if (what == SMOOTH) contact->friction.law = STRUT_FRICTION_SMOOTH;
+  if (what == KARNOPP) contact->friction.stick_velocity = speed;
+  if (what == SMOOTH) contact->friction.width = speed;
+}
+
+strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,
+                                         strut_arena *arena) {
+  kind what = kind_of(s, variant);
+  if (what == MASS)
+    scene->mass_model =
+        scene->mass_model == STRUT_MASS_LUMPED ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED;
+  if (what == RIGID)
+    scene->bar_model = scene->bar_model == STRUT_BARS_RIGID ? STRUT_BARS_ELASTIC : STRUT_BARS_RIGID;
+  if (what < GROUND) return STRUT_OK;
+  strut_contact *contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *contacts);
+  if (!contacts) return STRUT_NO_MEMORY;
+  if (what == GROUND)
+    scene->ground.damping_law = scene->ground.damping_law == STRUT_DAMPING_APPROACH
+                                    ? STRUT_DAMPING_HUNT_CROSSLEY
+                                    : STRUT_DAMPING_APPROACH;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    contacts[i] = scene->contacts[i];
+    change_contact(s, what, scene, &contacts[i]);
+  }
+  scene->contacts = contacts;
+  return STRUT_OK;
+}
+
+bool strut_tradeoff_has_switches(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->member_count; i++)
+    if (scene->members[i].kind == STRUT_CABLE) return true;
+  return scene->contact_count > 0;
+}
+
+bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant) {
+  kind what = kind_of(s, variant);
+  bool own = has_friction(&s->setups[0]->scene, STRUT_FRICTION_COULOMB);
+  bool exact = own ? what <= GROUND : what == COULOMB;
+  if (exact && !method->events) return false;
+  return !method->events || strut_tradeoff_is_adaptive(method) ||
+         strut_tradeoff_has_switches(&s->setups[0]->scene);
+}
+
+bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method,
+                              int variant) {
+  bool wanted = s->options->method_count == 0;
+  for (size_t i = 0; i < s->options->method_count; i++)
+    wanted = wanted || s->options->methods[i] == method;
+  return wanted && strut_tradeoff_can_run(s, method, variant);
+}
+
+/* ---- the study: base, references, rows, other models ---- */
 
 enum { BEST_METHODS = 2 };
 static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3; /* [s], [1], [1] */
 /* Of the budget: the own references, the own rows, their refinement; other models have the rest. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
-static strut_status out_of_memory(study *s) {
+static strut_status out_of_memory(tradeoff_study *s) {
   return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+}
+
+strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
+                                    const strut_model **model) {
+  assert(point < s->result->point_count && variant >= 0 && variant < TRADEOFF_VARIANTS);
+  tradeoff_model *m = &s->models[point * TRADEOFF_VARIANTS + (size_t)variant];
+  strut_status status = STRUT_OK;
+  if (!m->model) {
+    m->scene = s->setups[point]->scene;
+    status = strut_tradeoff_change_scene(s, variant, &m->scene, &m->arena)
+                 ? strut_fail(s->error, STRUT_NO_MEMORY, "out of memory")
+                 : strut_model_compile(&m->scene, &m->model, s->error);
+  }
+  *model = m->model;
+  return status;
+}
+
+static void free_models(tradeoff_study *s) {
+  size_t count = s->models ? s->result->point_count * TRADEOFF_VARIANTS : 0;
+  for (size_t i = 0; i < count; i++) {
+    strut_model_free(s->models[i].model);
+    strut_arena_free(&s->models[i].arena);
+  }
+  strut_release(s->models);
 }
 
 static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tradeoff_measure m) {
@@ -23,12 +331,12 @@ static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tra
   return walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
 }
 
-static strut_status measure_points(study *s) {
+static strut_status measure_points(tradeoff_study *s) {
   for (size_t p = 0; p < s->result->point_count; p++) {
-    const strut_model *model = NULL;
-    strut_status status = strut_study_model(s, p, 0, &model);
-    if (status != STRUT_OK) return status;
     const strut_setup *setup = s->setups[p];
+    const strut_model *model = NULL;
+    strut_status status = strut_tradeoff_compile(s, p, 0, &model);
+    if (status != STRUT_OK) return status;
     strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
     s->size[p] = model->size;
     s->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
@@ -36,7 +344,7 @@ static strut_status measure_points(study *s) {
   return STRUT_OK;
 }
 
-static strut_status prepare(study *s, size_t count) {
+static strut_status prepare(tradeoff_study *s, size_t count) {
   strut_tradeoff *r = s->result;
   const strut_scene *scene = &s->setups[0]->scene;
   r->name = scene->name;
@@ -50,8 +358,8 @@ static strut_status prepare(study *s, size_t count) {
   s->base_seconds = strut_arena_allocate(&r->arena, count, sizeof *s->base_seconds);
   s->base_timed = strut_arena_allocate(&r->arena, count, sizeof *s->base_timed);
   s->scratch = strut_arena_allocate(&r->arena, most, sizeof *s->scratch);
-  s->variants = strut_allocate(count * STRUT_STUDY_VARIANTS, sizeof *s->variants);
-  if (!s->variants || !s->size || !s->scale || !s->base_evaluations || !s->base_seconds ||
+  s->models = strut_allocate(count * TRADEOFF_VARIANTS, sizeof *s->models);
+  if (!s->models || !s->size || !s->scale || !s->base_evaluations || !s->base_seconds ||
       !s->base_timed || !s->scratch)
     return out_of_memory(s);
   if (!(strut_experiment_span(&s->setups[0]->experiment, scene).duration > 0))
@@ -64,7 +372,7 @@ static strut_status prepare(study *s, size_t count) {
 }
 
 /* What stays where it is, or only goes up and down, has no velocity to be measured by. */
-static void look_elsewhere(study *s) {
+static void fall_back_to_position(tradeoff_study *s) {
   strut_tradeoff *r = s->result;
   bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(s->scratch[0]) < 1e-9 * s->scale[0];
   if (s->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
@@ -73,25 +381,25 @@ static void look_elsewhere(study *s) {
 }
 
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
-static strut_status choose_base(study *s) {
+static strut_status choose_base(tradeoff_study *s) {
   strut_tradeoff *r = s->result;
-  study_outcome outcome = {0};
+  tradeoff_outcome outcome = {0};
   strut_status status = STRUT_OK;
-  strut_experiment e = strut_study_experiment(s, 0);
-  strut_span span = strut_study_span(s, 0);
+  strut_experiment e = strut_tradeoff_experiment(s, 0);
+  strut_span span = strut_tradeoff_span(s, 0);
   r->periods = e.periods;
   r->duration = span.duration;
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
-    if (strut_study_adaptive(method) || !strut_study_able(s, method, 0)) continue;
+    if (strut_tradeoff_is_adaptive(method) || !strut_tradeoff_can_run(s, method, 0)) continue;
     double step = e.step > 0 ? e.step : span.duration / 1000;
-    s->base = (study_setting){method, step, (double)NAN, 1};
-    status = strut_study_probe(s, 0, s->base, &outcome);
+    s->base = (tradeoff_setting){method, step, (double)NAN, 1};
+    status = strut_tradeoff_probe(s, 0, s->base, &outcome);
     if (status != STRUT_OK) return status;
     if (outcome.cannot) continue;
     bool wild = !(e.step > 0) || e.step > outcome.step_limit;
     if (wild && isfinite(outcome.step_limit)) s->base.step = 0.5 * outcome.step_limit;
-    s->base.step = strut_study_fit(s, 0, s->base.step);
+    s->base.step = strut_tradeoff_fit_step(s, 0, s->base.step);
     s->base.refine = (double)NAN;
     s->limit = isfinite(outcome.step_limit) ? outcome.step_limit : 0;
     return STRUT_OK;
@@ -101,18 +409,18 @@ static strut_status choose_base(study *s) {
              : strut_fail(s->error, STRUT_USAGE, "no method can run this scene");
 }
 
-static strut_status run_base(study *s, study_ladders *own) {
+static strut_status run_base(tradeoff_study *s, step_series_list *own) {
   strut_tradeoff *r = s->result;
-  study_ladder alone = {.group = -1, .first = s->base}, *in = &alone;
+  step_series alone = {.group = -1, .first = s->base}, *in = &alone;
   for (size_t i = own->count; i-- > 0;)
     if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
       in = &own->at[i];
   if (in == &alone) alone.group = (int)r->group_count++;
   for (size_t p = 0; p < r->point_count; p++)
     s->base_evaluations[p] =
-        strut_study_span(s, p).duration / s->base.step * s->base.method->evaluations;
+        strut_tradeoff_span(s, p).duration / s->base.step * s->base.method->evaluations;
   bool cannot = false;
-  strut_status status = strut_study_run_row(s, in, s->base, true, &cannot);
+  strut_status status = strut_tradeoff_run_row(s, in, s->base, true, &cannot);
   in->last_cost = 0;
   if (status != STRUT_OK) return status;
   if (cannot || r->row_count == 0) return s->error->status;
@@ -121,49 +429,49 @@ static strut_status run_base(study *s, study_ladders *own) {
   return STRUT_OK;
 }
 
-static strut_status own_model(study *s, study_ladders *own) {
-  study_reference reference;
+static strut_status study_own_model(tradeoff_study *s, step_series_list *own) {
+  tradeoff_reference reference;
   strut_status status = STRUT_OK;
   for (size_t i = 0; strut_integrator_at(i) && status == STRUT_OK; i++)
-    if (strut_study_allowed(s, strut_integrator_at(i), 0))
-      status = strut_study_add_method(s, own, 0, strut_integrator_at(i));
+    if (strut_tradeoff_is_wanted(s, strut_integrator_at(i), 0))
+      status = strut_tradeoff_add_method(s, own, 0, strut_integrator_at(i));
   if (status == STRUT_OK) status = run_base(s, own);
-  if (status == STRUT_OK) status = strut_study_reference_begin(s, 0, &reference);
+  if (status == STRUT_OK) status = strut_tradeoff_reference_begin(s, 0, &reference);
   if (status == STRUT_OK)
-    status = strut_study_reference_refine(s, &reference, FIRST_TARGET, OWN_REFERENCE);
+    status = strut_tradeoff_reference_refine(s, &reference, FIRST_TARGET, OWN_REFERENCE);
   if (status != STRUT_OK) return status;
-  if (!s->result->fidelities[0].run)
+  if (!s->result->variants[0].run)
     return strut_fail(s->error, STRUT_DIVERGED, "there is no reference: %s",
-                      s->result->fidelities[0].remark);
-  status = strut_study_climb(s, own, OWN_ROWS, 0.2, 0.6);
-  strut_study_judge(s);
+                      s->result->variants[0].remark);
+  status = strut_tradeoff_run_series(s, own, OWN_ROWS, 0.2, 0.6);
+  strut_tradeoff_judge(s);
   for (int i = 0; i < 3 && status == STRUT_OK; i++) { /* a smaller floor uncovers smaller errors */
-    double target = 0.01 * strut_study_smallest(s, 0);
-    status = strut_study_reference_refine(s, &reference, target, OWN_REFINED);
-    strut_study_judge(s);
+    double target = 0.01 * strut_tradeoff_smallest_error(s, 0);
+    status = strut_tradeoff_reference_refine(s, &reference, target, OWN_REFINED);
+    strut_tradeoff_judge(s);
   }
   return status;
 }
 
-/* The methods of the own model's best bargains, the cheapest for each level first. */
+/* The methods of the own model's best savings, the cheapest for each level first. */
 static size_t best_methods(const strut_tradeoff *r, const strut_integrator *best[BEST_METHODS]) {
   size_t count = 0;
   for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) {
     int row = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
-    bool known = row < 0;
-    for (size_t k = 0; k < count && !known; k++) known = best[k] == r->rows[row].method;
-    if (!known && count < BEST_METHODS) best[count++] = r->rows[row].method;
+    bool is_known = row < 0;
+    for (size_t k = 0; k < count && !is_known; k++) is_known = best[k] == r->rows[row].method;
+    if (!is_known && count < BEST_METHODS) best[count++] = r->rows[row].method;
   }
   return count;
 }
 
 /* Whether the base's run at the first point is another one in another model. */
-static strut_status differs(study *s, int fidelity, bool *different) {
+static strut_status differs(tradeoff_study *s, int variant, bool *different) {
   const strut_tradeoff *r = s->result;
-  study_outcome outcome;
+  tradeoff_outcome outcome;
   *different = true;
-  if (!strut_study_able(s, s->base.method, fidelity)) return STRUT_OK;
-  strut_status status = strut_study_probe(s, fidelity, s->base, &outcome);
+  if (!strut_tradeoff_can_run(s, s->base.method, variant)) return STRUT_OK;
+  strut_status status = strut_tradeoff_probe(s, variant, s->base, &outcome);
   if (status != STRUT_OK || outcome.cannot || outcome.status != STRUT_OK) return status;
   *different = false;
   for (size_t i = 0; i < r->value_count; i++)
@@ -171,34 +479,35 @@ static strut_status differs(study *s, int fidelity, bool *different) {
   return STRUT_OK;
 }
 
-static strut_status other_model(study *s, int fidelity, double share, double from, double to) {
+static strut_status study_variant(tradeoff_study *s, int variant, double share, double from,
+                                  double to) {
   strut_tradeoff *r = s->result;
   const strut_integrator *best[BEST_METHODS];
   size_t count = best_methods(r, best);
-  double before = strut_study_left(s, share);
+  double before = strut_tradeoff_time_left(s, share);
   if (before <= 0) {
-    snprintf(r->fidelities[fidelity].remark, sizeof r->fidelities[fidelity].remark,
+    snprintf(r->variants[variant].remark, sizeof r->variants[variant].remark,
              "the budget did not suffice");
     return STRUT_OK;
   }
-  study_reference reference;
-  study_ladders all = {.count = 0};
+  tradeoff_reference reference;
+  step_series_list all = {.count = 0};
   bool different = true;
-  strut_status status = differs(s, fidelity, &different);
+  strut_status status = differs(s, variant, &different);
   if (status == STRUT_OK && !different)
-    snprintf(r->fidelities[fidelity].remark, sizeof r->fidelities[fidelity].remark,
+    snprintf(r->variants[variant].remark, sizeof r->variants[variant].remark,
              "the motion does not depend on it");
   if (status != STRUT_OK || !different) return status;
-  status = strut_study_reference_begin(s, fidelity, &reference);
+  status = strut_tradeoff_reference_begin(s, variant, &reference);
   if (status == STRUT_OK)
-    status = strut_study_reference_refine(s, &reference, FIRST_TARGET,
-                                          share - 0.5 * fmax(0, before) / s->budget);
-  for (size_t i = 0; i < count && status == STRUT_OK && r->fidelities[fidelity].run; i++)
-    if (strut_study_able(s, best[i], fidelity))
-      status = strut_study_add_method(s, &all, fidelity, best[i]);
-  if (status == STRUT_OK && all.count == 0 && r->fidelities[fidelity].run && reference.method[0])
-    status = strut_study_add_method(s, &all, fidelity, reference.method[0]);
-  if (status == STRUT_OK) status = strut_study_climb(s, &all, share, from, to);
+    status = strut_tradeoff_reference_refine(s, &reference, FIRST_TARGET,
+                                             share - 0.5 * fmax(0, before) / s->budget);
+  for (size_t i = 0; i < count && status == STRUT_OK && r->variants[variant].run; i++)
+    if (strut_tradeoff_can_run(s, best[i], variant))
+      status = strut_tradeoff_add_method(s, &all, variant, best[i]);
+  if (status == STRUT_OK && all.count == 0 && r->variants[variant].run && reference.method[0])
+    status = strut_tradeoff_add_method(s, &all, variant, reference.method[0]);
+  if (status == STRUT_OK) status = strut_tradeoff_run_series(s, &all, share, from, to);
   return status;
 }
 
@@ -220,25 +529,26 @@ static void sort_rows(strut_tradeoff *r) {
     if (r->rows[i].base) r->base = i;
 }
 
-static strut_status make(study *s, size_t count) {
+static strut_status make(tradeoff_study *s, size_t count) {
   strut_tradeoff *r = s->result;
-  study_ladders own = {.count = 0};
+  step_series_list own = {.count = 0};
   strut_status status = prepare(s, count);
   if (status == STRUT_OK) status = choose_base(s);
-  if (status == STRUT_OK) look_elsewhere(s);
-  if (status == STRUT_OK && strut_study_list_fidelities(s) != STRUT_OK) status = out_of_memory(s);
-  if (status == STRUT_OK) status = own_model(s, &own);
-  double others = (double)(r->fidelity_count - 1);
-  for (size_t i = 1; i < r->fidelity_count && status == STRUT_OK; i++) {
+  if (status == STRUT_OK) fall_back_to_position(s);
+  if (status == STRUT_OK && strut_tradeoff_list_variants(s) != STRUT_OK) status = out_of_memory(s);
+  if (status == STRUT_OK) status = study_own_model(s, &own);
+  double others = (double)(r->variant_count - 1);
+  for (size_t i = 1; i < r->variant_count && status == STRUT_OK; i++) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
-    double spent = 1 - strut_study_left(s, 1) / s->budget; /* what is left goes to all alike */
-    double share = spent + fmax(0, 1 - spent) / (double)(r->fidelity_count - i);
-    status = other_model(s, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
+    double spent =
+        1 - strut_tradeoff_time_left(s, 1) / s->budget; /* what is left goes to all alike */
+    double share = spent + fmax(0, 1 - spent) / (double)(r->variant_count - i);
+    status = study_variant(s, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }
   if (status != STRUT_OK) return status;
-  strut_study_judge(s);
+  strut_tradeoff_judge(s);
   sort_rows(r);
-  r->spent = strut_study_clock() - s->began;
+  r->spent = strut_tradeoff_cpu_clock() - s->began;
   return STRUT_OK;
 }
 
@@ -247,14 +557,14 @@ strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                  strut_error *error) {
   strut_error own = {0};
   *result = (strut_tradeoff){.name = ""};
-  study s = {.setups = setups,
-             .options = options,
-             .result = result,
-             .error = error ? error : &own,
-             .began = strut_study_clock(),
-             .budget = options->budget > 0 ? options->budget : USUAL_BUDGET};
+  tradeoff_study s = {.setups = setups,
+                      .options = options,
+                      .result = result,
+                      .error = error ? error : &own,
+                      .began = strut_tradeoff_cpu_clock(),
+                      .budget = options->budget > 0 ? options->budget : USUAL_BUDGET};
   strut_status status = make(&s, count);
-  strut_study_free_models(&s);
+  free_models(&s);
   return status;
 }
 

@@ -3,7 +3,7 @@
  * What an answer costs: methods, steps and models of one scene against converged references.
  *
  * Two errors are kept apart. The *step error* of a run is its distance from the converged answer of
- * the same model. The *model error* of a fidelity (lumped masses, another friction law, ...) is the
+ * the same model. The *model error* of a variant (lumped masses, another friction law, ...) is the
  * distance of its converged answer from that of the scene's own model. The *total error* is the
  * distance of a run from the latter.
  *
@@ -18,6 +18,7 @@
 #include <stdbool.h>
 
 #include "engine/integrate/integrator.h"
+#include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
 
 typedef enum strut_tradeoff_measure {
@@ -39,7 +40,7 @@ typedef struct strut_tradeoff_options {
   int repeats;    /* of a short run, for its CPU time; 0: 5 */
   const strut_integrator *const *methods; /* (method_count) only these; 0: all */
   size_t method_count;
-  bool own_model;                                   /* leave out other fidelities */
+  bool own_model;                                   /* leave out other variants */
   const volatile sig_atomic_t *interrupt;           /* may be NULL */
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
@@ -66,8 +67,8 @@ typedef struct strut_model_variant {
 
 /** One setting, run at every operating point. */
 typedef struct strut_tradeoff_row {
-  int fidelity; /* index */
-  int group;    /* settings that differ by their step or tolerance alone */
+  int variant; /* index */
+  int group;   /* settings that differ by their step or tolerance alone */
   const strut_integrator *method;
   bool base;        /* the setting that costs are relative to */
   double step;      /* [s]; fitted to each point's periods. Of an adaptive method the largest */
@@ -87,7 +88,7 @@ typedef struct strut_tradeoff_row {
 typedef struct strut_tradeoff {
   const char *name; /* of the scene */
   strut_tradeoff_measure measure;
-  size_t point_count, value_count, fidelity_count, row_count, group_count;
+  size_t point_count, value_count, variant_count, row_count, group_count;
   double scale;    /* velocities below it have errors relative to it [m/s]; of the first point */
   double periods;  /* run; 0 where the run is given in seconds */
   double duration; /* of the first point [s] */
@@ -96,7 +97,7 @@ typedef struct strut_tradeoff {
   size_t base;     /* row */
   size_t left_out; /* settings for which the budget did not suffice */
   double spent;    /* CPU time [s] */
-  strut_model_variant *fidelities;
+  strut_model_variant *variants;
   strut_tradeoff_row *rows;
   strut_arena arena;
 } strut_tradeoff;
@@ -121,10 +122,27 @@ STRUT_API double strut_tradeoff_level(int i);
 /** The largest worst total error of a row and of all finer ones of its group. */
 STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
 /**
- * The cheapest row of a fidelity whose worst total error stays within `level`, and that of all
+ * The cheapest row of a variant whose worst total error stays within `level`, and that of all
  * smaller steps or tolerances of its group too: a single small error at a large step is luck. -1:
  * none.
  */
-STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int fidelity, double level);
+STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int variant, double level);
+
+/**
+ * Texts in blocks of strut_allocate; NULL: memory was out. CPU times in them are measurements: they
+ * differ from run to run, everything else does not while the budget suffices.
+ */
+STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
+/** setups: the operating points, whose parameters are told. */
+STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_setup *const *setups);
+/** One row per setting, the spreads over the operating points; diverged: "inf". */
+STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
+
+/**
+ * Draws it into the file `path`, `width` [pt] wide. Over several operating points a marker is the
+ * median and a bar leads to the worst. As strut_canvas_open and strut_canvas_commit.
+ */
+STRUT_API strut_status strut_tradeoff_figure(const char *path, double width,
+                                             const strut_tradeoff *result, strut_error *error);
 
 #endif

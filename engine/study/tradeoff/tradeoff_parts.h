@@ -5,32 +5,33 @@
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_PARTS_H
 #define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_PARTS_H
 
+#include "engine/output/buffer.h"
 #include "engine/study/tradeoff/tradeoff.h"
 
-enum { STRUT_STUDY_VARIANTS = 7 }; /* most fidelities of a scene */
-
-/** A point's scene in a fidelity, and its model once that has been asked for. */
-typedef struct study_variant {
-  strut_scene scene; /* its contacts may be the arena's; all else is shared */
-  strut_model *model;
-  strut_arena arena;
-} study_variant;
-
-typedef struct study_setting {
+typedef struct tradeoff_setting {
   const strut_integrator *method;
   double step, tolerance, refine; /* tolerance, refine: NAN where they say nothing */
-} study_setting;
+} tradeoff_setting;
 
 /** What one run gave. */
-typedef struct study_outcome {
+typedef struct tradeoff_outcome {
   strut_status status; /* STRUT_OK, or STRUT_DIVERGED for all that goes wrong on the way */
   bool cannot;         /* the method cannot run this model at all; error holds the reason */
   int64_t evaluations;
   double seconds;    /* CPU time of the stepping alone */
   double step_limit; /* [s] */
-} study_outcome;
+} tradeoff_outcome;
 
-typedef struct study {
+enum { TRADEOFF_VARIANTS = 7 }; /* at most, with the scene's own model */
+
+/** A point's scene in a variant, and its model once that was needed. */
+typedef struct tradeoff_model {
+  strut_scene scene; /* its contacts may be the arena's; all else is shared */
+  strut_model *model;
+  strut_arena arena;
+} tradeoff_model;
+
+typedef struct tradeoff_study {
   const strut_setup *const *setups;
   const strut_tradeoff_options *options;
   strut_tradeoff *result;
@@ -39,75 +40,122 @@ typedef struct study {
   double budget;        /* [s] */
   double *size, *scale; /* (points) [m], [m/s] */
   double *scratch;      /* (max(points, values)) */
-  study_setting base;
+  tradeoff_setting base;
   double limit; /* of the base's method [s]; 0 where there is none */
   double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
   size_t row_room;
-  study_variant *variants; /* (points, STRUT_STUDY_VARIANTS) */
-} study;
+  tradeoff_model *models; /* (points, TRADEOFF_VARIANTS) */
+} tradeoff_study;
 
 /** This thread's CPU time [s]. */
-double strut_study_clock(void);
+double strut_tradeoff_cpu_clock(void);
 /** CPU time left until a share of the budget is spent [s]; below 0: over. */
-double strut_study_left(const study *s, double share);
+double strut_tradeoff_time_left(const tradeoff_study *s, double share);
 /** strut_simulate's experiment for `point`, cut to the periods that are wanted. */
-strut_experiment strut_study_experiment(const study *s, size_t point);
+strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
-double strut_study_fit(const study *s, size_t point, double step);
+double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double step);
 /** Duration and period of that experiment. */
-strut_span strut_study_span(const study *s, size_t point);
+strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point);
 /** The longest step that can make sense: a part of the period, or else of the duration [s]. */
-double strut_study_longest(const study *s, size_t point);
+double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point);
 /**
- * Runs a fidelity with a setting at an operating point; its values go into (value_count) `value`,
+ * Runs a variant with a setting at an operating point; its values go into (value_count) `value`,
  * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.
  */
-strut_status strut_study_run(const study *s, size_t point, int fidelity, study_setting setting,
-                             double *value, study_outcome *outcome);
+strut_status strut_tradeoff_run(const tradeoff_study *s, size_t point, int variant,
+                                tradeoff_setting setting, double *value, tradeoff_outcome *outcome);
 /** Distance of two answers at a point: that of errors. INFINITY where one is not a number. */
-double strut_study_distance(const study *s, size_t point, const double *value,
-                            const double *reference);
+double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
+                               const double *reference);
 /** Whether forces of the scene can jump or have kinks. */
-bool strut_study_switches(const strut_scene *scene);
-bool strut_study_adaptive(const strut_integrator *method);
+bool strut_tradeoff_has_switches(const strut_scene *scene);
+bool strut_tradeoff_is_adaptive(const strut_integrator *method);
 /**
- * Whether a method can run a fidelity's law of friction, and differs in this scene from all others:
+ * Whether a method can run a variant's law of friction, and differs in this scene from all others:
  * where nothing touches or goes slack there are no events to locate.
  */
-bool strut_study_able(const study *s, const strut_integrator *method, int fidelity);
+bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant);
 /** Whether it is wanted, too. */
-bool strut_study_allowed(const study *s, const strut_integrator *method, int fidelity);
+bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method, int variant);
 
 /** Lists the scene's own model and those that make sense beside it. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_study_list_fidelities(study *s);
-/** Changes a scene into that of a fidelity; new contacts come from the arena. */
-strut_status strut_study_change_scene(const study *s, int fidelity, strut_scene *scene,
-                                      strut_arena *arena);
-/** The model of a point in a fidelity, compiled once and kept. Fails as strut_model_compile. */
-strut_status strut_study_model(const study *s, size_t point, int fidelity,
-                               const strut_model **model);
-/** Frees all of them. */
-void strut_study_free_models(study *s);
+strut_status strut_tradeoff_list_variants(tradeoff_study *s);
+/** Changes a scene into that of a variant; new contacts come from the arena. */
+strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,
+                                         strut_arena *arena);
+/** A point's model in a variant, compiled once and kept. Fails as strut_model_compile. */
+strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
+                                    const strut_model **model);
 
-/** Two methods, refined in turn: state of the search for one fidelity's references. */
-typedef struct study_reference {
-  int fidelity;
+/** Two methods, refined in turn: state of the search for one variant's references. */
+typedef struct tradeoff_reference {
+  int variant;
   const strut_integrator *method[2];
   double limit;            /* [s] first step of the first method */
   int *level, *idle;       /* (points) next level; levels in a row that did not help */
   double last_cost;        /* CPU time of the latest level of one point [s] */
   double *latest, *before; /* (2, values), (points, 2, values) */
-} study_reference;
+} tradeoff_reference;
 
-/** Chooses the methods. Where there are none, the fidelity is not run and says why. */
-strut_status strut_study_reference_begin(study *s, int fidelity, study_reference *r);
+/** Chooses the methods. Where there are none, the variant is not run and says why. */
+strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, tradeoff_reference *r);
 /** Refines until every floor is at most `target` or the share of the budget is spent. */
-strut_status strut_study_reference_refine(study *s, study_reference *r, double target,
-                                          double share);
+strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
+                                             double target, double share);
 
 /** Errors, spreads and fronts of all rows, from values and references. */
-void strut_study_judge(study *s);
+void strut_tradeoff_judge(tradeoff_study *s);
 /** The smallest worst error of a row, not counting what a floor hides; 1 where there is none. */
-double strut_study_smallest(const study *s, int fidelity);
+double strut_tradeoff_smallest_error(const tradeoff_study *s, int variant);
+
+enum { MOST_STEP_SERIES = 64 };
+
+/* Settings that differ by their step alone. */
+typedef struct step_series {
+  int variant, group;
+  tradeoff_setting first; /* its step is the method's limit */
+  bool limited;           /* there is one */
+  double last_cost;       /* CPU time of the latest row [s]; 0: none yet */
+  bool over;              /* the budget does not suffice for the next */
+} step_series;
+
+typedef struct step_series_list {
+  step_series at[MOST_STEP_SERIES];
+  size_t count;
+} step_series_list;
+
+/** One run at the first point, its values thrown into s->scratch. */
+strut_status strut_tradeoff_probe(const tradeoff_study *s, int variant, tradeoff_setting setting,
+                                  tradeoff_outcome *outcome);
+/**
+ * Runs a setting at every point as a new row, with its cost; `base` where costs are relative to it.
+ * Where its method cannot, there is no row.
+ */
+strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
+                                    bool base, bool *cannot);
+/** Adds one ladder for each way in which a method can refine that makes a difference here. */
+strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
+                                       const strut_integrator *method);
+/**
+ * Runs all ladders side by side from coarse to fine, as far as the share of the budget goes; the
+ * progress goes between two fractions.
+ */
+strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
+                                       double from, double to);
+
+enum { STRUT_TRADEOFF_TEXT = 100 };
+
+/** "0.43 %", "diverged" where infinite, "-" where it is not a number. */
+const char *strut_tradeoff_percent_text(double error, char text[STRUT_TRADEOFF_TEXT]);
+/** "verlet-events, refined 8". */
+const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
+                                      char text[STRUT_TRADEOFF_TEXT]);
+/** "80 us", or "1e-05" of an adaptive method. */
+const char *strut_tradeoff_step_text(const strut_tradeoff_row *row, char text[STRUT_TRADEOFF_TEXT]);
+/** "velocity", "position", "energy". */
+const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
+/** One sentence for each level of error, and one for each other model. Call in the C locale. */
+void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *result);
 
 #endif

@@ -1,27 +1,150 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/tradeoff/tradeoff_report.h"
+#include "engine/study/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
-#include "engine/study/tradeoff/tradeoff_words.h"
+#include "engine/study/tradeoff/tradeoff_parts.h"
+
+/* ---- words ---- */
+
+const char *strut_tradeoff_percent_text(double error, char text[STRUT_TRADEOFF_TEXT]) {
+  if (isnan(error))
+    snprintf(text, STRUT_TRADEOFF_TEXT, "-");
+  else if (isinf(error))
+    snprintf(text, STRUT_TRADEOFF_TEXT, "diverged");
+  else if (error >= 10)
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%.0e %%", 100 * error);
+  else if (error >= 0.0995)
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%.0f %%", 100 * error);
+  else
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%.2g %%", 100 * error);
+  return text;
+}
+
+const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
+                                      char text[STRUT_TRADEOFF_TEXT]) {
+  if (!isfinite(row->refine))
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s", row->method->name);
+  else if (row->refine > 0)
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s, refined %.3g", row->method->name, row->refine);
+  else
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s, refined", row->method->name);
+  return text;
+}
+
+const char *strut_tradeoff_step_text(const strut_tradeoff_row *row,
+                                     char text[STRUT_TRADEOFF_TEXT]) {
+  if (isfinite(row->tolerance))
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%.0e", row->tolerance);
+  else
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s", strut_quantity_of(row->step, 3, "s").text);
+  return text;
+}
+
+const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure) {
+  static const char *const names[] = {"", "velocity", "position", "energy"};
+  return names[measure];
+}
+
+static const char *refined(const strut_tradeoff_row *row, char text[STRUT_TRADEOFF_TEXT]) {
+  text[0] = '\0';
+  if (isfinite(row->refine) && row->refine > 0)
+    snprintf(text, STRUT_TRADEOFF_TEXT, ", steps divided by %.3g after touchdowns", row->refine);
+  else if (isfinite(row->refine))
+    snprintf(text, STRUT_TRADEOFF_TEXT, ", steps refined after touchdowns as the scene suggests");
+  return text;
+}
+
+static void advise_level(strut_buffer *text, const strut_tradeoff *r, double level) {
+  char a[STRUT_TRADEOFF_TEXT], b[STRUT_TRADEOFF_TEXT], c[STRUT_TRADEOFF_TEXT],
+      d[STRUT_TRADEOFF_TEXT];
+  int best = strut_tradeoff_best(r, 0, level);
+  strut_buffer_add(text, "  %5s: ", strut_tradeoff_percent_text(level, a));
+  if (best < 0) {
+    strut_buffer_add(text, "none of these keeps it\n");
+    return;
+  }
+  const strut_tradeoff_row *row = &r->rows[best], *base = &r->rows[r->base];
+  strut_buffer_add(text, "%s, %s%s%s: %.2g of the cost of %s, %s", row->method->name,
+                   isfinite(row->tolerance) ? "tolerance " : "", strut_tradeoff_step_text(row, a),
+                   refined(row, b), row->evaluations, base->method->name,
+                   strut_tradeoff_step_text(base, c));
+  if (isfinite(row->cpu)) strut_buffer_add(text, " (%.2g of its CPU time)", row->cpu);
+  strut_buffer_add(text, "; error at most %s\n",
+                   strut_tradeoff_percent_text(strut_tradeoff_promise(r, best), d));
+}
+
+/* Whether a variant reaches some level cheaper than the scene's own model does, and which. */
+static int find_saving(const strut_tradeoff *r, int variant, double *level) {
+  for (int i = STRUT_TRADEOFF_LEVELS; i-- > 0;) {
+    int own = strut_tradeoff_best(r, 0, strut_tradeoff_level(i));
+    int other = strut_tradeoff_best(r, variant, strut_tradeoff_level(i));
+    *level = strut_tradeoff_level(i);
+    if (other >= 0 && (own < 0 || r->rows[other].evaluations < 0.9 * r->rows[own].evaluations))
+      return other;
+  }
+  return -1;
+}
+
+static void advise_model(strut_buffer *text, const strut_tradeoff *r, int variant) {
+  const strut_model_variant *f = &r->variants[variant];
+  char a[STRUT_TRADEOFF_TEXT], b[STRUT_TRADEOFF_TEXT], c[STRUT_TRADEOFF_TEXT];
+  if (!f->run) {
+    strut_buffer_add(text, "  %s: not run; %s\n", f->name, f->remark);
+    return;
+  }
+  double level = 0, change = f->model_spread.worst;
+  int row = find_saving(r, variant, &level);
+  strut_buffer_add(text, "  %s: %s the answer by %s", f->name,
+                   r->point_count > 1 ? "in the worst case changes" : "changes",
+                   strut_tradeoff_percent_text(change, a));
+  if (row >= 0) {
+    int own = strut_tradeoff_best(r, 0, level);
+    strut_buffer_add(text, "; a bargain for %s: %s, %s costs %.2g, ",
+                     strut_tradeoff_percent_text(level, a), r->rows[row].method->name,
+                     strut_tradeoff_step_text(&r->rows[row], b), r->rows[row].evaluations);
+    if (own >= 0)
+      strut_buffer_add(text, "the scene's own model %.2g\n", r->rows[own].evaluations);
+    else
+      strut_buffer_add(text, "the scene's own model does not keep it here\n");
+  } else if (change > strut_tradeoff_level(0)) {
+    strut_buffer_add(text, ": not a bargain in this scene\n");
+  } else {
+    strut_buffer_add(text, " (floor %s), and is no cheaper: not a bargain in this scene\n",
+                     strut_tradeoff_percent_text(f->floor_spread.worst, c));
+  }
+}
+
+void strut_tradeoff_add_advice(strut_buffer *text, const strut_tradeoff *r) {
+  strut_buffer_add(text,
+                   "Advice: the cheapest that keep an error, there and at all finer "
+                   "settings that were run\n");
+  for (int i = 0; i < STRUT_TRADEOFF_LEVELS; i++) advise_level(text, r, strut_tradeoff_level(i));
+  if (r->variant_count > 1)
+    strut_buffer_add(text, "\nOther models, converged, against the scene's own\n");
+  for (size_t i = 1; i < r->variant_count; i++) advise_model(text, r, (int)i);
+}
+
+/* ---- the table ---- */
 
 static void add_head(strut_buffer *table, const strut_tradeoff *r) {
   const strut_tradeoff_row *base = &r->rows[r->base];
-  char a[STRUT_STUDY_WORDS];
+  char a[STRUT_TRADEOFF_TEXT];
   strut_buffer_add(table, "%s%swhat the %s costs", r->name, *r->name ? ": " : "",
-                   strut_study_measure(r->measure));
+                   strut_tradeoff_measure_text(r->measure));
   if (r->periods > 0)
     strut_buffer_add(table, " in %.6g periods", r->periods);
   else
     strut_buffer_add(table, " in %s", strut_quantity_of(r->duration, 4, "s").text);
   if (r->point_count > 1) strut_buffer_add(table, ", %zu operating points", r->point_count);
   strut_buffer_add(table, "\ncost 1: %s, %s: %.0f evaluations of the forces", base->method->name,
-                   strut_study_step(base, a), (double)r->base_evaluations);
+                   strut_tradeoff_step_text(base, a), (double)r->base_evaluations);
   if (isfinite(r->base_seconds))
     strut_buffer_add(table, ", %s of CPU time", strut_quantity_of(r->base_seconds, 3, "s").text);
   strut_buffer_add(table, "%s\n", r->point_count > 1 ? " at the first point" : "");
@@ -32,16 +155,16 @@ static void add_head(strut_buffer *table, const strut_tradeoff *r) {
     strut_buffer_add(table, "errors relative to the size of the structure\n");
 }
 
-static void add_fidelity(strut_buffer *table, const strut_tradeoff *r, int fidelity) {
-  const strut_model_variant *f = &r->fidelities[fidelity];
-  char a[STRUT_STUDY_WORDS];
+static void add_variant(strut_buffer *table, const strut_tradeoff *r, int variant) {
+  const strut_model_variant *f = &r->variants[variant];
+  char a[STRUT_TRADEOFF_TEXT];
   if (!f->run) return;
-  strut_buffer_add(table, "\n%s%s\n", f->name, fidelity ? ", the best of its settings" : "");
+  strut_buffer_add(table, "\n%s%s\n", f->name, variant ? ", the best of its settings" : "");
   if (f->remark[0]) strut_buffer_add(table, "  %s\n", f->remark);
   strut_buffer_add(table, "  reference: %s", f->reference[0]);
   if (f->reference[1][0])
     strut_buffer_add(table, " and %s; apart by %s", f->reference[1],
-                     strut_study_percent(f->floor_spread.worst, a));
+                     strut_tradeoff_percent_text(f->floor_spread.worst, a));
   if (r->point_count > 1) strut_buffer_add(table, " at worst, settings of the first point");
   strut_buffer_add(table, "\n  %-26s %9s %9s %8s %9s", "method", "step", "cost", "CPU",
                    r->point_count > 1 ? "median" : "error");
@@ -50,15 +173,16 @@ static void add_fidelity(strut_buffer *table, const strut_tradeoff *r, int fidel
 }
 
 static void add_row(strut_buffer *table, const strut_tradeoff *r, const strut_tradeoff_row *row) {
-  char a[STRUT_STUDY_WORDS], b[STRUT_STUDY_WORDS], cpu[STRUT_STUDY_WORDS] = "-";
-  char worst[STRUT_STUDY_WORDS];
+  char a[STRUT_TRADEOFF_TEXT], b[STRUT_TRADEOFF_TEXT], cpu[STRUT_TRADEOFF_TEXT] = "-";
+  char worst[STRUT_TRADEOFF_TEXT];
   if (isfinite(row->cpu)) snprintf(cpu, sizeof cpu, "%.3g", row->cpu);
   strut_buffer_add(table, "%c%c %-25s %9s %9.3g %8s", row->front ? '*' : ' ', row->base ? '=' : ' ',
-                   strut_study_group(row, a), strut_study_step(row, b), row->evaluations, cpu);
-  strut_buffer_add(table, " %9s", strut_study_percent(row->error_spread.median, a));
+                   strut_tradeoff_group_text(row, a), strut_tradeoff_step_text(row, b),
+                   row->evaluations, cpu);
+  strut_buffer_add(table, " %9s", strut_tradeoff_percent_text(row->error_spread.median, a));
   if (r->point_count > 1) {
-    strut_buffer_add(table, " %9s %9s", strut_study_percent(row->error_spread.ninety, a),
-                     strut_study_percent(row->error_spread.worst, worst));
+    strut_buffer_add(table, " %9s %9s", strut_tradeoff_percent_text(row->error_spread.ninety, a),
+                     strut_tradeoff_percent_text(row->error_spread.worst, worst));
     if (row->diverged) strut_buffer_add(table, "  (%zu diverged)", row->diverged);
   }
   strut_buffer_add(table, "\n");
@@ -68,11 +192,11 @@ char *strut_tradeoff_table(const strut_tradeoff *r) {
   strut_buffer table = {0};
   strut_c_locale locale = strut_c_locale_enter();
   add_head(&table, r);
-  for (size_t f = 0; f < r->fidelity_count; f++) {
-    add_fidelity(&table, r, (int)f);
+  for (size_t f = 0; f < r->variant_count; f++) {
+    add_variant(&table, r, (int)f);
     for (size_t i = 0; i < r->row_count; i++) {
       const strut_tradeoff_row *row = &r->rows[i];
-      bool shown = row->fidelity == (int)f && r->fidelities[f].run && (f == 0 || row->front);
+      bool shown = row->variant == (int)f && r->variants[f].run && (f == 0 || row->front);
       if (shown) add_row(&table, r, row);
     }
   }
@@ -81,7 +205,7 @@ char *strut_tradeoff_table(const strut_tradeoff *r) {
     strut_buffer_add(&table, "  %zu finer settings left out: the budget did not suffice\n",
                      r->left_out);
   strut_buffer_add(&table, "\n");
-  strut_study_advise(&table, r);
+  strut_tradeoff_add_advice(&table, r);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }
@@ -105,15 +229,15 @@ static void add_spread(strut_buffer *csv, const strut_spread *spread) {
 
 char *strut_tradeoff_csv(const strut_tradeoff *r) {
   strut_buffer csv = {0};
-  char a[STRUT_STUDY_WORDS];
+  char a[STRUT_TRADEOFF_TEXT];
   strut_buffer_add(&csv,
                    "model,group,method,refine,step [s],tolerance,evaluations,cpu,seconds [s],"
                    "error median,error 90 %%,error worst,total median,total 90 %%,"
                    "total worst,diverged,points,front,base\n");
   for (size_t i = 0; i < r->row_count; i++) {
     const strut_tradeoff_row *row = &r->rows[i];
-    strut_buffer_add(&csv, "\"%s\",\"%s\",%s", r->fidelities[row->fidelity].name,
-                     strut_study_group(row, a), row->method->name);
+    strut_buffer_add(&csv, "\"%s\",\"%s\",%s", r->variants[row->variant].name,
+                     strut_tradeoff_group_text(row, a), row->method->name);
     add_number(&csv, row->refine);
     add_number(&csv, row->step);
     add_number(&csv, row->tolerance);
@@ -134,15 +258,15 @@ static void put_spread(strut_json *json, struct cJSON *to, const char *key,
                        const strut_spread *spread, const double *values, size_t count) {
   struct cJSON *object = strut_json_object(json, to, key);
   strut_json_number(json, object, "median", spread->median);
-  strut_json_number(json, object, "ninety", spread->ninety);
+  strut_json_number(json, object, "percentile_90", spread->ninety);
   strut_json_number(json, object, "worst", spread->worst);
   strut_json_numbers(json, object, "points", values, count);
 }
 
-static void put_fidelities(strut_json *json, const strut_tradeoff *r) {
+static void put_variants(strut_json *json, const strut_tradeoff *r) {
   struct cJSON *list = strut_json_array(json, json->root, "models");
-  for (size_t i = 0; i < r->fidelity_count; i++) {
-    const strut_model_variant *f = &r->fidelities[i];
+  for (size_t i = 0; i < r->variant_count; i++) {
+    const strut_model_variant *f = &r->variants[i];
     struct cJSON *object = strut_json_object(json, list, NULL);
     strut_json_text(json, object, "name", f->name);
     strut_json_text(json, object, "remark", f->remark[0] ? f->remark : NULL);
@@ -159,12 +283,12 @@ static void put_fidelities(strut_json *json, const strut_tradeoff *r) {
 
 static void put_rows(strut_json *json, const strut_tradeoff *r) {
   struct cJSON *list = strut_json_array(json, json->root, "settings");
-  char a[STRUT_STUDY_WORDS];
+  char a[STRUT_TRADEOFF_TEXT];
   for (size_t i = 0; i < r->row_count; i++) {
     const strut_tradeoff_row *row = &r->rows[i];
     struct cJSON *object = strut_json_object(json, list, NULL);
-    strut_json_text(json, object, "model", r->fidelities[row->fidelity].name);
-    strut_json_text(json, object, "group", strut_study_group(row, a));
+    strut_json_text(json, object, "model", r->variants[row->variant].name);
+    strut_json_text(json, object, "group", strut_tradeoff_group_text(row, a));
     strut_json_text(json, object, "method", row->method->name);
     strut_json_number(json, object, "step", row->step);
     strut_json_number(json, object, "tolerance", row->tolerance);
@@ -212,7 +336,7 @@ char *strut_tradeoff_json(const strut_tradeoff *r, const strut_setup *const *set
   strut_json json = strut_json_begin();
   strut_json_text(&json, json.root, "name", r->name);
   strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
-  strut_json_text(&json, json.root, "measure", strut_study_measure(r->measure));
+  strut_json_text(&json, json.root, "measure", strut_tradeoff_measure_text(r->measure));
   if (r->periods > 0) strut_json_number(&json, json.root, "periods", r->periods);
   strut_json_number(&json, json.root, "duration", r->duration);
   if (r->measure == STRUT_TRADEOFF_VELOCITY) strut_json_number(&json, json.root, "scale", r->scale);
@@ -220,9 +344,9 @@ char *strut_tradeoff_json(const strut_tradeoff *r, const strut_setup *const *set
   strut_json_integer(&json, json.root, "base_evaluations", r->base_evaluations);
   strut_json_number(&json, json.root, "base_seconds", r->base_seconds);
   strut_json_number(&json, json.root, "spent_seconds", r->spent);
-  strut_json_integer(&json, json.root, "left_out", (int64_t)r->left_out);
+  strut_json_integer(&json, json.root, "skipped_settings", (int64_t)r->left_out);
   put_points(&json, setups, r->point_count);
-  put_fidelities(&json, r);
+  put_variants(&json, r);
   put_rows(&json, r);
   put_advice(&json, r);
   return strut_json_end(&json);

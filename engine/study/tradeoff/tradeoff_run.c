@@ -1,29 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One run: the scene changed to a setting, what it gave, and the CPU time of its steps. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
+#include "engine/output/quantity_text.h"
 #include "engine/run/simulate.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 enum { USUAL_PERIODS = 120 };
 
-double strut_study_clock(void) {
+double strut_tradeoff_cpu_clock(void) {
   struct timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-double strut_study_left(const study *s, double share) {
-  return share * s->budget - (strut_study_clock() - s->began);
+double strut_tradeoff_time_left(const tradeoff_study *s, double share) {
+  return share * s->budget - (strut_tradeoff_cpu_clock() - s->began);
 }
 
-bool strut_study_adaptive(const strut_integrator *method) {
+bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
   return strcmp(method->name, "adaptive") == 0;
 }
 
-strut_experiment strut_study_experiment(const study *s, size_t point) {
+strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
   strut_experiment e = s->setups[point]->experiment;
   e.quantity_count = 0; /* velocity and positions are compared, and what they cost */
   double most = s->options->periods > 0 ? s->options->periods : USUAL_PERIODS;
@@ -39,13 +41,13 @@ strut_experiment strut_study_experiment(const study *s, size_t point) {
   return e;
 }
 
-strut_span strut_study_span(const study *s, size_t point) {
-  const strut_experiment e = strut_study_experiment(s, point);
+strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point) {
+  const strut_experiment e = strut_tradeoff_experiment(s, point);
   return strut_experiment_span(&e, &s->setups[point]->scene);
 }
 
-double strut_study_fit(const study *s, size_t point, double step) {
-  strut_span span = strut_study_span(s, point);
+double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double step) {
+  strut_span span = strut_tradeoff_span(s, point);
   double turns = span.period > 0 ? span.duration / span.period : 0;
   bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
   double unit = whole ? span.period : span.duration;
@@ -56,7 +58,7 @@ double strut_study_fit(const study *s, size_t point, double step) {
 static strut_status begin_clock(void *context, const strut_record_layout *layout,
                                 strut_error *error) {
   (void)layout, (void)error;
-  *(double *)context = strut_study_clock();
+  *(double *)context = strut_tradeoff_cpu_clock();
   return STRUT_OK;
 }
 
@@ -68,11 +70,11 @@ static strut_status ignore_rows(void *context, const double *rows, size_t count,
 
 static strut_status end_clock(void *context, strut_status status, strut_error *error) {
   (void)status, (void)error;
-  *(double *)context = strut_study_clock() - *(double *)context;
+  *(double *)context = strut_tradeoff_cpu_clock() - *(double *)context;
   return STRUT_OK;
 }
 
-static void take_values(const study *s, const strut_summary *summary, double *value) {
+static void take_values(const tradeoff_study *s, const strut_summary *summary, double *value) {
   switch (s->result->measure) {
     case STRUT_TRADEOFF_POSITION:
       memcpy(value, summary->positions, 2 * summary->node_count * sizeof *value);
@@ -84,7 +86,7 @@ static void take_values(const study *s, const strut_summary *summary, double *va
   }
 }
 
-double strut_study_longest(const study *s, size_t point) {
+double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point) {
   const strut_setup *setup = s->setups[point];
   strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
   return (span.period > 0 ? span.period : span.duration) / 20;
@@ -94,17 +96,17 @@ double strut_study_longest(const study *s, size_t point) {
  * The largest step worth trying. Where nothing vibrates, as where rigid bars swing under gravity, the
  * limit of stability may be far longer than the motion lasts: then a part of that counts.
  */
-static double useful_limit(const study *s, size_t point, double limit) {
-  return isfinite(limit) ? fmin(limit, strut_study_longest(s, point)) : limit;
+static double useful_limit(const tradeoff_study *s, size_t point, double limit) {
+  return isfinite(limit) ? fmin(limit, strut_tradeoff_longest_step(s, point)) : limit;
 }
 
 static bool hopeless(strut_status status) {
   return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
 }
 
-static strut_status simulate(const study *s, size_t point, int fidelity,
+static strut_status simulate(const tradeoff_study *s, size_t point, int variant,
                              const strut_experiment *experiment, double *value,
-                             study_outcome *outcome) {
+                             tradeoff_outcome *outcome) {
   const strut_model *model = NULL;
   strut_summary summary = {0};
   strut_sink clock = {&outcome->seconds, begin_clock, ignore_rows, end_clock,
@@ -112,7 +114,7 @@ static strut_status simulate(const study *s, size_t point, int fidelity,
   strut_sink *sinks[] = {&clock};
   const strut_run_options options = {
       .force = true, .interrupt = s->options->interrupt, .sinks = sinks, .sink_count = 1};
-  strut_status status = strut_study_model(s, point, fidelity, &model);
+  strut_status status = strut_tradeoff_compile(s, point, variant, &model);
   if (status == STRUT_OK) status = strut_simulate(model, experiment, &options, &summary, s->error);
   outcome->evaluations = summary.force_evaluations;
   outcome->step_limit = useful_limit(s, point, summary.step_limit);
@@ -124,21 +126,22 @@ static strut_status simulate(const study *s, size_t point, int fidelity,
   return ours ? status : STRUT_OK;
 }
 
-strut_status strut_study_run(const study *s, size_t point, int fidelity, study_setting setting,
-                             double *value, study_outcome *outcome) {
-  *outcome = (study_outcome){.seconds = (double)NAN};
+strut_status strut_tradeoff_run(const tradeoff_study *s, size_t point, int variant,
+                                tradeoff_setting setting, double *value,
+                                tradeoff_outcome *outcome) {
+  *outcome = (tradeoff_outcome){.seconds = (double)NAN};
   for (size_t i = 0; i < s->result->value_count; i++) value[i] = (double)NAN;
-  strut_experiment e = strut_study_experiment(s, point);
+  strut_experiment e = strut_tradeoff_experiment(s, point);
   e.integrator = setting.method->name;
-  e.step = strut_study_fit(s, point, setting.step);
+  e.step = strut_tradeoff_fit_step(s, point, setting.step);
   if (isfinite(setting.tolerance)) e.tolerance = setting.tolerance;
   e.refine = isfinite(setting.refine) ? setting.refine : 1;
-  e.output_every = strut_study_span(s, point).duration;
-  return simulate(s, point, fidelity, &e, value, outcome);
+  e.output_every = strut_tradeoff_span(s, point).duration;
+  return simulate(s, point, variant, &e, value, outcome);
 }
 
-double strut_study_distance(const study *s, size_t point, const double *value,
-                            const double *reference) {
+double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
+                               const double *reference) {
   double most = 0;
   size_t count = s->result->value_count;
   if (s->result->measure == STRUT_TRADEOFF_POSITION) {
@@ -152,4 +155,424 @@ double strut_study_distance(const study *s, size_t point, const double *value,
     most = fabs(value[0] - reference[0]) / fmax(fabs(reference[0]), s->scale[point]);
   }
   return isfinite(most) ? most : HUGE_VAL;
+}
+
+/* ---- references: two methods refined until they agree ---- */
+
+enum { MOST_LEVELS = 14, MOST_IDLE = 3 };
+static const double FIRST_TOLERANCE = 1e-5;
+
+/* How promising a method is. */
+static int merit(const tradeoff_study *s, const strut_integrator *method) {
+  int merit = method->order;
+  if (method->events && strut_tradeoff_has_switches(&s->setups[0]->scene)) merit += 10;
+  return merit;
+}
+
+static tradeoff_setting setting_of(const tradeoff_study *s, const tradeoff_reference *r, int which,
+                                   int level) {
+  if (which == 1 && r->method[0] == r->method[1]) level++; /* alone, it confirms itself */
+  tradeoff_setting setting = {r->method[which], r->limit * pow(0.5, level + 1), (double)NAN, 1};
+  if (strut_tradeoff_is_adaptive(r->method[which])) {
+    setting.step = fmax(10 * r->limit, s->limit);
+    setting.tolerance = FIRST_TOLERANCE * pow(0.1, level);
+  }
+  return setting;
+}
+
+/* The best method that can run it, other than `not`; its step limit into r->limit. */
+static strut_status choose(const tradeoff_study *s, tradeoff_reference *r, int which,
+                           const strut_integrator * not ) {
+  bool tried[64] = {false};
+  for (;;) {
+    const strut_integrator *best = NULL;
+    size_t at = 0;
+    for (size_t i = 0; i < 64 && strut_integrator_at(i); i++) {
+      const strut_integrator *method = strut_integrator_at(i);
+      bool wanted = which == 0 ? !strut_tradeoff_is_adaptive(method)
+                               : method != not &&(!best || !strut_tradeoff_is_adaptive(best));
+      if (tried[i] || !wanted || !strut_tradeoff_can_run(s, method, r->variant)) continue;
+      bool better = !best || (which == 1 && strut_tradeoff_is_adaptive(method)) ||
+                    merit(s, method) > merit(s, best);
+      if (better) best = method, at = i;
+    }
+    if (!best) return STRUT_OK;
+    tried[at] = true;
+    r->method[which] = best;
+    tradeoff_outcome outcome;
+    strut_status status =
+        strut_tradeoff_run(s, 0, r->variant, setting_of(s, r, which, 0), r->latest, &outcome);
+    if (status != STRUT_OK) return status;
+    if (which == 0 && outcome.step_limit > 0 && !outcome.cannot)
+      r->limit = isfinite(outcome.step_limit) ? 0.5 * outcome.step_limit : s->base.step;
+    if (!outcome.cannot) return STRUT_OK;
+    r->method[which] = NULL;
+  }
+}
+
+static void mark_not_run(strut_model_variant *f, const char *why) {
+  f->run = false;
+  snprintf(f->remark, sizeof f->remark, "%s", why);
+}
+
+strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, tradeoff_reference *r) {
+  strut_tradeoff *result = s->result;
+  strut_model_variant *f = &result->variants[variant];
+  *r = (tradeoff_reference){.variant = variant, .limit = s->base.step};
+  r->level = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->level);
+  r->idle = strut_arena_allocate(&result->arena, result->point_count, sizeof *r->idle);
+  r->latest = strut_arena_allocate(&result->arena, 2 * result->value_count, sizeof *r->latest);
+  r->before = strut_arena_allocate(&result->arena, 2 * result->value_count * result->point_count,
+                                   sizeof *r->before);
+  if (!r->level || !r->idle || !r->latest || !r->before)
+    return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+  f->run = true;
+  for (size_t p = 0; p < result->point_count; p++) f->floor[p] = HUGE_VAL;
+  if (result->measure == STRUT_TRADEOFF_ENERGY) {
+    for (size_t p = 0; p < result->point_count; p++) f->floor[p] = 0;
+    snprintf(f->reference[0], sizeof f->reference[0], "none: a balance closes at 0");
+    return STRUT_OK;
+  }
+  strut_status status = choose(s, r, 0, NULL);
+  if (status == STRUT_OK && r->method[0]) status = choose(s, r, 1, r->method[0]);
+  if (status == STRUT_OK && !r->method[0]) mark_not_run(f, s->error->message);
+  if (status == STRUT_OK && r->method[0] && !r->method[1]) {
+    r->method[1] = r->method[0];
+    size_t used = strlen(f->remark);
+    snprintf(f->remark + used, sizeof f->remark - used,
+             "%sonly one method can run it: no other confirms its answer", used ? "; " : "");
+  }
+  return status;
+}
+
+static void name_setting(tradeoff_setting setting, char name[100]) {
+  if (strut_tradeoff_is_adaptive(setting.method))
+    snprintf(name, 100, "%s, tolerance %.0e", setting.method->name, setting.tolerance);
+  else
+    snprintf(name, 100, "%s, %s", setting.method->name,
+             strut_quantity_of(setting.step, 3, "s").text);
+}
+
+/*
+ * How far a pair of answers is from what is sought: their distance, or a tenth of what either changed
+ * by since the level before, if that is more. Two coarse answers may agree by chance.
+ */
+static double estimate_error(const tradeoff_study *s, const tradeoff_reference *r, size_t p) {
+  size_t count = s->result->value_count;
+  const double *now = r->latest, *before = r->before + 2 * p * count;
+  if (r->level[p] == 0) return HUGE_VAL;
+  double apart = strut_tradeoff_distance(s, p, now, now + count);
+  for (size_t k = 0; k < 2; k++)
+    apart = fmax(apart, 0.1 * strut_tradeoff_distance(s, p, now + k * count, before + k * count));
+  return apart;
+}
+
+/* One level more at one point. */
+static strut_status refine_point(tradeoff_study *s, tradeoff_reference *r, size_t p) {
+  strut_tradeoff *result = s->result;
+  strut_model_variant *f = &result->variants[r->variant];
+  size_t count = result->value_count;
+  double *a = r->latest, *b = r->latest + count, *kept = f->value + p * count;
+  double before = strut_tradeoff_cpu_clock();
+  tradeoff_outcome outcome;
+  strut_status status =
+      strut_tradeoff_run(s, p, r->variant, setting_of(s, r, 0, r->level[p]), a, &outcome);
+  if (status == STRUT_OK)
+    status = strut_tradeoff_run(s, p, r->variant, setting_of(s, r, 1, r->level[p]), b, &outcome);
+  if (status != STRUT_OK) return status;
+  r->last_cost = strut_tradeoff_cpu_clock() - before;
+  double apart = estimate_error(s, r, p);
+  memcpy(r->before + 2 * p * count, r->latest, 2 * count * sizeof *r->latest);
+  bool idle = r->level[p] > 1 && !(apart < 0.5 * f->floor[p]);
+  r->idle[p] = idle ? r->idle[p] + 1 : 0;
+  if (apart < f->floor[p]) {
+    f->floor[p] = apart;
+    for (size_t i = 0; i < count; i++) kept[i] = 0.5 * (a[i] + b[i]);
+    for (int k = 0; k < 2 && p == 0; k++)
+      name_setting(setting_of(s, r, k, r->level[p]), f->reference[k]);
+  }
+  r->level[p]++;
+  return STRUT_OK;
+}
+
+strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
+                                             double target, double share) {
+  strut_tradeoff *result = s->result;
+  strut_model_variant *f = &result->variants[r->variant];
+  if (!f->run || !r->method[0]) return STRUT_OK;
+  for (bool more = true; more;) {
+    more = false;
+    for (size_t p = 0; p < result->point_count; p++) {
+      bool first = r->level[p] < 2;
+      if (f->floor[p] <= target || r->level[p] >= MOST_LEVELS || r->idle[p] >= MOST_IDLE) continue;
+      if (!first && strut_tradeoff_time_left(s, share) < 2.5 * r->last_cost) continue;
+      strut_status status = refine_point(s, r, p);
+      if (status != STRUT_OK) return status;
+      more = true;
+    }
+  }
+  for (size_t p = 0; p < result->point_count; p++)
+    if (!isfinite(f->floor[p])) mark_not_run(f, "no two methods give an answer");
+  return STRUT_OK;
+}
+
+/* ---- rows: the settings of a method from coarse to fine ---- */
+
+enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64, LOOKED_AT = 5 };
+static const double SHORT = 0.05; /* a run that is repeated for its CPU time [s] */
+static const double BELOW = 0.95, IN_DECADE = 5;
+/* Steps that nothing limits begin at so many times the explicit limit, or the base's step. */
+static const double FREE = 100, FREE_OF_BASE = 10;
+static const double above[ABOVE] = {2.5, 1.5, 1.1};
+
+static int step_count(const tradeoff_study *s) {
+  return s->options->steps > 0 ? s->options->steps : USUAL_STEPS;
+}
+
+static void report_progress(const tradeoff_study *s, double fraction) {
+  if (s->options->progress) s->options->progress(s->options->progress_context, fraction);
+}
+
+static strut_status out_of_memory(tradeoff_study *s) {
+  return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+}
+
+/* ---- rows ---- */
+
+static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
+                                   tradeoff_setting setting) {
+  strut_tradeoff *r = s->result;
+  if (r->row_count == s->row_room) {
+    size_t room = s->row_room ? 2 * s->row_room : 64;
+    strut_tradeoff_row *rows = strut_arena_allocate(&r->arena, room, sizeof *rows);
+    if (!rows) return NULL;
+    for (size_t i = 0; i < r->row_count; i++) rows[i] = r->rows[i];
+    r->rows = rows;
+    s->row_room = room;
+  }
+  strut_tradeoff_row *row = &r->rows[r->row_count];
+  *row = (strut_tradeoff_row){.variant = from->variant,
+                              .group = from->group,
+                              .method = setting.method,
+                              .step = strut_tradeoff_fit_step(s, 0, setting.step),
+                              .tolerance = setting.tolerance,
+                              .refine = setting.refine,
+                              .cpu = (double)NAN,
+                              .seconds = (double)NAN};
+  row->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof(double));
+  row->error = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
+  row->total = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
+  if (!row->value || !row->error || !row->total) return NULL;
+  r->row_count++;
+  return row;
+}
+
+/* CPU times of a setting and of the base, in turn. */
+typedef struct timing {
+  double own[MOST_TIMES], ratio[MOST_TIMES];
+  size_t count;
+} timing;
+
+/* The base's own time again, unless it is a long run that was timed a moment ago. */
+static strut_status time_base(tradeoff_study *s, size_t p) {
+  tradeoff_outcome base;
+  double now = strut_tradeoff_cpu_clock(), is_known = s->base_seconds[p];
+  bool fresh = s->base_timed[p] > 0 && now - s->base_timed[p] < 10 * is_known;
+  if (fresh && !(is_known < SHORT)) return STRUT_OK;
+  strut_status status = strut_tradeoff_run(s, p, 0, s->base, s->scratch, &base);
+  s->base_seconds[p] = base.status == STRUT_OK ? base.seconds : (double)NAN;
+  s->base_timed[p] = strut_tradeoff_cpu_clock();
+  return status;
+}
+
+static strut_status time_point(tradeoff_study *s, const strut_tradeoff_row *row,
+                               tradeoff_setting setting, size_t p, double seconds, timing *times) {
+  size_t repeats = (size_t)(s->options->repeats > 0 ? s->options->repeats : USUAL_REPEATS);
+  size_t points = s->result->point_count < repeats ? s->result->point_count : repeats;
+  size_t here = seconds > SHORT ? 1 : (repeats + points - 1) / points;
+  tradeoff_outcome outcome;
+  double *value = s->scratch;
+  for (size_t i = 0; i < here && p < points && times->count < MOST_TIMES; i++) {
+    strut_status status = time_base(s, p);
+    if (status == STRUT_OK && i > 0)
+      status = strut_tradeoff_run(s, p, row->variant, setting, value, &outcome);
+    if (status != STRUT_OK) return status;
+    if (i > 0) seconds = outcome.seconds;
+    times->own[times->count] = seconds;
+    times->ratio[times->count] = seconds / s->base_seconds[p];
+    times->count++;
+  }
+  return STRUT_OK;
+}
+
+/* Evaluations that a row would need if it did not diverge, over those of the base. */
+static double planned_evaluations(const tradeoff_study *s, const strut_tradeoff_row *row) {
+  return s->base.step / row->step * row->method->evaluations / s->base.method->evaluations;
+}
+
+static void cost_row(tradeoff_study *s, strut_tradeoff_row *row, double *ratios, size_t count,
+                     const timing *times) {
+  row->evaluations =
+      count ? strut_spread_of(ratios, count, s->scratch).median : planned_evaluations(s, row);
+  if (times->count == 0) return;
+  double sorted[MOST_TIMES];
+  row->seconds = strut_spread_of(times->own, times->count, sorted).median;
+  row->cpu = strut_spread_of(times->ratio, times->count, sorted).median;
+}
+
+strut_status strut_tradeoff_run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
+                                    bool base, bool *cannot) {
+  strut_tradeoff *r = s->result;
+  double began = strut_tradeoff_cpu_clock();
+  strut_tradeoff_row *row = new_row(s, from, setting);
+  double *ratios = strut_arena_allocate(&r->arena, r->point_count, sizeof *ratios);
+  if (!row || !ratios) return out_of_memory(s);
+  timing times = {.count = 0};
+  size_t finished = 0;
+  strut_status status = STRUT_OK;
+  *cannot = false;
+  for (size_t p = 0; p < r->point_count; p++) {
+    tradeoff_outcome outcome;
+    status =
+        strut_tradeoff_run(s, p, row->variant, setting, row->value + p * r->value_count, &outcome);
+    if (status != STRUT_OK) return status;
+    *cannot = outcome.cannot;
+    if (outcome.cannot) break;
+    if (outcome.status != STRUT_OK) row->diverged++;
+    if (outcome.status != STRUT_OK) continue;
+    if (base) s->base_evaluations[p] = (double)outcome.evaluations;
+    ratios[finished++] = (double)outcome.evaluations / s->base_evaluations[p];
+    status = time_point(s, row, setting, p, outcome.seconds, &times);
+    if (status != STRUT_OK) return status;
+  }
+  cost_row(s, row, ratios, finished, &times);
+  row->base = base;
+  if (*cannot) r->row_count--;
+  from->last_cost = strut_tradeoff_cpu_clock() - began;
+  return STRUT_OK;
+}
+
+/* ---- step_series_list ---- */
+
+/* The k-th setting of a ladder, the coarsest first. False after the last. */
+static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
+                       tradeoff_setting *setting) {
+  bool adaptive = strut_tradeoff_is_adaptive(l->first.method);
+  int extra = l->limited ? ABOVE : 0;
+  if (k >= step_count(s) + (adaptive ? 0 : ABOVE)) return false;
+  *setting = l->first;
+  if (adaptive)
+    setting->tolerance = 1e-2 * pow(0.1, k);
+  else if (k < extra)
+    setting->step *= above[k];
+  else
+    setting->step *= BELOW * pow(10, -(k - extra) / IN_DECADE);
+  return true;
+}
+
+strut_status strut_tradeoff_probe(const tradeoff_study *s, int variant, tradeoff_setting setting,
+                                  tradeoff_outcome *outcome) {
+  return strut_tradeoff_run(s, 0, variant, setting, s->scratch, outcome);
+}
+
+static step_series *add_series(tradeoff_study *s, step_series_list *all, int variant,
+                               tradeoff_setting first, bool limited) {
+  if (all->count == MOST_STEP_SERIES) return NULL;
+  step_series *l = &all->at[all->count++];
+  *l = (step_series){.variant = variant,
+                     .group = (int)s->result->group_count++,
+                     .first = first,
+                     .limited = limited};
+  return l;
+}
+
+/* Whether two ways to refine differ at one of the first points: not everywhere is there a touchdown. */
+static strut_status differ(const tradeoff_study *s, int variant, tradeoff_setting a,
+                           tradeoff_setting b, bool *different) {
+  tradeoff_outcome one = {0}, other = {0};
+  strut_status status = STRUT_OK;
+  *different = false;
+  for (size_t p = 0; p < s->result->point_count && p < LOOKED_AT && !*different && !status; p++) {
+    status = strut_tradeoff_run(s, p, variant, a, s->scratch, &one);
+    if (!status) status = strut_tradeoff_run(s, p, variant, b, s->scratch, &other);
+    bool both = one.status == STRUT_OK && other.status == STRUT_OK;
+    *different =
+        !status && (one.status != other.status || (both && one.evaluations != other.evaluations));
+  }
+  return status;
+}
+
+/* Further ladders of a method with events, `first` being that without refinement. */
+static strut_status add_refined(tradeoff_study *s, step_series_list *all, int variant,
+                                tradeoff_setting first, bool limited) {
+  static const double ways[] = {(double)NAN, 0, 8};
+  tradeoff_setting setting[3];
+  strut_status status = STRUT_OK;
+  for (int i = 0; i < 3; i++) {
+    setting[i] = first;
+    setting[i].step *= 0.8;
+    setting[i].refine = ways[i];
+  }
+  for (int i = 1; i < 3 && !status; i++) {
+    bool new = true;
+    for (int k = 0; k < i && new && !status; k++)
+      status = differ(s, variant, setting[k], setting[i], &new);
+    first.refine = ways[i];
+    if (!status && new && !add_series(s, all, variant, first, limited)) break;
+  }
+  return status;
+}
+
+/* Ladders of one method: one for each way to refine that makes a difference in this scene. */
+strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
+                                       const strut_integrator *method) {
+  tradeoff_outcome outcome;
+  tradeoff_setting first = {method, s->base.step, (double)NAN, 1};
+  bool adaptive = strut_tradeoff_is_adaptive(method);
+  if (adaptive) first.step = fmax(10 * first.step, s->limit), first.tolerance = 1e-2;
+  strut_status status = strut_tradeoff_probe(s, variant, first, &outcome);
+  if (status != STRUT_OK || outcome.cannot) return status;
+  bool limited = !adaptive && isfinite(outcome.step_limit) && outcome.step_limit > 0;
+  if (limited) first.step = outcome.step_limit;
+  if (!limited && !adaptive) {
+    double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
+    first.step = fmin(most, strut_tradeoff_longest_step(s, 0));
+  }
+  first.refine = (double)NAN;
+  if (!add_series(s, all, variant, first, limited)) return status;
+  return method->events && !adaptive ? add_refined(s, all, variant, first, limited) : status;
+}
+
+/* Whether a setting has been run: few steps in a period leave few choices. */
+static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeoff_setting *setting,
+                     double step) {
+  for (size_t i = 0; i < r->row_count; i++) {
+    const strut_tradeoff_row *row = &r->rows[i];
+    if (row->group != l->group || fabs(row->step / step - 1) > 1e-9) continue;
+    if (!isfinite(setting->tolerance) || row->tolerance == setting->tolerance) return true;
+  }
+  return false;
+}
+
+/* From coarse to fine, all step_series_list side by side, as far as the share of the budget goes. */
+strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
+                                       double from, double to) {
+  int most = step_count(s) + ABOVE;
+  for (int k = 0; k < most; k++) {
+    report_progress(s, from + (to - from) * k / most);
+    for (size_t i = 0; i < all->count; i++) {
+      step_series *l = &all->at[i];
+      tradeoff_setting setting;
+      bool cannot = false, left = setting_at(s, l, k, &setting);
+      if (!left || is_known(s->result, l, &setting, strut_tradeoff_fit_step(s, 0, setting.step)))
+        continue;
+      if (l->last_cost > 0 && 1.6 * l->last_cost > strut_tradeoff_time_left(s, share))
+        l->over = true;
+      if (l->over) s->result->left_out++;
+      if (l->over) continue;
+      strut_status status = strut_tradeoff_run_row(s, l, setting, false, &cannot);
+      if (status != STRUT_OK) return status;
+    }
+  }
+  return STRUT_OK;
 }

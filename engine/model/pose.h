@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Kinematics of members and contacts in a configuration q, (length) coordinates.
+ *
+ * This is the one place that says how long a member is, when it carries a force and how far a node is
+ * above the ground. The step's vector kernels (members_kernel.h, lane_kernel.h, ground_kernel.h) repeat
+ * it for several members at once; tests/unit/pose_test.c compares them.
+ */
+#ifndef STRUT_ENGINE_MODEL_POSE_H
+#define STRUT_ENGINE_MODEL_POSE_H
+
+#include <assert.h>
+#include <float.h>
+
+#include "engine/base/vec.h"
+#include "engine/model/model.h"
+
+typedef struct strut_member_pose {
+  strut_vec2 span;        /* from its first node to its second [m] */
+  strut_vec2 unit;        /* the span's direction; 0 where it has no length */
+  double length, stretch; /* stretch: length beyond the rest length [m] */
+  bool taut;              /* carries a force: a bar or spring always, a cable when stretched */
+} strut_member_pose;
+
+/** From member j's first node to its second [m]. */
+static inline strut_vec2 strut_member_span(const strut_member_table *t, int32_t j,
+                                           const double *q) {
+  assert(j >= 0 && j < t->slots);
+  return strut_vec2_between(q + t->from[j], q + t->to[j]);
+}
+
+static inline double strut_member_length(const strut_member_table *t, int32_t j, const double *q) {
+  return strut_vec2_length(strut_member_span(t, j, q));
+}
+
+/** Pose of member j with rest lengths `rest` (slots): the table's own, or a state's driven ones. */
+static inline strut_member_pose strut_member_pose_at(const strut_member_table *t,
+                                                     const double *rest, int32_t j,
+                                                     const double *q) {
+  strut_member_pose pose = {.span = strut_member_span(t, j, q)};
+  pose.length = strut_vec2_length(pose.span);
+  pose.unit = strut_vec2_unit(pose.span, pose.length);
+  pose.stretch = pose.length - rest[j];
+  pose.taut = pose.stretch > t->slack[j];
+  return pose;
+}
+
+/** Rate of the length at velocities v [m/s]; 0 where it has no length. */
+static inline double strut_member_rate(const strut_member_table *t, int32_t j,
+                                       const strut_member_pose *pose, const double *v) {
+  strut_vec2 w = strut_member_span(t, j, v);
+  double inverse = pose->length > 0.0 ? 1.0 / pose->length : 0.0;
+  return (w.x * pose->span.x + w.y * pose->span.y) * inverse;
+}
+
+/** Force of the spring, tension positive [N]; 0 of a slack cable. */
+static inline double strut_member_elastic_force(const strut_member_table *t, int32_t j,
+                                                const strut_member_pose *pose) {
+  return pose->taut ? t->stiffness[j] * pose->stretch : 0.0;
+}
+
+/** Energy of the spring [J]; 0 of a slack cable. */
+static inline double strut_member_elastic_energy(const strut_member_table *t, int32_t j,
+                                                 const strut_member_pose *pose) {
+  return pose->taut ? 0.5 * t->stiffness[j] * pose->stretch * pose->stretch : 0.0;
+}
+
+/**
+ * Stiffness of a taut member across its direction: tension over length [N/m]. Without length it is an
+ * isotropic spring if its rest length is zero too, and has no direction to be stiff across otherwise.
+ */
+static inline double strut_member_across_stiffness(const strut_member_table *t, const double *rest,
+                                                   int32_t j, const strut_member_pose *pose) {
+  if (pose->length > 0.0) return t->stiffness[j] * pose->stretch / pose->length;
+  return rest[j] > 0.0 ? 0.0 : t->stiffness[j];
+}
+
+/** The largest rounding error of a coordinate of points a and b [m]. */
+static inline double strut_coordinate_rounding(const double *a, const double *b) {
+  return DBL_EPSILON * fmax(fmax(fabs(a[0]), fabs(a[1])), fmax(fabs(b[0]), fabs(b[1])));
+}
+
+/** Height of a point above the ground's line, along its normal; the ground touches below 0 [m]. */
+static inline double strut_ground_gap(const strut_contact_table *c, const double *point) {
+  return point[0] * c->normal[0] + (point[1] - c->height) * c->normal[1];
+}
+
+static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, const double *q) {
+  assert(i >= 0 && i < c->count);
+  return strut_ground_gap(c, q + c->at[i]);
+}
+
+/** Component out of the ground of what x (length) holds at contact i. */
+static inline double strut_contact_along_normal(const strut_contact_table *c, int32_t i,
+                                                const double *x) {
+  assert(i >= 0 && i < c->count);
+  const double *at = x + c->at[i];
+  return at[0] * c->normal[0] + at[1] * c->normal[1];
+}
+
+/** Component along the ground of what x (length) holds at contact i. */
+static inline double strut_contact_along_ground(const strut_contact_table *c, int32_t i,
+                                                const double *x) {
+  assert(i >= 0 && i < c->count);
+  const double *at = x + c->at[i];
+  return at[0] * c->tangent[0] + at[1] * c->tangent[1];
+}
+
+/** Sliding speed of contact i against the ground's belt at velocities v [m/s]. */
+static inline double strut_contact_slip(const strut_contact_table *c, int32_t i, const double *v) {
+  return strut_contact_along_ground(c, i, v) - c->belt_speed;
+}
+
+#endif

@@ -1,0 +1,429 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/draw/curves.h"
+#include "engine/output/figures/run_parts.h"
+
+/* Curves over time, one kind of quantity in each panel, and the overview that shows some below
+   the shape. */
+
+enum { MOST_CURVES = 6, MOST_DRIVEN = 3, CURVES_HEIGHT = 122 };
+
+static const double LEVEL = 1e-3;    /* of a force or an energy: smaller changes look level */
+static const double STANDING = 1e-6; /* of the model's size: smaller motion is none */
+static const double CLOSED = 1e-3;   /* of the model's size: closer to the ground is contact */
+static const double ROUNDING = 1e-9; /* of an energy */
+static const double ROOM = 0.06;     /* above and below the curves */
+
+/* What a panel draws, and its curves; values are (frames) each. */
+typedef struct panel {
+  const char *name, *unit;
+  double least; /* range at least */
+  size_t count;
+  double *values[MOST_CURVES];
+  const char *labels[MOST_CURVES];
+} panel;
+
+/* One value of a kind at a frame. */
+static double value_at(const strut_run_scene *run, int kind, size_t item, size_t f) {
+  const strut_trajectory *m = run->motion;
+  const double *q = strut_run_positions(run, f);
+  switch (kind) {
+    case STRUT_RUN_DISPLACEMENT: return strut_run_measured(run, f, (int)item);
+    case STRUT_RUN_NORMALS: return m->contact[2 * (f * m->contact_count + item)];
+    case STRUT_RUN_HEIGHTS: {
+      size_t node = (size_t)m->contact_node[item];
+      return (q[2 * node + 1] - strut_run_ground_at(run, q[2 * node])) *
+             cos(run->model->scene->ground.slope);
+    }
+    case STRUT_RUN_FORCES: return m->force[f * m->member_count + item];
+    default: return m->energy[f * STRUT_ENERGIES + item];
+  }
+}
+
+/* Whether a contact ever touches the ground; heights of others are omitted. */
+static bool comes_down(const strut_run_scene *run, size_t contact) {
+  for (size_t f = 0; f < run->frames; f++)
+    if (value_at(run, STRUT_RUN_HEIGHTS, contact, f) < CLOSED * run->model->size) return true;
+  return false;
+}
+
+static size_t count_items(const strut_run_scene *run, int kind) {
+  const strut_trajectory *m = run->motion;
+  switch (kind) {
+    case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
+    case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
+    case STRUT_RUN_DRIVE: return (size_t)run->model->drives.count;
+    case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
+    case STRUT_RUN_FORCES: return m->force ? m->member_count : 0;
+    default: return m->energy ? 4 : 0;
+  }
+}
+
+static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
+  static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact"};
+  static const char *const axes[] = {"along x", "along y"};
+  const strut_scene *scene = run->model->scene;
+  switch (kind) {
+    case STRUT_RUN_DISPLACEMENT: return axes[item];
+    case STRUT_RUN_FORCES: return scene->members[item].name;
+    case STRUT_RUN_ENERGIES: return energies[item];
+    default: return scene->nodes[run->motion->contact_node[item]].name;
+  }
+}
+
+/* Kinds drawn as changes from the first frame. */
+static bool from_start(int kind) {
+  return kind == STRUT_RUN_DISPLACEMENT || kind == STRUT_RUN_ENERGIES;
+}
+
+/* Range of a curve; contact forces include zero. */
+static double variation(const strut_run_scene *run, int kind, size_t item, size_t first) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  if (kind == STRUT_RUN_HEIGHTS && !comes_down(run, item)) return 0;
+  for (size_t f = first; f < run->frames; f++) {
+    double value = value_at(run, kind, item, f);
+    if (!isfinite(value)) continue;
+    low = fmin(low, value);
+    high = fmax(high, value);
+  }
+  if (kind == STRUT_RUN_NORMALS) low = fmin(low, 0), high = fmax(high, 0);
+  return high > low ? high - low : 0;
+}
+
+/* Smaller changes are rounding. */
+static double least_range(const strut_run_scene *run, int kind) {
+  bool length =
+      kind == STRUT_RUN_DISPLACEMENT || kind == STRUT_RUN_HEIGHTS || kind == STRUT_RUN_DRIVE;
+  double most = 0;
+  if (length) return STANDING * run->model->size;
+  for (size_t i = 0; i < count_items(run, kind) && kind == STRUT_RUN_ENERGIES; i++)
+    most = fmax(most, fabs(value_at(run, kind, i, 0)));
+  return ROUNDING * most;
+}
+
+bool strut_run_panel_wanted(const strut_run_scene *run, int kind) {
+  size_t items = count_items(run, kind);
+  if (kind == STRUT_RUN_DRIVE) return items > 0;
+  for (size_t i = 0; i < items; i++)
+    if (variation(run, kind, i, 0) > least_range(run, kind)) return true;
+  return false;
+}
+
+/* Chooses the items that vary most, in the scene's order. Returns how many. */
+static size_t choose_curves(const strut_run_scene *run, int kind, size_t first,
+                            size_t chosen[MOST_CURVES]) {
+  double lively[MOST_CURVES];
+  size_t count = 0;
+  for (size_t i = 0; i < count_items(run, kind); i++) {
+    double value = variation(run, kind, i, first);
+    size_t dullest = 0;
+    if (!(value > least_range(run, kind)) && !(kind == STRUT_RUN_DISPLACEMENT && i == 0)) continue;
+    if (count == MOST_CURVES) {
+      for (size_t k = 1; k < count; k++)
+        if (lively[k] < lively[dullest]) dullest = k;
+      if (!(value > lively[dullest])) continue;
+      count--;
+      for (size_t k = dullest; k < count; k++) chosen[k] = chosen[k + 1], lively[k] = lively[k + 1];
+    }
+    chosen[count] = i;
+    lively[count++] = value;
+  }
+  return count;
+}
+
+static bool fill_panel(strut_run_scene *run, int kind, size_t first, panel *p) {
+  size_t chosen[MOST_CURVES], frames = run->frames - first;
+  double most = 0;
+  p->count = choose_curves(run, kind, first, chosen);
+  for (size_t i = 0; i < p->count; i++) {
+    double start = from_start(kind) ? value_at(run, kind, chosen[i], first) : 0;
+    p->values[i] = strut_arena_allocate(&run->arena, frames, sizeof(double));
+    if (!p->values[i]) return false;
+    for (size_t f = 0; f < frames; f++) {
+      p->values[i][f] = value_at(run, kind, chosen[i], first + f) - start;
+      most = fmax(most, fabs(p->values[i][f]));
+    }
+    p->labels[i] = label_of(run, kind, chosen[i]);
+  }
+  if (kind == STRUT_RUN_DISPLACEMENT && p->count == 1) p->labels[0] = NULL;
+  p->least = fmax(least_range(run, kind), from_start(kind) ? 0 : LEVEL * most);
+  return true;
+}
+
+/* The actuated change of a member's rest length at a time [m]. */
+static double driven_by(const strut_run_scene *run, int32_t member, double time) {
+  const strut_drive_table *drives = &run->model->drives;
+  double sum = 0;
+  for (int32_t i = 0; i < drives->count; i++) {
+    double value, rate;
+    if (drives->member[i] != member) continue;
+    strut_signal_evaluate(run->model->scene->signals, drives->signal[i], time, &value, &rate);
+    sum += value;
+  }
+  return sum;
+}
+
+static double length_at(const strut_run_scene *run, int32_t member, size_t f) {
+  const int32_t *node = run->model->scene->members[member].node;
+  const double *q = strut_run_positions(run, f);
+  return hypot(q[2 * node[1]] - q[2 * node[0]], q[2 * node[1] + 1] - q[2 * node[0] + 1]);
+}
+
+/* Actuated rest lengths and actual lengths, as changes from the first frame. */
+static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
+  const strut_drive_table *drives = &run->model->drives;
+  size_t frames = run->frames - first;
+  for (int32_t i = 0; i < drives->count && p->count < 2 * MOST_DRIVEN; i++) {
+    int32_t member = drives->member[i];
+    const char *name = run->model->scene->members[member].name;
+    if (!drives->first[i]) continue;
+    for (int k = 0; k < 2; k++) {
+      double *values = strut_arena_allocate(&run->arena, frames, sizeof *values);
+      if (!values) return false;
+      for (size_t f = 0; f < frames; f++)
+        values[f] = k ? length_at(run, member, first + f) - length_at(run, member, first)
+                      : driven_by(run, member, run->motion->time[first + f]);
+      p->labels[p->count] =
+          strut_arena_format(&run->arena, k ? "length of %s" : "rest length of %s", name);
+      if (!p->labels[p->count]) return false;
+      p->values[p->count++] = values;
+    }
+  }
+  p->least = least_range(run, STRUT_RUN_DRIVE);
+  return true;
+}
+
+/* The range of all curves, at least p->least. */
+static void find_range(const panel *p, size_t frames, int kind, strut_axis *axis) {
+  for (size_t i = 0; i < p->count; i++)
+    for (size_t f = 0; f < frames; f++) strut_axis_include(axis, p->values[i][f]);
+  if (kind == STRUT_RUN_NORMALS) strut_axis_include(axis, 0);
+  if (!(axis->low <= axis->high)) return;
+  double missing = p->least - (axis->high - axis->low);
+  if (missing > 0) axis->low -= 0.5 * missing, axis->high += 0.5 * missing;
+  strut_axis_settle(axis, ROOM);
+}
+
+/* Long names are cut, so that the legend fits. */
+static bool fit_labels(strut_run_scene *run, double width, panel *p) {
+  char fitted[STRUT_FITTED_TEXT];
+  for (size_t i = 0; i < p->count; i++) {
+    if (!p->labels[i]) continue;
+    strut_text_fit(run->ruler, p->labels[i], (strut_font){.size = 7.5}, width, 0, fitted);
+    p->labels[i] = strut_arena_text(&run->arena, fitted, strlen(fitted));
+    if (!p->labels[i]) return false;
+  }
+  return true;
+}
+
+strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,
+                                  int kind, size_t first) {
+  static const char *const names[][2] = {[STRUT_RUN_DISPLACEMENT] = {"displacement", "m"},
+                                         [STRUT_RUN_NORMALS] = {"contact force", "N"},
+                                         [STRUT_RUN_DRIVE] = {"change", "m"},
+                                         [STRUT_RUN_HEIGHTS] = {"height", "m"},
+                                         [STRUT_RUN_FORCES] = {"member force", "N"},
+                                         [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
+  panel p = {.name = names[kind][0], .unit = names[kind][1]};
+  size_t frames = run->frames - first;
+  if (!(kind == STRUT_RUN_DRIVE ? fill_drive(run, first, &p) : fill_panel(run, kind, first, &p)))
+    return STRUT_NO_MEMORY;
+  if (kind == STRUT_RUN_DISPLACEMENT && p.count == 1) p.name = "x displacement";
+  if (!fit_labels(run, 0.4 * box.width, &p)) return STRUT_NO_MEMORY;
+  strut_series series[MOST_CURVES];
+  for (size_t i = 0; i < p.count; i++)
+    series[i] = (strut_series){.label = p.labels[i],
+                               .count = frames,
+                               .x = run->motion->time + first,
+                               .y = p.values[i],
+                               .look = -1};
+  const double *time = run->motion->time;
+  strut_curves curves = {.x = {"time", "s", false, time[first], time[run->frames - 1]},
+                         .y = {p.name, p.unit, false, (double)NAN, (double)NAN},
+                         .series_count = p.count,
+                         .series = series,
+                         .cursor = (double)NAN};
+  find_range(&p, frames, kind, &curves.y);
+  return strut_draw_curves(canvas, box, &curves);
+}
+
+double strut_run_curves_height(strut_run_scene *run) {
+  double height = 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE;
+  for (int kind = 0; kind < STRUT_RUN_PANELS; kind++)
+    if (strut_run_panel_wanted(run, kind)) height += CURVES_HEIGHT;
+  return height;
+}
+
+strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas) {
+  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE,
+                   run->figure->width - 2 * STRUT_RUN_EDGE, CURVES_HEIGHT};
+  size_t drawn = 0;
+  for (int kind = 0; kind < STRUT_RUN_PANELS; kind++) {
+    if (!strut_run_panel_wanted(run, kind)) continue;
+    strut_status status = strut_run_draw_panel(run, canvas, box, kind, 0);
+    if (status != STRUT_OK) return status;
+    box.y += CURVES_HEIGHT;
+    drawn++;
+  }
+  strut_run_draw_title(run, canvas, drawn ? "all that was recorded" : "nothing changed", true);
+  return STRUT_OK;
+}
+
+/* The overview of a run: where it ended, how it got there, and curves of the last periods. */
+
+enum { MOST_PANELS = 4, MOST_STACKED = 3, ITEMS = 2, MOST_PATHS = 300 };
+
+static const double YARDSTICK = 14, KEY_LINE = 11; /* [pt] */
+static const double SCALE = 46, CHART = 118, MARGIN = 27, GAP = 6, WIDE = 380;
+static const double PERIODS = 5, PART = 0.1; /* of the record, where nothing is periodic */
+static const double SEEN = 2e-3;             /* of the drawing: shorter paths are not drawn */
+static const double REACH =
+    0.6; /* paths are shown within this distance of the shape, in its sizes */
+
+static size_t first_of_paths(const strut_run_scene *run) {
+  double all = strut_run_time_from(run, 0);
+  return strut_run_since(run, run->period > 0 ? fmin(run->period, all) : PART * all);
+}
+
+static size_t first_of_curves(const strut_run_scene *run) {
+  double all = strut_run_time_from(run, 0);
+  return strut_run_since(run, run->period > 0 ? fmin(PERIODS * run->period, all) : all);
+}
+
+/* Bounds of the last shape and of the paths near it. */
+static strut_bounds bounds_of(const strut_run_scene *run) {
+  strut_bounds shape = strut_run_frame_bounds(run, run->frames - 1), all = shape;
+  double reach = REACH * strut_run_extent(&shape);
+  for (size_t f = first_of_paths(run); f < run->frames; f++)
+    strut_bounds_add(&all, run->model, strut_run_positions(run, f));
+  for (int d = 0; d < 2; d++) {
+    all.low[d] = fmax(all.low[d], shape.low[d] - reach);
+    all.high[d] = fmin(all.high[d], shape.high[d] + reach);
+  }
+  strut_run_add_ground(run, &all);
+  return all;
+}
+
+static double drawing_height(const strut_run_scene *run) {
+  strut_bounds b = bounds_of(run);
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE - SCALE;
+  return strut_run_drawing_height(&b, width, MARGIN, 0.16, 0.62);
+}
+
+static bool has_two_columns(const strut_run_scene *run) { return run->figure->width >= WIDE; }
+
+static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
+  static const int order[] = {STRUT_RUN_DISPLACEMENT, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE,
+                              STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES};
+  int count = 0, most = has_two_columns(run) ? MOST_PANELS : MOST_STACKED;
+  for (size_t i = 0; run->frames > 1 && i < sizeof order / sizeof *order && count < most; i++)
+    if (strut_run_panel_wanted(run, order[i])) panels[count++] = order[i];
+  return count;
+}
+
+/* Whether any path is long enough to be visible. */
+static bool has_visible_paths(const strut_run_scene *run) {
+  size_t last = run->frames - 1, nodes = run->motion->node_count;
+  strut_bounds b = bounds_of(run);
+  if (nodes > MOST_PATHS) return false;
+  double least = SEEN * strut_run_extent(&b);
+  for (size_t f = first_of_paths(run); f < last; f++)
+    for (size_t i = 0; i < 2 * nodes; i++)
+      if (fabs(strut_run_positions(run, f)[i] - strut_run_positions(run, last)[i]) > least)
+        return true;
+  return false;
+}
+
+static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_item items[ITEMS]) {
+  size_t count = 0;
+  strut_run_expect_frame(run, run->frames - 1);
+  if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
+  if (has_visible_paths(run)) {
+    double span = strut_run_time_from(run, first_of_paths(run));
+    snprintf(texts[count], 120, "node trajectories over the last %s, dark to bright",
+             strut_drawn_quantity(span, 3, "s").text);
+    items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
+    count++;
+  }
+  return count;
+}
+
+/* The scale bar is below the drawing, the key beside it. */
+static double key_indent(const strut_run_scene *run) {
+  return 0.3 * (run->figure->width - 2 * STRUT_RUN_EDGE - SCALE) + 14;
+}
+
+static double foot_height(const strut_run_scene *run, strut_canvas *canvas,
+                          const strut_key_item *items, size_t count) {
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE - key_indent(run);
+  return YARDSTICK - KEY_LINE + fmax(KEY_LINE, strut_key_height(canvas, width, items, count));
+}
+
+double strut_run_overview_height(strut_run_scene *run) {
+  int panels[MOST_PANELS], count = panels_of(run, panels);
+  char texts[ITEMS][120];
+  strut_key_item items[ITEMS];
+  size_t keys = make_key(run, texts, items);
+  double key = foot_height(run, run->ruler, items, keys);
+  return 2 * STRUT_RUN_EDGE + STRUT_RUN_TITLE + drawing_height(run) + key + GAP +
+         CHART * (has_two_columns(run) ? (count + 1) / 2 : count);
+}
+
+static bool draw_structure(strut_run_scene *run, strut_canvas *canvas, strut_box box) {
+  size_t last = run->frames - 1, first = first_of_paths(run), nodes = run->motion->node_count;
+  strut_window window = strut_window_fit(box, bounds_of(run), MARGIN);
+  double(*path)[2] = strut_arena_allocate(&run->arena, run->frames - first, sizeof *path);
+  double *q = strut_run_shape(run, last);
+  if (!path || !q || !strut_run_draw_frame(run, canvas, &window, last)) return false;
+  for (size_t i = 0; i < nodes && nodes <= MOST_PATHS; i++) {
+    for (size_t f = first; f < run->frames; f++)
+      for (size_t d = 0; d < 2; d++) path[f - first][d] = strut_run_positions(run, f)[2 * i + d];
+    strut_run_draw_path(run, canvas, &window, (const double(*)[2])path, run->frames - first, 0.9);
+  }
+  strut_run_draw_reactions(run, canvas, &window, last);
+  strut_run_draw_names(run, canvas, &window, q);
+  window.box.y += YARDSTICK;
+  strut_draw_yardstick(canvas, &window);
+  return true;
+}
+
+/* Two charts in a row where there is room; an odd one takes a whole row. */
+static strut_status draw_charts(strut_run_scene *run, strut_canvas *canvas, strut_box box) {
+  int panels[MOST_PANELS], count = panels_of(run, panels), columns = has_two_columns(run) ? 2 : 1;
+  for (int i = 0, row = 0; i < count; row++) {
+    int in_row = columns == 2 && (count - i) % 2 == 0 ? 2 : 1;
+    for (int k = 0; k < in_row; k++, i++) {
+      strut_box chart = {box.x + k * box.width / in_row, box.y + row * CHART, box.width / in_row,
+                         CHART};
+      strut_status status =
+          strut_run_draw_panel(run, canvas, chart, panels[i], first_of_curves(run));
+      if (status != STRUT_OK) return status;
+    }
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_run_overview(strut_run_scene *run, strut_canvas *canvas) {
+  double width = run->figure->width - 2 * STRUT_RUN_EDGE, height = drawing_height(run);
+  char what[100], texts[ITEMS][120];
+  strut_key_item items[ITEMS];
+  size_t keys = make_key(run, texts, items);
+  snprintf(what, sizeof what, "shape at %s",
+           strut_drawn_quantity(run->motion->time[run->frames - 1], 5, "s").text);
+  strut_run_draw_title(run, canvas, what, true);
+  strut_box box = {STRUT_RUN_EDGE, STRUT_RUN_EDGE + STRUT_RUN_TITLE, width - SCALE, height};
+  if (!draw_structure(run, canvas, box)) return STRUT_NO_MEMORY;
+  strut_run_draw_scale(
+      run, canvas,
+      (strut_box){STRUT_RUN_EDGE + width - SCALE + 6, box.y, SCALE - 6, fmin(height, 130)});
+  strut_box below = {STRUT_RUN_EDGE, box.y + height, width, 0};
+  strut_draw_key(canvas,
+                 (strut_box){below.x + key_indent(run), below.y + (YARDSTICK - KEY_LINE),
+                             width - key_indent(run), 0},
+                 items, keys);
+  below.y += foot_height(run, canvas, items, keys) + GAP;
+  return draw_charts(run, canvas, below);
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/cluster/cluster_script.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/buffer.h"
+#include "engine/study/cluster/cluster_templates.h"
+#include "engine/study/results/shard.h"
+
+enum { MOST_NAME = 60 };
+
+/* A placeholder of the templates and its text; NULL removes its lines. */
+typedef struct placeholder {
+  const char *name, *value;
+} placeholder;
+
+static bool is_plain(const char *text, const char *others) {
+  size_t length = 0;
+  if (!text) return true;
+  for (; text[length]; length++)
+    if (!isdigit((unsigned char)text[length]) && !strchr(others, text[length])) return false;
+  return length > 0 && length < 32 && isdigit((unsigned char)text[0]);
+}
+
+static strut_status check(const strut_cluster_script *s, strut_error *error) {
+  if (s->shards < 1 || s->shards > STRUT_MOST_SHARDS)
+    return strut_fail(error, STRUT_USAGE, "a study has 1 to %d shards", STRUT_MOST_SHARDS);
+  if (!is_plain(s->time, ":-"))
+    return strut_fail(error, STRUT_USAGE,
+                      "'%s' is not a time for Slurm: minutes, H:M:S or D-H:M:S, such as 12:00:00",
+                      s->time);
+  if (!is_plain(s->memory, "KMGT"))
+    return strut_fail(error, STRUT_USAGE,
+                      "'%s' is not an amount of memory for Slurm, such as 500M or 2G", s->memory);
+  return STRUT_OK;
+}
+
+/* A name for the queue: letters, digits, dots, dashes and underscores. */
+static char *plain_name(const char *name, strut_arena *arena) {
+  size_t length = strlen(name) < MOST_NAME ? strlen(name) : MOST_NAME;
+  char *plain = strut_arena_text(arena, name, length);
+  for (char *c = plain; c && *c; c++)
+    if ((unsigned char)*c >= 0x80 || !(isalnum((unsigned char)*c) || strchr("._-", *c))) *c = '_';
+  return plain;
+}
+
+/* Adds a word in single quotes, which the shell takes literally. */
+static void add_quoted(strut_buffer *to, const char *word) {
+  strut_buffer_add(to, "'");
+  for (; *word; word++) strut_buffer_add(to, *word == '\'' ? "'\\''" : "%c", *word);
+  strut_buffer_add(to, "'");
+}
+
+static const char *quote(const char *const *words, size_t count, strut_arena *arena) {
+  strut_buffer quoted = {0};
+  for (size_t i = 0; i < count; i++) {
+    if (i) strut_buffer_add(&quoted, " ");
+    add_quoted(&quoted, words[i]);
+  }
+  char *text = strut_buffer_take(&quoted);
+  const char *kept = text ? strut_arena_format(arena, "%s", text) : NULL;
+  strut_release(text);
+  return kept;
+}
+
+/* The placeholder NAME of a text that starts with "@NAME@", or NULL. */
+static const placeholder *find(const placeholder *all, const char *text, size_t length) {
+  const char *end = length > 1 ? memchr(text + 1, '@', length - 1) : NULL;
+  for (; end && all->name; all++)
+    if (strlen(all->name) == (size_t)(end - text - 1) &&
+        memcmp(all->name, text + 1, strlen(all->name)) == 0)
+      return all;
+  return NULL;
+}
+
+/* Copies a line of the template with its placeholders filled in, unless one has no value. */
+static void add_line(strut_buffer *to, const char *line, size_t length, const placeholder *all) {
+  for (size_t i = 0; i < length; i++) {
+    const placeholder *p = line[i] == '@' ? find(all, line + i, length - i) : NULL;
+    if (p && !p->value) return;
+  }
+  for (size_t i = 0; i < length; i++) {
+    const placeholder *p = line[i] == '@' ? find(all, line + i, length - i) : NULL;
+    if (p) {
+      strut_buffer_add(to, "%s", p->value);
+      i += strlen(p->name) + 1;
+    } else {
+      strut_buffer_add(to, "%c", line[i]);
+    }
+  }
+}
+
+static char *fill(const strut_embedded *template, const placeholder *all) {
+  strut_buffer text = {0};
+  for (const char *line = template->text; *line;) {
+    size_t length = strcspn(line, "\n");
+    length += line[length] == '\n';
+    add_line(&text, line, length, all);
+    line += length;
+  }
+  return strut_buffer_take(&text);
+}
+
+strut_status strut_cluster_script_write(strut_cluster cluster, const strut_cluster_script *s,
+                                        char **text, strut_error *error) {
+  strut_arena arena = {0};
+  *text = NULL;
+  strut_status status = check(s, error);
+  if (status != STRUT_OK) return status;
+  const placeholder all[] = {
+      {"job", plain_name(s->name && *s->name ? s->name : "study", &arena)},
+      {"strut", quote(&s->program, 1, &arena)},
+      {"folder", quote(&s->folder, 1, &arena)},
+      {"study", quote(&s->study, 1, &arena)},
+      {"results", quote(&s->output, 1, &arena)},
+      {"shards", strut_arena_format(&arena, "%lld", (long long)s->shards)},
+      {"last", strut_arena_format(&arena, "%lld", (long long)s->shards - 1)},
+      {"cpus", strut_arena_format(&arena, "%lld", (long long)s->cpus)},
+      {"words", s->word_count ? quote(s->words, s->word_count, &arena) : NULL},
+      {"time", s->time},
+      {"memory", s->memory},
+      {NULL, NULL}};
+  bool good = !s->word_count || all[8].value;
+  for (size_t i = 0; i < 8; i++) good = good && all[i].value;
+  if (good)
+    *text =
+        fill(cluster == STRUT_CLUSTER_SLURM ? strut_slurm_template : strut_parallel_template, all);
+  strut_arena_free(&arena);
+  return *text ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory for the script");
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Shell scripts that run the shards of a study on a cluster and merge them: as a job array of Slurm,
+ * or with GNU parallel. Their texts are slurm.sh and parallel.sh, embedded at build time.
+ */
+#ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
+#define STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/status.h"
+
+typedef enum strut_cluster { STRUT_CLUSTER_SLURM, STRUT_CLUSTER_PARALLEL } strut_cluster;
+
+/** What fills a template. Texts may hold any characters, unless said otherwise. */
+typedef struct strut_cluster_script {
+  const char *name;           /* of the study; Slurm only */
+  const char *program;        /* path of strut */
+  const char *folder;         /* absolute path that the paths below are relative to */
+  const char *study, *output; /* arguments of strut sweep */
+  const char *const *words;   /* (word_count) further arguments */
+  size_t word_count;
+  int64_t shards;     /* number of shards */
+  int64_t cpus;       /* threads per shard, 1 or more */
+  const char *time;   /* per task in Slurm's notation, such as 1-12:00:00; NULL: its default */
+  const char *memory; /* per task, such as 2G; NULL: Slurm's default */
+} strut_cluster_script;
+
+/**
+ * Writes the script into a text of strut_allocate. STRUT_USAGE where the number of shards, the time
+ * or the memory is invalid.
+ */
+STRUT_API strut_status strut_cluster_script_write(strut_cluster cluster,
+                                                  const strut_cluster_script *script, char **text,
+                                                  strut_error *error);
+
+#endif

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The parts of `strut sweep`: the study that is opened, copies of its texts, its figures, its reports,
+ * and scripts for clusters.
+ */
+#ifndef STRUT_PARSER_CLI_SWEEP_H
+#define STRUT_PARSER_CLI_SWEEP_H
+
+#include "engine/study/results/shard.h"
+#include "engine/study/sweep/sweep.h"
+#include "parser/cli/options.h"
+#include "parser/cli/progress.h"
+#include "parser/study/read_study.h"
+
+/** Stays where it is while in use. Zero-initialise; strut_sweep_study_close releases it. */
+typedef struct strut_sweep_study {
+  strut_study_file file;
+  strut_sweep_plan plan;
+  strut_slots_plan slots; /* of all points in one file */
+} strut_sweep_study;
+
+/**
+ * Opens the study that the command's argument names. Messages go to stderr; close it after a failure
+ * too. The first point and the ends of every axis must make a model.
+ */
+strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study);
+void strut_sweep_study_close(strut_sweep_study *study);
+
+/**
+ * STRUT_USAGE where the copies would take the place of other files of the user's: results go into
+ * the study's own folder, and one of the names is taken there.
+ */
+strut_status strut_sweep_texts_check(const strut_arguments *arguments,
+                                     const strut_sweep_study *study, strut_error *error);
+/** Writes study.yaml and model.yaml into the directory of the results, which exists. */
+strut_status strut_sweep_texts_write(const strut_arguments *arguments,
+                                     const strut_sweep_study *study, strut_error *error);
+
+/** Checks that all figures name existing columns. STRUT_BAD_SCENE with the reason. */
+strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error);
+/**
+ * Fails where strut would have to overwrite somebody else's table.csv or picture. Pictures of single runs
+ * are refused when they are drawn.
+ */
+strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const char *directory,
+                                             strut_error *error);
+/**
+ * Draws each as directory/NAME.svg, of the table at `path` or of the runs beside it. Messages go to
+ * stderr.
+ */
+strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *directory,
+                                      const char *path);
+
+/** A progress bar on a terminal, occasional lines elsewhere. */
+typedef struct strut_sweep_progress {
+  strut_progress bar;
+  const strut_sweep_plan *plan;
+  bool quiet;
+  double told; /* time of the latest line [s] */
+} strut_sweep_progress;
+
+strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet);
+/** `context` is the strut_sweep_progress. */
+void strut_sweep_progress_show(void *context, const strut_sweep_state *state);
+void strut_sweep_progress_end(strut_sweep_progress *progress);
+
+/** Prints the number of points and the columns on stdout. */
+strut_status strut_sweep_print_count(const strut_sweep_plan *plan, bool json);
+/** Prints what is done, missing and failed in a file of slots on stdout. */
+strut_status strut_sweep_print_status(strut_slots *slots, bool json);
+/** Prints each warning of the runs once, with its count, on stderr. */
+void strut_sweep_print_warnings(const strut_sweep_state *state);
+/** Prints the final report on stdout. `table`: its path. */
+strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json);
+
+/** A line, or an object of a JSON list, for each shard in the directory that is begun or missing. */
+strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
+                                      strut_arena *arena, bool json);
+
+/** Prints the script for the study of that name. */
+strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);
+
+#endif

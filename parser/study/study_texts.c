@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Texts made of a study: a copy for another folder, and what decides its results. See read_study.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/number_text.h"
+#include "parser/study/read_study.h"
+#include "parser/write/writer.h"
+#include "parser/yaml/text.h"
+
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/* Where the text of a node begins and ends. */
+static void find_span(const strut_study_file *file, strut_place place, size_t *from, size_t *to) {
+  strut_cursor at = strut_cursor_begin(file->text, file->length);
+  strut_cursor_to_line(&at, place.line);
+  while (at.column < place.column && strut_cursor_step(&at)) continue;
+  *from = at.offset;
+  strut_cursor_to_index(&at, at.index + place.length);
+  *to = at.offset;
+  while (*to > *from && is_blank(file->text[*to - 1])) --*to; /* of a block */
+}
+
+/* One line of comment; what would end it becomes a blank. */
+static void put_note(strut_writer *w, const char *what, const char *text, const char *value) {
+  const char *const parts[] = {text, value ? "=" : "", value ? value : ""};
+  strut_put(w, "# ");
+  strut_put(w, what);
+  for (int i = 0; i < 3; i++)
+    for (const char *at = parts[i]; *at;) {
+      size_t length = 0, left = strlen(at), end = 0;
+      while (at[length] && !end)
+        if ((end = strut_text_break(at + length, left - length)) == 0) length++;
+      strut_put_part(w, at, length);
+      if (end) strut_put(w, " ");
+      at += length + end;
+    }
+  strut_put(w, "\n");
+}
+
+char *strut_study_copy(const strut_study_file *file, const char *model,
+                       const strut_override *overrides, size_t override_count) {
+  strut_writer w = {.text = NULL};
+  const strut_tree *node = strut_tree_find(file->document.root, "model", NULL);
+  bool elsewhere = node && strcmp(node->text, model) != 0;
+  size_t from = 0, to = 0;
+  if (elsewhere) find_span(file, node->place, &from, &to);
+  strut_put_part(&w, file->text, from);
+  if (elsewhere) strut_put(&w, model);
+  strut_put_part(&w, file->text + to, file->length - to);
+  if (elsewhere || override_count) strut_put(&w, "\n");
+  if (elsewhere) put_note(&w, "A copy; its model was ", node->text, NULL);
+  for (size_t i = 0; i < override_count; i++)
+    put_note(&w, "It was run with --set ", overrides[i].name, overrides[i].value);
+  if (!w.failed) return w.text;
+  strut_release(w.text);
+  return NULL;
+}
+
+static void put_number(strut_writer *w, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_number_text(value, text);
+  strut_put(w, text);
+  strut_put(w, " ");
+}
+
+/* Texts are preceded by their length, so that different trees give different texts. */
+static void put_word(strut_writer *w, const char *text) {
+  put_number(w, (double)strlen(text));
+  strut_put(w, text);
+  strut_put(w, "\n");
+}
+
+static void put_tree(strut_writer *w, const strut_tree *node) {
+  static const char *const kinds[] = {"scalar", "list", "map"};
+  strut_put(w, kinds[node->kind]);
+  strut_put(w, node->quoted ? " quoted " : " ");
+  if (node->kind == STRUT_TREE_SCALAR) {
+    put_word(w, node->text);
+    return;
+  }
+  put_number(w, (double)node->count);
+  for (const strut_tree *child = node->first; child; child = child->next) put_tree(w, child);
+}
+
+static void put_axis(strut_writer *w, const strut_study_axis *axis) {
+  put_number(w, (double)axis->count);
+  for (size_t i = 0; i < axis->column_count; i++) {
+    const strut_study_column *c = &axis->columns[i];
+    put_word(w, c->name);
+    put_word(w, c->unit);
+    put_number(w, (double)c->kind);
+    put_number(w, c->from);
+    put_number(w, c->to);
+    put_number(w, c->step);
+    for (int64_t k = 0; c->kind == STRUT_RANGE_LIST && k < axis->count; k++) {
+      if (c->word)
+        put_word(w, c->words[k]);
+      else
+        put_number(w, c->number[k]);
+    }
+  }
+}
+
+char *strut_study_identity(const strut_study_file *file) {
+  strut_writer w = {.text = NULL};
+  const strut_study *study = &file->study;
+  for (size_t i = 0; i < file->source_count; i++)
+    put_tree(&w, strut_scene_source_document(file->sources[i])->root);
+  for (size_t i = 0; i < file->setting_count; i++) {
+    put_word(&w, file->settings[i].name);
+    put_word(&w, file->settings[i].text);
+  }
+  for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
+  put_number(&w, (double)study->keep);
+  for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
+  put_number(&w, study->trajectories);
+  put_number(&w, study->half_step);
+  put_number(&w, study->check_accuracy);
+  if (!w.failed) return w.text;
+  strut_release(w.text);
+  return NULL;
+}

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is wrong with a text before it is a tree: characters, directives, and syntax in plain words. */
+#include <string.h>
+
+#include "parser/yaml/document_parts.h"
+#include "parser/yaml/text.h"
+
+/* Forbidden characters that are reported one by one. */
+enum { REPORT_MOST = 10 };
+
+static strut_place place_of(const strut_cursor *cursor) {
+  return (strut_place){cursor->line, cursor->column, 1};
+}
+
+/* Byte offset of the first character at or after `at` that is not allowed, or the length. */
+static size_t find_forbidden(const char *text, size_t length, size_t at, uint32_t *code) {
+  while (at < length) {
+    unsigned char byte = (unsigned char)text[at];
+    if (byte >= 0x20 && byte < 0x7F) {
+      at++;
+      continue;
+    }
+    size_t size = strut_text_decode(text + at, length - at, code);
+    if (*code == STRUT_BAD_CODE || strut_text_forbidden(*code)) return at;
+    at += size;
+  }
+  return length;
+}
+
+/* Reports one character; false where looking further would only repeat it. */
+static bool report(strut_diagnostics *diagnostics, const strut_cursor *cursor, uint32_t code) {
+  unsigned byte = (unsigned char)cursor->text[cursor->offset];
+  if (code == STRUT_BAD_CODE) {
+    strut_diagnose(diagnostics, place_of(cursor),
+                   "byte 0x%02X is not valid UTF-8; save the file as UTF-8", byte);
+    return false;
+  }
+  if (code == 0)
+    strut_diagnose(diagnostics, place_of(cursor), "a NUL byte is not allowed");
+  else if (code == 0xFEFF)
+    strut_diagnose(diagnostics, place_of(cursor),
+                   "a byte order mark is allowed only at the beginning of the file");
+  else
+    strut_diagnose(diagnostics, place_of(cursor), "control character U+%04X is not allowed",
+                   (unsigned)code);
+  return true;
+}
+
+static bool scan_characters(strut_diagnostics *diagnostics) {
+  const char *text = diagnostics->text;
+  size_t length = diagnostics->length, at = strut_text_mark(text, length);
+  strut_cursor cursor = strut_cursor_begin(text, length);
+  uint32_t code = 0;
+  int reported = 0;
+  while ((at = find_forbidden(text, length, at, &code)) < length && reported < REPORT_MOST) {
+    strut_cursor_to_offset(&cursor, at);
+    reported++;
+    if (!report(diagnostics, &cursor, code)) break;
+    at += strut_text_decode(text + at, length - at, &code);
+  }
+  return reported == 0;
+}
+
+/*
+ * Directives stand before the document: libyaml is quadratic in their number, and one %YAML is all
+ * that anybody needs.
+ */
+static bool scan_directives(strut_diagnostics *diagnostics) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  bool seen = false;
+  while (cursor.offset < cursor.length) {
+    const char *line = cursor.text + cursor.offset;
+    size_t left = cursor.length - cursor.offset;
+    size_t blanks = 0;
+    while (blanks < left && (line[blanks] == ' ' || line[blanks] == '\t')) blanks++;
+    bool nothing =
+        blanks == left || line[blanks] == '#' || strut_text_break(line + blanks, left - blanks);
+    if (*line == '%') {
+      bool version = left > 6 && memcmp(line, "%YAML ", 6) == 0;
+      if (!version || seen) {
+        strut_diagnose(
+            diagnostics, place_of(&cursor),
+            version ? "a second %%YAML line" : "directives such as %%TAG are not allowed");
+        return false;
+      }
+      seen = true;
+    } else if (!nothing) {
+      return true;
+    }
+    strut_cursor_to_line(&cursor, cursor.line + 1);
+  }
+  return true;
+}
+
+bool strut_document_scan(strut_diagnostics *diagnostics) {
+  const char *text = diagnostics->text;
+  size_t length = diagnostics->length;
+  if (length > STRUT_TEXT_MOST) {
+    strut_diagnose(diagnostics, (strut_place){0, 0, 0},
+                   "the text has %zu MiB, at most %zu are read", length >> 20,
+                   STRUT_TEXT_MOST >> 20);
+    return false;
+  }
+  if (length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) {
+    strut_diagnose(diagnostics, (strut_place){0, 0, 0}, "the file is UTF-16; save it as UTF-8");
+    return false;
+  }
+  return scan_characters(diagnostics) && scan_directives(diagnostics);
+}
+
+/* What libyaml says, in whose context, and what a person wants to hear. */
+static const struct rule {
+  const char *problem, *context; /* stretches of libyaml's words; NULL: any */
+  const char *message;
+  const char *begun; /* what began in the context's line, appended; or NULL */
+  bool at_context;   /* the place is where the context begins */
+  bool is_key;       /* the place is that of a key without a value */
+  bool at_margin;    /* true only where the line begins; elsewhere something is left over */
+} rules[] = {
+    {.problem = "mapping values are not allowed",
+     .message = "unexpected ':'; a key begins a new line, and a text that holds ': ' needs quotes"},
+    {.problem = "tab character", .message = "a tab is not allowed as indentation; use spaces"},
+    {.problem = "end of stream",
+     .context = "quoted scalar",
+     .at_context = true,
+     .message = "this quote is never closed"},
+    {.problem = "document indicator",
+     .context = "quoted scalar",
+     .at_context = true,
+     .message = "this quote is not closed before the document ends"},
+    {.problem = "expected ',' or ']'",
+     .begun = "the list that begins",
+     .message = "expected ',' or ']'"},
+    {.problem = "expected ',' or '}'",
+     .begun = "the mapping that begins",
+     .message = "expected ',' or '}'"},
+    {.problem = "could not find expected ':'",
+     .at_context = true,
+     .is_key = true,
+     .message = "expected ':' and a value after this key"},
+    {.problem = "expected key",
+     .begun = "the mapping that begins",
+     .at_margin = true,
+     .message = "expected a key at the same indentation as the other keys"},
+    {.problem = "expected '-' indicator",
+     .begun = "the list that begins",
+     .at_margin = true,
+     .message = "expected '- ' at the same indentation as the other items"},
+    {.problem = "block sequence entries are not allowed",
+     .message = "a '- ' item is not allowed here; begin it on a new line, or write [a, b]"},
+    {.problem = "mapping keys are not allowed", .message = "a '? ' key is not allowed here"},
+    {.problem = "expected node content", .message = "a value is missing here"},
+    {.problem = "unknown escape character",
+     .message = "unknown escape; in double quotes a backslash is written '\\\\'"},
+    {.problem = "hexdecimal number",
+     .context = "quoted scalar",
+     .message = "an escape lacks hexadecimal digits"},
+    {.problem = "invalid Unicode", .message = "the escape is not a character of Unicode"},
+    {.problem = "alphabetic or numeric character",
+     .context = "anchor",
+     .message = "expected a name after '&'; a text that begins with '&' needs quotes"},
+    {.problem = "alphabetic or numeric character",
+     .context = "alias",
+     .message = "expected a name after '*'; a text that begins with '*' needs quotes"},
+    {.problem = "undefined tag handle",
+     .message = "tags (words that begin with '!') are not allowed"},
+    {.context = "a tag", .message = "tags (words that begin with '!') are not allowed"},
+    {.problem = "incompatible YAML document", .message = "only YAML 1.1 and 1.2 can be read"},
+    {.context = "directive", .message = "expected '%YAML 1.2'"},
+    {.problem = "<document start>", .message = "expected '---' after a %YAML line"},
+    {.context = "block scalar", .message = "expected '|' or '>' and then a new line"},
+};
+
+static bool has(const char *text, const char *part) {
+  return !part || (text && strstr(text, part));
+}
+
+static strut_place place_at(const strut_diagnostics *diagnostics, yaml_mark_t mark, char *here) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_index(&cursor, mark.index);
+  *here = cursor.offset < cursor.length ? cursor.text[cursor.offset] : '\0';
+  return (strut_place){(uint32_t)mark.line + 1, (uint32_t)mark.column + 1, 1};
+}
+
+/* "found character that cannot start any token" */
+static void report_start(strut_diagnostics *diagnostics, strut_place place, char here) {
+  if (here == '\t')
+    strut_diagnose(diagnostics, place, "a tab is not allowed as indentation; use spaces");
+  else
+    strut_diagnose(diagnostics, place, "a value cannot begin with '%c'; put it in quotes", here);
+}
+
+/* True where something else than blanks stands before the place in its line. */
+static bool behind_something(const strut_diagnostics *diagnostics, strut_place place) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_line(&cursor, place.line);
+  while (cursor.line == place.line && cursor.column < place.column) {
+    char c = cursor.offset < cursor.length ? cursor.text[cursor.offset] : ' ';
+    if (c != ' ' && c != '\t') return true;
+    if (!strut_cursor_step(&cursor)) break;
+  }
+  return false;
+}
+
+/* Does a word at the place have a colon and no space behind it, as in `mass:1 kg`? */
+static bool lacks_space(const strut_diagnostics *diagnostics, strut_place place) {
+  strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor_to_line(&cursor, place.line);
+  while (cursor.column < place.column && strut_cursor_step(&cursor)) continue;
+  const char *text = cursor.text + cursor.offset, *end = diagnostics->text + diagnostics->length;
+  while (text < end && *text && !strchr(": \t\r\n", *text)) text++;
+  return text + 1 < end && text[0] == ':' && !strchr(" \t\r\n", text[1]);
+}
+
+bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
+                                 strut_diagnostics *diagnostics) {
+  if (parser->error == YAML_MEMORY_ERROR) return false;
+  char here;
+  strut_place place = place_at(diagnostics, parser->problem_mark, &here);
+  if (has(parser->problem, "cannot start any token")) {
+    report_start(diagnostics, place, here);
+    return true;
+  }
+  if (here == '\0' && open && !has(parser->context, "quoted scalar")) {
+    /* At the end of the text the place of interest is where the bracket stands. */
+    strut_diagnose(diagnostics, open->place, "this '%c' is never closed",
+                   open->kind == STRUT_TREE_LIST ? '[' : '{');
+    return true;
+  }
+  for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
+    const struct rule *rule = &rules[i];
+    if (!has(parser->problem, rule->problem) || !has(parser->context, rule->context)) continue;
+    if (rule->at_context) place = place_at(diagnostics, parser->context_mark, &here);
+    if (rule->is_key && lacks_space(diagnostics, place)) {
+      strut_diagnose(diagnostics, place, "this key needs a space after its colon");
+      return true;
+    }
+    if (rule->at_margin && behind_something(diagnostics, place))
+      strut_diagnose(diagnostics, place, "unexpected text after a value");
+    else if (rule->begun)
+      strut_diagnose(diagnostics, place, "%s (%s in line %zu)", rule->message, rule->begun,
+                     parser->context_mark.line + 1);
+    else
+      strut_diagnose(diagnostics, place, "%s", rule->message);
+    return true;
+  }
+  strut_diagnose(diagnostics, place, "not valid YAML: %s%s%s",
+                 parser->problem ? parser->problem : "unknown trouble", parser->context ? " " : "",
+                 parser->context ? parser->context : "");
+  return true;
+}
