@@ -28,9 +28,9 @@ static strut_status draw(const strut_model *model, strut_error *error) {
 #endif
 
 #ifdef SWEEP
-static strut_status scene_at(void *context, const strut_study_value *values, strut_scene *scene,
+static strut_status scene_at(void *context, const strut_study_value *values, strut_setup *setup,
                              strut_error *error) {
-  return strut_study_scene(context, values, scene, error);
+  return strut_study_setup(context, values, setup, error);
 }
 
 /* The points of study.yaml, into points.slots and table.csv. */
@@ -41,7 +41,7 @@ static strut_status sweep(strut_error *error) {
   strut_sweep_state state;
   const strut_sweep_options options = {.threads = 2, .directory = "."};
   strut_status status = strut_study_open("study.yaml", NULL, 0, &file, error);
-  const strut_sweep_scenes scenes = {scene_at, strut_scene_write, &file};
+  const strut_sweep_scenes scenes = {scene_at, strut_setup_write, &file};
   if (status == STRUT_OK) status = strut_sweep_plan_make(&file.study, &scenes, &plan, error);
   const strut_slots_plan rows = {.version = "mine",
                                  .name = "mine",
@@ -60,7 +60,7 @@ static strut_status sweep(strut_error *error) {
 #endif
 
 int main(void) {
-  strut_scene scene = {0};
+  strut_setup setup = {0};
   strut_model *model = NULL;
   strut_summary summary = {0};
   strut_diagnostics diagnostics = {0};
@@ -68,10 +68,11 @@ int main(void) {
   strut_sink *sinks[] = {strut_csv_create("."), strut_hdf5_create(".", scene_text)};
   const strut_run_options options = {.sinks = sinks, .sink_count = 2};
 
-  strut_status status = strut_scene_read(&scene, "scene", scene_text, sizeof scene_text - 1, NULL,
+  strut_status status = strut_setup_read(&setup, "scene", scene_text, sizeof scene_text - 1, NULL,
                                          0, STRUT_FOR_RUN, &diagnostics);
-  if (status == STRUT_OK) status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, &error);
+  if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK)
+    status = strut_simulate(model, &setup.experiment, &options, &summary, &error);
 #ifdef DRAW
   if (status == STRUT_OK) status = draw(model, &error);
 #endif
@@ -79,7 +80,7 @@ int main(void) {
   if (status == STRUT_OK) status = sweep(&error);
 #endif
   if (status == STRUT_OK) {
-    char *text = strut_summary_json(&summary, &scene, false);
+    char *text = strut_summary_json(&summary, &setup.scene, false);
     puts(text ? text : "no memory");
     strut_release(text);
   } else {
@@ -89,7 +90,7 @@ int main(void) {
   strut_hdf5_free(sinks[1]);
   strut_summary_free(&summary);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&scene);
   strut_diagnostics_free(&diagnostics);
   return status == STRUT_OK ? 0 : 1;
 }

@@ -6,7 +6,9 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 
-static void *euler_create(const strut_model *model, strut_state *state) {
+static void *euler_create(const strut_model *model, strut_state *state,
+                          const strut_integrator_settings *settings) {
+  (void)settings;
   return strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
 }
 

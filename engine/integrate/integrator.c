@@ -41,9 +41,10 @@ const strut_integrator *strut_integrator_for_settling(const strut_model *model) 
   return strut_integrator_for(exact ? STRUT_ROLE_EXACT_STICK : STRUT_ROLE_PLAIN);
 }
 
-strut_status strut_integrator_check(const strut_model *model, strut_error *error) {
+strut_status strut_integrator_check(const strut_model *model, const strut_experiment *experiment,
+                                    strut_error *error) {
   const strut_scene *scene = model->scene;
-  const char *name = scene->experiment.integrator;
+  const char *name = experiment->integrator;
   const strut_integrator *method = strut_integrator_find(name);
   if (!method) return strut_fail(error, STRUT_USAGE, "there is no integrator '%s'", name);
   int32_t exact = strut_first_exact_contact(model);

@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
 
 #include "engine/forces/forces.h"
+#include "engine/scene/experiment.h"
 
 /** Which steps are stable, by the eigenvalues of small motions: see stability.h. */
 typedef enum strut_region {
@@ -33,6 +34,13 @@ typedef enum strut_lane_method {
   STRUT_LANES_VERLET
 } strut_lane_method;
 
+/** What a method is set up for, beside the model; see strut_experiment. */
+typedef struct strut_integrator_settings {
+  double step;      /* wanted [s]; a run may take slightly shorter ones, to divide a period */
+  double tolerance; /* of error control [1] */
+  double refine, refine_time, refine_rate, refine_memory;
+} strut_integrator_settings;
+
 /** A method. Its workspace belongs to one state, whose arena holds it: freeing the state frees it. */
 typedef struct strut_integrator {
   const char *name;        /* as the language calls it */
@@ -47,7 +55,8 @@ typedef struct strut_integrator {
   bool rigid;           /* keeps the lengths of rigid bars */
   bool no_ground;       /* cannot step over contacts */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
-  void *(*create)(const strut_model *model, strut_state *state);
+  void *(*create)(const strut_model *model, strut_state *state,
+                  const strut_integrator_settings *settings);
   /** Must be called whenever someone else has changed q or v; NULL where nothing depends on it. */
   void (*restart)(const strut_model *model, strut_state *state, void *workspace, double dt);
   /**
@@ -68,13 +77,24 @@ STRUT_API const strut_integrator *strut_integrator_for(strut_integrator_role rol
 STRUT_API const strut_integrator *strut_integrator_for_settling(const strut_model *model);
 /** Index of the first contact whose friction law sticks exactly, or -1. */
 STRUT_API int32_t strut_first_exact_contact(const strut_model *model);
+/** The settings of an experiment's method. */
+static inline strut_integrator_settings strut_integrator_settings_of(const strut_experiment *e) {
+  return (strut_integrator_settings){.step = e->step,
+                                     .tolerance = e->tolerance,
+                                     .refine = e->refine,
+                                     .refine_time = e->refine_time,
+                                     .refine_rate = e->refine_rate,
+                                     .refine_memory = e->refine_memory};
+}
 /**
- * Can the scene's method run the model? STRUT_USAGE, with what to change, where there is no such
+ * Can the experiment's method run the model? STRUT_USAGE, with what to change, where there is no such
  * method, exact Coulomb friction has none with events, contacts have one that cannot step over them,
  * or rigid bars have none that keeps them;
  * STRUT_SINGULAR with the bar where rigid bars hold each other.
  */
-STRUT_API strut_status strut_integrator_check(const strut_model *model, strut_error *error);
+STRUT_API strut_status strut_integrator_check(const strut_model *model,
+                                              const strut_experiment *experiment,
+                                              strut_error *error);
 
 /* The rows of the table. */
 #define STRUT_INTEGRATOR_ROW(row, word) extern const strut_integrator strut_integrator_##row;

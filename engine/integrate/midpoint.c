@@ -47,7 +47,9 @@ static double stiffest_of(const strut_model *model) {
   return most;
 }
 
-static void *midpoint_create(const strut_model *model, strut_state *state) {
+static void *midpoint_create(const strut_model *model, strut_state *state,
+                             const strut_integrator_settings *settings) {
+  (void)settings;
   strut_arena *arena = &state->arena;
   midpoint_workspace *w = strut_arena_allocate(arena, 1, sizeof *w);
   size_t both = (size_t)model->length;

@@ -12,7 +12,9 @@ typedef struct rk4_workspace {
   double *q, *v[4], *a[4]; /* v[0] is unused: the first stage's is the state's own */
 } rk4_workspace;
 
-static void *rk4_create(const strut_model *model, strut_state *state) {
+static void *rk4_create(const strut_model *model, strut_state *state,
+                        const strut_integrator_settings *settings) {
+  (void)settings;
   rk4_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
   if (!w) return NULL;
   if ((model->plan & STRUT_TERM_RIGID) && !strut_rigid_create(model, state)) return NULL;

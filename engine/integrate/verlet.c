@@ -13,7 +13,9 @@ typedef struct verlet_workspace {
   bool started;
 } verlet_workspace;
 
-static void *verlet_create(const strut_model *model, strut_state *state) {
+static void *verlet_create(const strut_model *model, strut_state *state,
+                           const strut_integrator_settings *settings) {
+  (void)settings;
   verlet_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
   if (!w) return NULL;
   double **all[] = {&w->a, &w->next, &w->predicted};

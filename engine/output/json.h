@@ -9,7 +9,7 @@
 
 #include "engine/output/json_value.h"
 #include "engine/run/measure/summary.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 /**
  * The summary as one JSON object in a block of strut_allocate, or NULL when memory is out. The same

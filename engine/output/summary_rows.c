@@ -60,8 +60,8 @@ static void add_warnings(rows *r) {
   }
 }
 
-static void add_velocity(rows *r, const strut_scene *scene) {
-  int32_t node = scene->experiment.measure_node;
+static void add_velocity(rows *r, const strut_experiment *experiment, const strut_scene *scene) {
+  int32_t node = experiment->measure_node;
   char label[LABEL], value[VALUE];
   double spread = number(r->from, "velocity_spread"), from = number(r->from, "window_start");
   if (!isfinite(number(r->from, "velocity"))) return;
@@ -153,7 +153,7 @@ static void add_energy(rows *r) {
 }
 
 void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
-                        const strut_scene *scene) {
+                        const strut_experiment *experiment, const strut_scene *scene) {
   rows r = {.json = json, .to = to};
   if (!summary) return;
   strut_c_locale locale = strut_c_locale_enter();
@@ -162,7 +162,7 @@ void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
   if (cJSON_IsObject(root)) {
     add_status(&r);
     add_warnings(&r);
-    add_velocity(&r, scene);
+    add_velocity(&r, experiment, scene);
     add_measured(&r);
     add_steps(&r);
     add_contacts(&r);

@@ -15,11 +15,6 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-static const char *measured(const strut_scene *scene) {
-  int32_t node = scene->experiment.measure_node;
-  return node >= 0 ? scene->nodes[node].name : "the centre of mass";
-}
-
 /* Steady motion and accuracy, if requested. */
 static void add_claims(strut_buffer *table, const strut_summary *s) {
   const strut_steady_summary *m = &s->steady;
@@ -66,7 +61,8 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   strut_buffer_add(table, "%s%s%s", scene->name, *scene->name ? ": " : "",
                    strut_status_text(s->status));
   if (s->reason[0]) strut_buffer_add(table, ": %s", s->reason);
-  strut_buffer_add(table, "\n  velocity    %s of %s", in(s->velocity, "m/s").text, measured(scene));
+  strut_buffer_add(table, "\n  velocity    %s of %s", in(s->velocity, "m/s").text,
+                   s->measured_node ? s->measured_node : "the centre of mass");
   if (isfinite(s->velocity_spread)) {
     strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
   }

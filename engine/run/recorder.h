@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 #include "engine/base/status.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 /** One quantity of every item of a kind: (items, components) doubles of a row from `offset` on. */
 typedef struct strut_record_channel {
@@ -42,7 +42,8 @@ typedef struct strut_sink {
   strut_status (*begin)(void *context, const strut_record_layout *layout, strut_error *error);
   strut_status (*rows)(void *context, const double *rows, size_t count, strut_error *error);
   strut_status (*end)(void *context, strut_status run_status, strut_error *error);
-  unsigned channels; /* strut_channel bits it is given, in their order; 0: those of the scene */
+  unsigned
+      channels; /* strut_channel bits it is given, in their order; 0: those of the experiment */
 } strut_sink;
 
 #endif

@@ -78,8 +78,8 @@ static bool lay_out(const strut_model *model, unsigned wanted, strut_recording *
   return true;
 }
 
-static unsigned wanted_by(const strut_model *model, const strut_sink *sink) {
-  return sink->channels ? sink->channels : model->scene->experiment.channels;
+static unsigned wanted_by(const strut_experiment *experiment, const strut_sink *sink) {
+  return sink->channels ? sink->channels : experiment->channels;
 }
 
 /* Takes from the whole layout what one sink wants. */
@@ -97,11 +97,11 @@ static void lay_out_part(const strut_recording *r, unsigned wanted, strut_record
   part->whole = part->layout.channel_count == r->layout.channel_count;
 }
 
-static bool make_parts(const strut_model *model, strut_recording *r) {
+static bool make_parts(const strut_experiment *experiment, strut_recording *r) {
   bool all_whole = true;
   r->parts = strut_arena_allocate(&r->arena, r->sink_count, sizeof *r->parts);
   for (size_t s = 0; s < r->sink_count && r->parts; s++) {
-    lay_out_part(r, wanted_by(model, r->sinks[s]), &r->parts[s]);
+    lay_out_part(r, wanted_by(experiment, r->sinks[s]), &r->parts[s]);
     all_whole = all_whole && r->parts[s].whole;
   }
   if (r->parts && !all_whole)
@@ -118,17 +118,17 @@ static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   return STRUT_OK;
 }
 
-strut_status strut_recording_create(const strut_model *model, const strut_time_grid *grid,
-                                    double begin, strut_sink **sinks, size_t sink_count,
-                                    strut_recording *r, strut_error *error) {
+strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
+                                    const strut_time_grid *grid, double begin, strut_sink **sinks,
+                                    size_t sink_count, strut_recording *r, strut_error *error) {
   *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .grid = *grid, .last = -1};
   if (!sink_count) return STRUT_OK;
-  strut_span span = strut_scene_span(model->scene);
+  strut_span span = strut_experiment_span(experiment, model->scene);
   r->start = begin + span.record_start;
   r->every = span.record_every;
   size_t members = model->scene->member_count;
   unsigned wanted = 0;
-  for (size_t s = 0; s < sink_count; s++) wanted |= wanted_by(model, sinks[s]);
+  for (size_t s = 0; s < sink_count; s++) wanted |= wanted_by(experiment, sinks[s]);
   r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
   r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
   bool ready = r->length && r->force && lay_out(model, wanted, r);
@@ -142,7 +142,7 @@ strut_status strut_recording_create(const strut_model *model, const strut_time_g
   if (ready) {
     r->capacity = 1 + 65536 / r->layout.width;
     r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
-    ready = r->rows && make_parts(model, r);
+    ready = r->rows && make_parts(experiment, r);
   }
   if (!ready) return strut_memory_fail(bytes, what, error);
   return begin_sinks(r, error);

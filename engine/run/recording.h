@@ -37,9 +37,10 @@ typedef struct strut_recording {
 
 /** Lays out the channels and begins every sink. Without sinks it costs nothing. begin: the time at
     which the run begins, less the grid's offset [s]. */
-strut_status strut_recording_create(const strut_model *model, const strut_time_grid *grid,
-                                    double begin, strut_sink **sinks, size_t sink_count,
-                                    strut_recording *recording, strut_error *error);
+strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
+                                    const strut_time_grid *grid, double begin, strut_sink **sinks,
+                                    size_t sink_count, strut_recording *recording,
+                                    strut_error *error);
 /** The number of the step at whose end the next sample is due; INT64_MAX without sinks. */
 int64_t strut_recording_next_step(const strut_recording *recording);
 /** Is there no sample of step n yet? Not without sinks. */

@@ -27,7 +27,7 @@ static strut_status refuse_large_step(const strut_run *r, bool bound) {
 static strut_status fill_names(strut_run *r) {
   const strut_scene *scene = r->model->scene;
   strut_summary *s = r->summary;
-  const strut_experiment *e = &scene->experiment;
+  const strut_experiment *e = r->experiment;
   size_t contacts = (size_t)r->model->contacts.count;
   s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
@@ -38,6 +38,7 @@ static strut_status fill_names(strut_run *r) {
   s->node_count = scene->node_count;
   s->contact_count = contacts;
   s->measured_count = e->quantity_count;
+  if (e->measure_node >= 0) s->measured_node = scene->nodes[e->measure_node].name;
   for (size_t i = 0; i < s->measured_count; i++)
     s->measured[i] = (strut_measured){.name = e->quantities[i].name,
                                       .unit = e->quantities[i].unit,
@@ -53,7 +54,7 @@ static strut_status fill_names(strut_run *r) {
 
 /* The step, made to divide the drive's period where that is watched; first and last step. */
 static void choose_steps(strut_run *r, const strut_span *span) {
-  const strut_experiment *e = &r->model->scene->experiment;
+  const strut_experiment *e = r->experiment;
   double last = e->output_last;
   r->dt = e->step;
   if (r->watching) {
@@ -81,20 +82,21 @@ static strut_status place_state(strut_run *r) {
     r->state->refined_until = from->time - r->grid.offset + from->refined;
     return STRUT_OK;
   }
-  if (!r->model->scene->settle.wanted) return STRUT_OK;
+  if (!r->experiment->settle.wanted) return STRUT_OK;
   memset(r->state->v, 0, bytes);
-  return strut_settle_experiment(r->model, r->limits, r->options->interrupt, r->state->q,
-                                 &r->summary->settle_time, &r->summary->settle, r->error);
+  return strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
+                                 r->state->q, &r->summary->settle_time, &r->summary->settle,
+                                 r->error);
 }
 
 strut_status strut_run_prepare(strut_run *r) {
   const strut_scene *scene = r->model->scene;
-  strut_span span = strut_scene_span(scene);
-  r->watching = scene->experiment.steady.wanted && span.period > 0.0;
+  strut_span span = strut_experiment_span(r->experiment, scene);
+  r->watching = r->experiment->steady.wanted && span.period > 0.0;
   choose_steps(r, &span);
-  strut_status status = strut_integrator_check(r->model, r->error);
+  strut_status status = strut_integrator_check(r->model, r->experiment, r->error);
   if (status) return status;
-  r->method = strut_integrator_find(scene->experiment.integrator);
+  r->method = strut_integrator_find(r->experiment->integrator);
   for (size_t i = 0; i + 1 < sizeof r->summary->method && r->method->name[i]; i++)
     r->summary->method[i] = r->method->name[i];
   if (scene->start_equilibrium >= 0)
@@ -112,16 +114,19 @@ strut_status strut_run_prepare(strut_run *r) {
   if ((status = refuse_large_step(r, bound)) || (status = fill_names(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))
     return status;
-  r->workspace = r->method->create(r->model, r->state);
+  const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
+  r->workspace = r->method->create(r->model, r->state, &settings);
   double begin = (double)r->first * r->dt;
   int64_t room = r->more_periods > STRUT_LONGEST_REPEAT ? r->more_periods : STRUT_LONGEST_REPEAT;
   if (!r->workspace ||
-      strut_measure_create(r->model, &r->grid, begin, (size_t)room + 1, &r->measure) ||
-      (r->watching && strut_steady_detector_create(r->model, span.period, begin, &r->watch)))
+      strut_measure_create(r->model, r->experiment, &r->grid, begin, (size_t)room + 1,
+                           &r->measure) ||
+      (r->watching && strut_steady_detector_create(r->model, &r->experiment->steady, span.period,
+                                                   begin, &r->watch)))
     return strut_memory_fail_model(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
   r->state->time_offset = r->grid.offset;
-  r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(scene);
+  r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(r->experiment);
   r->state->interrupt = r->options->interrupt;
   r->state->most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
@@ -131,6 +136,6 @@ strut_status strut_run_prepare(strut_run *r) {
   strut_energy_reset_load_work(r->model, r->state);
   r->initial = strut_energy_evaluate(r->model, r->state, begin);
   strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
-  return strut_recording_create(r->model, &r->grid, begin, r->options->sinks,
+  return strut_recording_create(r->model, r->experiment, &r->grid, begin, r->options->sinks,
                                 r->options->sink_count, &r->recording, r->error);
 }

@@ -31,8 +31,8 @@ static strut_status shoot(strut_run *r) {
   strut_period_map map = {.model = NULL};
   double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
   if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
-  strut_status status = strut_period_map_create(r->model->scene, &r->model->scene->experiment,
-                                                found->repeats, &map, r->error);
+  strut_status status =
+      strut_period_map_create(r->model, r->experiment, found->repeats, &map, r->error);
   if (!status) {
     map.time = (double)r->state->step * r->dt;
     map.interrupt = r->options->interrupt;
@@ -66,7 +66,7 @@ strut_status strut_run_watch(strut_run *r) {
   bool before = r->watch.known;
   strut_measure_track(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->watch) || before) return STRUT_OK;
-  strut_status status = r->model->scene->experiment.steady.shooting ? shoot(r) : STRUT_OK;
+  strut_status status = r->experiment->steady.shooting ? shoot(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->watch.period;
   int64_t periods = r->more_periods, repeats = r->watch.result.repeats;
@@ -74,6 +74,6 @@ strut_status strut_run_watch(strut_run *r) {
   r->steps = n + periods * r->period_steps;
   r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
   strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
-  if (r->model->scene->experiment.output_last > 0.0) r->recording.start = now;
+  if (r->experiment->output_last > 0.0) r->recording.start = now;
   return STRUT_OK;
 }

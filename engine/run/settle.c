@@ -14,7 +14,8 @@
 static const int64_t PATIENCE = 1000000;
 
 /* The scene with all that moves or holds by itself taken out. Shares texts and arrays. */
-static strut_status quiet_scene(const strut_scene *scene, strut_scene *quiet, strut_arena *arena) {
+static strut_status quiet_scene(const strut_scene *scene, bool friction, strut_scene *quiet,
+                                strut_arena *arena) {
   *quiet = *scene;
   quiet->actuator_count = 0;
   quiet->ground.belt_speed = 0.0;
@@ -27,7 +28,7 @@ static strut_status quiet_scene(const strut_scene *scene, strut_scene *quiet, st
     if (scene->loads[i].signal < 0) quiet->loads[quiet->load_count++] = scene->loads[i];
   for (size_t i = 0; i < scene->contact_count; i++) {
     quiet->contacts[i] = scene->contacts[i];
-    if (!scene->settle.friction) quiet->contacts[i].friction.law = STRUT_FRICTION_NONE;
+    if (!friction) quiet->contacts[i].friction.law = STRUT_FRICTION_NONE;
   }
   return STRUT_OK;
 }
@@ -61,7 +62,7 @@ static double rounding(const strut_relaxation *r) {
 }
 
 static strut_status give_up(const strut_relaxation *r, strut_error *error) {
-  const strut_settle *wanted = &r->scene.settle;
+  const strut_settle *wanted = &r->experiment->settle;
   int32_t fastest, pushed, length = r->model->length;
   double speed = largest(r->state->v, length, &fastest);
   strut_forces_acceleration(r->model, r->state, 0.0, r->state->q, r->state->v, r->acceleration);
@@ -100,7 +101,7 @@ static void stop_motion(strut_relaxation *r) {
 
 /* Steps until at rest; r->time and r->evaluations as they were before. */
 static strut_status relax(strut_relaxation *r, strut_error *error) {
-  const strut_settle *wanted = &r->scene.settle;
+  const strut_settle *wanted = &r->experiment->settle;
   strut_state *state = r->state;
   double dt = r->step, previous = 0.0, before = r->time, enough = wanted->acceleration;
   double most = wanted->evaluations > 0.0 ? wanted->evaluations : STRUT_SETTLE_EVALUATIONS;
@@ -138,12 +139,12 @@ strut_status strut_relaxation_run(strut_relaxation *r, strut_error *error) {
   return relax(r, error);
 }
 
-strut_status strut_relaxation_create(const strut_model *model, strut_relaxation *r,
-                                     strut_error *error) {
-  *r = (strut_relaxation){.model = NULL};
-  const strut_scene *scene = model->scene;
-  strut_status status = quiet_scene(scene, &r->scene, &r->arena);
-  r->step = scene->settle.step > 0.0 ? scene->settle.step : scene->experiment.step;
+strut_status strut_relaxation_create(const strut_model *model, const strut_experiment *experiment,
+                                     strut_relaxation *r, strut_error *error) {
+  const strut_settle *settle = &experiment->settle;
+  *r = (strut_relaxation){.experiment = experiment};
+  strut_status status = quiet_scene(model->scene, settle->friction, &r->scene, &r->arena);
+  r->step = settle->step > 0.0 ? settle->step : experiment->step;
   r->acceleration = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
   if (!r->acceleration) status = STRUT_NO_MEMORY;
   if (status) return strut_fail(error, status, "out of memory");
@@ -151,7 +152,8 @@ strut_status strut_relaxation_create(const strut_model *model, strut_relaxation 
   if (!status) status = strut_state_create(r->model, &r->state, error);
   if (status) return status;
   r->method = strut_integrator_for_settling(r->model);
-  r->workspace = r->method->create(r->model, r->state);
+  const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
+  r->workspace = r->method->create(r->model, r->state, &settings);
   return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
@@ -162,12 +164,12 @@ void strut_relaxation_free(strut_relaxation *r) {
   *r = (strut_relaxation){.model = NULL};
 }
 
-strut_status strut_settle_state(const strut_model *model, strut_state *state,
-                                const volatile sig_atomic_t *interrupt, double *time,
-                                strut_error *error) {
+strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
+                                strut_state *state, const volatile sig_atomic_t *interrupt,
+                                double *time, strut_error *error) {
   strut_relaxation r;
   size_t bytes = (size_t)model->length * sizeof(double);
-  strut_status status = strut_relaxation_create(model, &r, error);
+  strut_status status = strut_relaxation_create(model, experiment, &r, error);
   r.interrupt = interrupt;
   if (!status) status = strut_relaxation_run(&r, error);
   if (!status) {

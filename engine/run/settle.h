@@ -14,10 +14,12 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/state.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 /** A model without drives, driven loads, belt and, unless kept, friction, with a state that relaxes. */
 typedef struct strut_relaxation {
   strut_scene scene;
+  const strut_experiment *experiment;
   strut_model *model; /* of it */
   strut_state *state;
   const struct strut_integrator *method;
@@ -30,9 +32,9 @@ typedef struct strut_relaxation {
   strut_arena arena;
 } strut_relaxation;
 
-/** The step is the scene's; it may be changed before it runs. STRUT_NO_MEMORY, STRUT_SINGULAR. */
-strut_status strut_relaxation_create(const strut_model *model, strut_relaxation *relaxation,
-                                     strut_error *error);
+/** The step is the experiment's; it may be changed before it runs. STRUT_NO_MEMORY, STRUT_SINGULAR. */
+strut_status strut_relaxation_create(const strut_model *model, const strut_experiment *experiment,
+                                     strut_relaxation *relaxation, strut_error *error);
 /**
  * Integrates from the state's positions, at rest, and sets all velocities to zero whenever the
  * kinetic energy has passed a peak, until every speed and acceleration is below the scene's limits.
@@ -42,10 +44,10 @@ strut_status strut_relaxation_create(const strut_model *model, strut_relaxation 
 strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error);
 void strut_relaxation_free(strut_relaxation *relaxation);
 
-/** A relaxation by itself, with the step as the scene gives it; *time is the time it took [s]. */
-strut_status strut_settle_state(const strut_model *model, strut_state *state,
-                                const volatile sig_atomic_t *interrupt, double *time,
-                                strut_error *error);
+/** A relaxation by itself, with the step as the experiment gives it; *time is the time it took [s]. */
+strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
+                                strut_state *state, const volatile sig_atomic_t *interrupt,
+                                double *time, strut_error *error);
 
 /** settle_stability.c. The most unstable direction of an equilibrium. */
 typedef struct strut_instability {
@@ -58,31 +60,45 @@ typedef struct strut_instability {
 /**
  * Counts the negative eigenvalues of the tangent stiffness at q by the signs of its factor, contacts
  * that touch closed, held along the ground too where they stick. Motions without stiffness, such as
- * those of a structure that floats or slides freely, are no instability. STRUT_NO_MEMORY.
+ * those of a structure that floats or slides freely, are no instability, nor is what
+ * `acceleration` [m/s^2], at which a structure counts as at rest, leaves open. STRUT_NO_MEMORY.
  */
-strut_status strut_find_instability(const strut_model *model, const double *q, strut_arena *arena,
-                                    strut_instability *instability, strut_error *error);
+strut_status strut_find_instability(const strut_model *model, double acceleration, const double *q,
+                                    strut_arena *arena, strut_instability *instability,
+                                    strut_error *error);
 
 /**
- * settle_experiment.c. The start of the model's experiment, settled: q (length) are the positions
+ * settle_experiment.c. The start of an experiment, settled: q (length) are the positions
  * [m], *time what it simulated [s], `how` tells the rest. The step is chosen by the stability limit
  * where the scene gives none that is stable; one that proves too large on the way is halved. With
  * settle.perturb an unstable equilibrium is left. limits: of models seen before, may be NULL. Fails as
  * strut_relaxation_run.
  */
-STRUT_API strut_status strut_settle_experiment(const strut_model *model, strut_step_limits *limits,
+STRUT_API strut_status strut_settle_experiment(const strut_model *model,
+                                               const strut_experiment *experiment,
+                                               strut_step_limits *limits,
                                                const volatile sig_atomic_t *interrupt, double *q,
                                                double *time, strut_settle_summary *how,
                                                strut_error *error);
 
+/** A start that has settled once, for experiments that are to begin with the same bits. */
+typedef struct strut_settled_start {
+  const strut_model *model; /* that starts at rest there: `own`, or the one given */
+  strut_model *own;         /* NULL where nothing had to settle */
+  strut_scene *scene;       /* of `own`; its nodes are the arena's, all else is shared */
+  double time;              /* what settling simulated [s] */
+  strut_settle_summary how;
+  strut_arena arena;
+} strut_settled_start;
+
 /**
- * A scene that starts where `scene` has settled, at rest, and does not settle: for studies that run
- * one experiment several times. A plain copy where the scene does not settle. Its nodes are the
- * arena's, all else is shared with `scene`.
+ * Settles where the experiment wants it. What then runs on start->model must not settle again.
+ * strut_settled_start_free, after a failure too; the model given must outlive it.
  */
-STRUT_API strut_status strut_settle_scene(const strut_scene *scene,
+STRUT_API strut_status strut_settle_model(const strut_model *model,
+                                          const strut_experiment *experiment,
                                           const volatile sig_atomic_t *interrupt,
-                                          strut_arena *arena, strut_scene *settled, double *time,
-                                          strut_settle_summary *how, strut_error *error);
+                                          strut_settled_start *start, strut_error *error);
+STRUT_API void strut_settled_start_free(strut_settled_start *start);
 
 #endif

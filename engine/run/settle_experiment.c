@@ -15,8 +15,8 @@ static const double PUSH = 1e-4;
 
 static strut_status choose_step(strut_relaxation *r, strut_step_limits *limits,
                                 strut_error *error) {
-  const strut_settle *settle = &r->scene.settle;
-  double given = settle->step == 0.0 ? r->scene.experiment.step : settle->step, limit = 0.0;
+  const strut_settle *settle = &r->experiment->settle;
+  double given = settle->step == 0.0 ? r->experiment->step : settle->step, limit = 0.0;
   if (!r->model->mass)
     return strut_fail(error, STRUT_SINGULAR, "some node that can move has no mass");
   strut_status status = limits ? strut_step_limit_cached(r->model, r->method, limits, &limit, error)
@@ -53,9 +53,11 @@ static strut_status settle(strut_relaxation *r, double *q, strut_settle_summary 
   for (;;) {
     strut_status status = relax_from(r, q, error);
     if (!status)
-      status = strut_find_instability(r->model, r->state->q, &r->arena, &unstable, error);
+      status = strut_find_instability(r->model, r->experiment->settle.acceleration, r->state->q,
+                                      &r->arena, &unstable, error);
     if (status) return status;
-    if (unstable.node < 0 || !r->scene.settle.perturb || how->perturbations == MOST_PERTURBATIONS)
+    if (unstable.node < 0 || !r->experiment->settle.perturb ||
+        how->perturbations == MOST_PERTURBATIONS)
       break;
     push_off(r, &unstable, q);
     how->perturbations++;
@@ -71,11 +73,12 @@ static strut_status settle(strut_relaxation *r, double *q, strut_settle_summary 
   return STRUT_OK;
 }
 
-strut_status strut_settle_experiment(const strut_model *model, strut_step_limits *limits,
+strut_status strut_settle_experiment(const strut_model *model, const strut_experiment *experiment,
+                                     strut_step_limits *limits,
                                      const volatile sig_atomic_t *interrupt, double *q,
                                      double *time, strut_settle_summary *how, strut_error *error) {
   strut_relaxation r;
-  strut_status status = strut_relaxation_create(model, &r, error);
+  strut_status status = strut_relaxation_create(model, experiment, &r, error);
   *how = (strut_settle_summary){0};
   r.interrupt = interrupt;
   memcpy(q, model->start, (size_t)model->length * sizeof *q);
@@ -86,10 +89,13 @@ strut_status strut_settle_experiment(const strut_model *model, strut_step_limits
   return status;
 }
 
-/* Positions at rest become the start of the copied nodes. */
-static strut_status place_nodes(const strut_scene *scene, const double *q, strut_arena *arena,
-                                strut_scene *settled) {
-  settled->nodes = strut_arena_allocate(arena, scene->node_count, sizeof *settled->nodes);
+/* The scene of the model, its nodes starting at rest in the positions q (length). */
+static strut_status move_start(const strut_scene *scene, const double *q,
+                               strut_settled_start *start) {
+  strut_scene *settled = start->scene = strut_arena_allocate(&start->arena, 1, sizeof *settled);
+  if (!settled) return STRUT_NO_MEMORY;
+  *settled = *scene;
+  settled->nodes = strut_arena_allocate(&start->arena, scene->node_count, sizeof *settled->nodes);
   if (!settled->nodes) return STRUT_NO_MEMORY;
   memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
   for (size_t i = 0; i < scene->node_count; i++)
@@ -97,25 +103,28 @@ static strut_status place_nodes(const strut_scene *scene, const double *q, strut
       settled->nodes[i].start[c] = q[2 * i + c];
       settled->nodes[i].velocity[c] = 0.0;
     }
-  settled->settle.wanted = false;
   return STRUT_OK;
 }
 
-strut_status strut_settle_scene(const strut_scene *scene, const volatile sig_atomic_t *interrupt,
-                                strut_arena *arena, strut_scene *settled, double *time,
-                                strut_settle_summary *how, strut_error *error) {
-  strut_model *model = NULL;
-  *settled = *scene;
-  *time = 0.0;
-  *how = (strut_settle_summary){0};
-  if (!scene->settle.wanted) return STRUT_OK;
-  strut_status status = strut_model_compile(scene, &model, error);
-  double *q = model ? strut_allocate((size_t)model->length, sizeof *q) : NULL;
-  if (!status && !q) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (!status) status = strut_settle_experiment(model, NULL, interrupt, q, time, how, error);
-  if (!status && place_nodes(scene, q, arena, settled))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_release(q);
-  strut_model_free(model);
+strut_status strut_settle_model(const strut_model *model, const strut_experiment *experiment,
+                                const volatile sig_atomic_t *interrupt, strut_settled_start *start,
+                                strut_error *error) {
+  *start = (strut_settled_start){.model = model};
+  if (!experiment->settle.wanted) return STRUT_OK;
+  double *q = strut_arena_allocate(&start->arena, (size_t)model->length, sizeof *q);
+  if (!q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->time,
+                                                &start->how, error);
+  if (status) return status;
+  if (move_start(model->scene, q, start))
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  status = strut_model_compile(start->scene, &start->own, error);
+  start->model = start->own;
   return status;
+}
+
+void strut_settled_start_free(strut_settled_start *start) {
+  strut_model_free(start->own);
+  strut_arena_free(&start->arena);
+  *start = (strut_settled_start){.model = NULL};
 }

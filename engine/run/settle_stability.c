@@ -100,11 +100,11 @@ static void hold_sticking(const strut_model *model, const double *q, strut_tange
 }
 
 /* What is below it is no stiffness: rounding, and forces that are not quite in balance. */
-static double least_of(const strut_model *model, const strut_sparse *k) {
+static double least_of(const strut_model *model, double acceleration, const strut_sparse *k) {
   double stiffest = 0.0, heaviest = 0.0;
   for (int32_t i = 0; i < k->n; i++) stiffest = fmax(stiffest, fabs(k->value[k->start[i]]));
   for (int32_t i = 0; i < model->node_count; i++) heaviest = fmax(heaviest, model->weight[i]);
-  return NOTHING * stiffest + 10.0 * model->scene->settle.acceleration * heaviest / model->size;
+  return NOTHING * stiffest + 10.0 * acceleration * heaviest / model->size;
 }
 
 /* From the eigenvector x (n): which node moves most, where to, and how fast that grows. */
@@ -140,8 +140,9 @@ static void find_direction(shifted *s, const strut_model *model, const strut_tan
   if (found->stiffness < -0.5 * least) describe(model, tangent, x, found);
 }
 
-strut_status strut_find_instability(const strut_model *model, const double *q, strut_arena *arena,
-                                    strut_instability *found, strut_error *error) {
+strut_status strut_find_instability(const strut_model *model, double acceleration, const double *q,
+                                    strut_arena *arena, strut_instability *found,
+                                    strut_error *error) {
   strut_arena scratch = {0};
   strut_tangent tangent;
   shifted s = {.status = STRUT_OK};
@@ -157,7 +158,7 @@ strut_status strut_find_instability(const strut_model *model, const double *q, s
   if (!status && tangent.n > 0) {
     s.matrix = tangent.stiffness;
     hold_sticking(model, q, &tangent);
-    double least = least_of(model, s.matrix), shift = least;
+    double least = least_of(model, acceleration, s.matrix), shift = least;
     status = strut_ldl_create(s.matrix, &s.ldl, error);
     if (!status && least > 0.0 && isfinite(least) && count_negative(&s, &shift) > 0)
       find_direction(&s, model, &tangent, least, x, x + tangent.n, found);

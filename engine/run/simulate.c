@@ -155,14 +155,15 @@ static void fill_summary(strut_run *r, strut_status status) {
   s->status = status;
   s->steps = r->state->step - r->first;
   s->duration = (double)(s->steps + r->shot_periods * r->period_steps) * r->dt;
-  if (r->state->step == r->grid.last) s->duration = strut_scene_span(r->model->scene).duration;
+  if (r->state->step == r->grid.last)
+    s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
   s->limit_fell = (strut_step_limit_violation){.limit = r->guard.lowest,
                                                .time = r->guard.lowest_time,
                                                .since = r->guard.first_time,
                                                .steps = r->guard.steps_below};
-  strut_measure_finish(r->model, &r->measure, s);
+  strut_measure_finish(&r->measure, s);
   if (r->watching) strut_steady_detector_finish(&r->watch, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
@@ -174,13 +175,17 @@ static void fill_summary(strut_run *r, strut_status status) {
   keep_end(r);
 }
 
-strut_status strut_run_begin(const strut_model *model, const strut_run_options *options,
-                             strut_step_limits *limits, strut_summary *summary, strut_error *error,
-                             strut_run *r) {
+strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
+                             const strut_run_options *options, strut_step_limits *limits,
+                             strut_summary *summary, strut_error *error, strut_run *r) {
   int64_t chunk = CHUNK_WORK / (model->members.count + model->node_count + 1);
   *summary = (strut_summary){.velocity = (double)NAN, .velocity_spread = (double)NAN};
-  *r = (strut_run){
-      .model = model, .options = options, .limits = limits, .summary = summary, .error = error};
+  *r = (strut_run){.model = model,
+                   .experiment = experiment,
+                   .options = options,
+                   .limits = limits,
+                   .summary = summary,
+                   .error = error};
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
   strut_status status = strut_run_prepare(r);
   r->begun = !status;
@@ -211,12 +216,14 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   return status;
 }
 
-strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
-                            strut_summary *summary, strut_error *error) {
+strut_status strut_simulate(const strut_model *model, const strut_experiment *experiment,
+                            const strut_run_options *options, strut_summary *summary,
+                            strut_error *error) {
   strut_error own = {0};
   strut_run r;
   int64_t stop = INT64_MAX;
-  strut_status status = strut_run_begin(model, options, NULL, summary, error ? error : &own, &r);
+  strut_status status =
+      strut_run_begin(model, experiment, options, NULL, summary, error ? error : &own, &r);
   while (!status) {
     status = strut_run_sample(&r, &stop);
     if (status || stop == r.state->step) break;

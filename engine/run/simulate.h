@@ -10,6 +10,7 @@
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
+#include "engine/scene/experiment.h"
 
 /** A state to go on from, or to keep: coordinate arrays of the model's length, owned by the caller. */
 typedef struct strut_snapshot {
@@ -38,14 +39,15 @@ typedef struct strut_run_options {
 } strut_run_options;
 
 /**
- * Runs the scene's experiment. The summary is filled whenever a run began: also with
+ * Runs an experiment on a model, whose `accuracy` is not obeyed. The summary is filled whenever a run began: also with
  * STRUT_DIVERGED and STRUT_INTERRUPTED, up to where it came; free it with strut_summary_free.
  * Other failures: STRUT_USAGE (no such method, or a start equilibrium that strut_resolve_start_equilibrium has not
  * resolved), STRUT_STEP_TOO_LARGE (nothing was run), STRUT_NOT_SETTLED, STRUT_SINGULAR (no
  * mass), STRUT_NO_MEMORY, and what a sink returned.
  */
-STRUT_API strut_status strut_simulate(const strut_model *model, const strut_run_options *options,
-                                      strut_summary *summary, strut_error *error);
+STRUT_API strut_status strut_simulate(const strut_model *model, const strut_experiment *experiment,
+                                      const strut_run_options *options, strut_summary *summary,
+                                      strut_error *error);
 
 /** A clock that never goes back [s]; for how long things take, never for results. */
 STRUT_API double strut_run_clock(void);

@@ -58,8 +58,8 @@ static void seat_next(hall *h, int32_t lane) {
     h->more = h->source->next(h->source->context, &s->point);
     if (!h->more) return;
     s->error = (strut_error){0};
-    strut_status status = strut_run_begin(s->point.model, s->point.options, &h->limits, &s->summary,
-                                          &s->error, &s->run);
+    strut_status status = strut_run_begin(s->point.model, s->point.experiment, s->point.options,
+                                          &h->limits, &s->summary, &s->error, &s->run);
     if (!status) status = strut_run_sample(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
       end(h, s, status);
@@ -148,8 +148,7 @@ static void finish_last(hall *h) {
 /* NULL, and one seat, where there are no lanes to be had. */
 static strut_batch *batch_for(const strut_batch_source *source, int32_t wanted, int32_t *width) {
   const strut_model *m = source->example;
-  const strut_integrator *method =
-      m ? strut_integrator_find(m->scene->experiment.integrator) : NULL;
+  const strut_integrator *method = m ? strut_integrator_find(source->integrator) : NULL;
   if (wanted < 2 || !method || !strut_batch_possible(m, method)) return NULL;
   strut_batch *batch = strut_batch_create(m, method, wanted, !source->without_ledger);
   if (batch) *width = wanted;

@@ -17,6 +17,7 @@
 /** One run of many: owned by the caller until `result` has it back. */
 typedef struct strut_batch_point {
   const strut_model *model;
+  const strut_experiment *experiment;
   const strut_run_options *options;
   void *context; /* the caller's own */
 } strut_batch_point;
@@ -26,14 +27,15 @@ typedef struct strut_batch_source {
   /** Fills the next point; false: there is none now. After a result it is asked again. */
   bool (*next)(void *context, strut_batch_point *point);
   /** A point's end, in any order: as strut_simulate returned it. The summary belongs to the callee,
-      and so do again the model and the options. */
+      and so do again the model, the experiment and the options. */
   void (*result)(void *context, const strut_batch_point *point, strut_status status,
                  strut_summary *summary, const strut_error *error);
   /** A model whose topology the lanes share: points like it run in lanes. Lives until the end. */
   const strut_model *example;
-  bool without_ledger; /* as in the options of those points that are to run in lanes */
-  int32_t width;       /* 1, 2, 4 or 8 lanes; 0: as many as the processor is good for */
-  bool halves;         /* 8 lanes in registers of 4 whatever the processor has; see batch.h */
+  const char *integrator; /* the method of the points that are to run in lanes */
+  bool without_ledger;    /* as in the options of those points that are to run in lanes */
+  int32_t width;          /* 1, 2, 4 or 8 lanes; 0: as many as the processor is good for */
+  bool halves;            /* 8 lanes in registers of 4 whatever the processor has; see batch.h */
 } strut_batch_source;
 
 /** Runs all points. Calls back from this thread only. */

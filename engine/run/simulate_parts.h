@@ -18,6 +18,7 @@
 /** All that belongs to one run. */
 typedef struct strut_run {
   const strut_model *model;
+  const strut_experiment *experiment;
   const strut_run_options *options;
   const strut_integrator *method;
   strut_step_limits *limits;
@@ -48,9 +49,9 @@ typedef struct strut_run {
  * Everything before the first step. `run` and what is given must stay where they are until
  * strut_run_end, which must be called whatever is returned. limits: of models seen before; may be NULL.
  */
-strut_status strut_run_begin(const strut_model *model, const strut_run_options *options,
-                             strut_step_limits *limits, strut_summary *summary, strut_error *error,
-                             strut_run *run);
+strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
+                             const strut_run_options *options, strut_step_limits *limits,
+                             strut_summary *summary, strut_error *error, strut_run *run);
 /**
  * Between steps: looks at the state, measures, records. *stop is the step to go on to before the next
  * look, or the present one where the run is over. May change the state's q, v.

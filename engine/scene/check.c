@@ -288,20 +288,21 @@ void strut_check_use(strut_checker *checker) {
   strut_release(state);
 }
 
-strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
+strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
       strut_check_names,  strut_check_nodes,   strut_check_members,
       strut_check_use,    strut_check_signals, strut_check_ground,
       strut_check_drives, strut_check_shapes,  strut_check_experiment};
-  const strut_experiment *e = &scene->experiment;
+  const strut_scene *scene = &setup->scene;
+  const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;
   if (purpose == STRUT_FOR_ANY) purpose = runs ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   bool told = purpose == STRUT_FOR_RUN_STEP_LATER;
   if (told) purpose = STRUT_FOR_RUN;
   size_t before = findings->count;
   strut_checker checker = {
-      .scene = scene, .purpose = purpose, .step_told = told, .findings = findings};
+      .scene = scene, .experiment = e, .purpose = purpose, .step_told = told, .findings = findings};
   checker.loose = strut_allocate(scene->member_count, sizeof *checker.loose);
   checker.wild = strut_allocate(scene->signal_count, sizeof *checker.wild);
   if (!checker.loose || !checker.wild) checker.out_of_memory = true;

@@ -8,7 +8,7 @@
 #ifndef STRUT_ENGINE_SCENE_CHECK_H
 #define STRUT_ENGINE_SCENE_CHECK_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 typedef enum strut_subject {
   STRUT_ON_SCENE,
@@ -53,14 +53,14 @@ typedef enum strut_purpose {
 } strut_purpose;
 
 /** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */
-STRUT_API strut_status strut_scene_check(const strut_scene *scene, strut_purpose purpose,
+STRUT_API strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                          strut_findings *findings);
 /**
  * What a valid scene has that is hardly meant, each cause once: rest lengths that drives take below
  * zero, nodes that begin inside the ground, members that join the same two nodes, masses that no member
  * holds. A warning's key is a word for programs, such as "inside_ground". STRUT_OK or STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_scene_warn(const strut_scene *scene, strut_findings *warnings);
+STRUT_API strut_status strut_setup_warn(const strut_setup *setup, strut_findings *warnings);
 STRUT_API void strut_findings_free(strut_findings *findings);
 
 #endif

@@ -234,7 +234,7 @@ void strut_check_drives(strut_checker *checker) {
 
 /* The length of the run: its duration, or the period it is counted in. */
 static bool check_length(strut_checker *checker) {
-  const strut_experiment *e = &checker->scene->experiment;
+  const strut_experiment *e = checker->experiment;
   if (!strut_find_range(checker, STRUT_ON_RUN, 0, "duration", "the run", e->duration,
                         STRUT_NOT_NEGATIVE) ||
       !strut_find_range(checker, STRUT_ON_RUN, 0, "periods", "the run", e->periods,
@@ -267,7 +267,7 @@ static bool check_length(strut_checker *checker) {
 
 static void check_window(strut_checker *checker, strut_subject subject, const char *owner,
                          double last) {
-  const strut_experiment *e = &checker->scene->experiment;
+  const strut_experiment *e = checker->experiment;
   bool periods = e->periods > 0.0;
   double whole = periods ? e->periods : e->duration;
   if (last <= whole) return;
@@ -277,7 +277,7 @@ static void check_window(strut_checker *checker, strut_subject subject, const ch
 
 /* The step, and the number of steps that it leads to. */
 static void check_step(strut_checker *checker, bool length_known) {
-  const strut_experiment *e = &checker->scene->experiment;
+  const strut_experiment *e = checker->experiment;
   if (!e->integrator || !*e->integrator)
     strut_report_finding(checker, STRUT_ON_SOLVER, 0, "integrator",
                          "the solver names no integrator");
@@ -291,7 +291,7 @@ static void check_step(strut_checker *checker, bool length_known) {
                         STRUT_ABOVE_ZERO) ||
       !length_known)
     return;
-  double duration = strut_scene_span(checker->scene).duration;
+  double duration = strut_experiment_span(e, checker->scene).duration;
   if (e->step > duration)
     strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
                          "the step of %g s is longer than the whole run of %g s", e->step,
@@ -304,8 +304,8 @@ static void check_step(strut_checker *checker, bool length_known) {
 
 void strut_check_experiment(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_experiment *e = &scene->experiment;
-  const strut_settle *settle = &scene->settle;
+  const strut_experiment *e = checker->experiment;
+  const strut_settle *settle = &e->settle;
   const struct {
     const char *key;
     double value;

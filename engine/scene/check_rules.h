@@ -10,6 +10,7 @@
 /** One check under way. */
 typedef struct strut_checker {
   const strut_scene *scene;
+  const strut_experiment *experiment;
   strut_purpose purpose;
   bool step_told; /* the scene need not have one */
   strut_findings *findings;

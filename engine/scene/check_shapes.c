@@ -74,7 +74,7 @@ static void check_positions(strut_checker *checker, size_t index, const char *ow
 
 static void check_search(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_search *search = &scene->search;
+  const strut_search *search = &checker->experiment->search;
   if (search->starts < 0 || search->starts > STRUT_MOST_STARTS)
     strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "starts",
                          "the starts of the search for equilibria must be from 0 to %d",
@@ -89,7 +89,7 @@ static void check_search(strut_checker *checker) {
     strut_report_finding(
         checker, STRUT_ON_INITIAL, 0, NULL,
         "the initial state is the equilibrium of a configuration that does not exist");
-  else if (scene->start_equilibrium >= 0 && scene->settle.wanted)
+  else if (scene->start_equilibrium >= 0 && checker->experiment->settle.wanted)
     strut_report_finding(checker, STRUT_ON_INITIAL, 0, NULL,
                          "the initial state is an equilibrium, so there is nothing to settle");
 }
@@ -112,8 +112,9 @@ void strut_check_shapes(strut_checker *checker) {
     check_sets(&check, c->sets, c->set_count, STRUT_ON_CONFIGURATION, i, "contacts", owner);
   }
   if (!checker->out_of_memory) {
-    check_sets(&check, scene->search.supports, scene->search.support_count, STRUT_ON_EQUILIBRIA, 0,
-               "supports", "the search for equilibria");
+    const strut_search *search = &checker->experiment->search;
+    check_sets(&check, search->supports, search->support_count, STRUT_ON_EQUILIBRIA, 0, "supports",
+               "the search for equilibria");
     check_search(checker);
   }
   strut_release(check.touches);

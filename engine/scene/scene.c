@@ -10,18 +10,7 @@
 void strut_scene_init(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
   scene->name = scene->description = scene->source = "";
-  scene->settle = (strut_settle){.speed = 1e-8, .acceleration = 1e-8, .limit = 100.0};
   scene->start_equilibrium = -1;
-  scene->search.seed = 1;
-  scene->experiment.integrator = "rk4";
-  scene->experiment.tolerance = 1e-6;
-  scene->experiment.budget = STRUT_USUAL_BUDGET;
-  scene->experiment.refine_rate = 0.25;
-  scene->experiment.refine_memory = 8.0;
-  scene->experiment.steady = (strut_steady){.tolerance = 0.005, .successive = 5};
-  scene->experiment.period_signal = -1;
-  scene->experiment.measure_node = -1;
-  scene->experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE;
 }
 
 strut_node strut_node_default(void) { return (strut_node){.name = ""}; }
@@ -85,21 +74,4 @@ bool strut_member_rest(const strut_scene *scene, size_t index, strut_rest *rest)
                        .force_density = drawn > 0.0 ? force / drawn : 0.0,
                        .stiffness = stiffness};
   return true;
-}
-
-strut_span strut_scene_span(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
-  strut_span span = {.duration = e->duration};
-  double unit = 1.0; /* of the windows: one period, or one second */
-  if (e->periods > 0.0) {
-    unit = span.period = strut_signal_period(scene->signals, e->period_signal);
-    span.duration = e->periods * span.period;
-  }
-  if (e->measure_last > 0.0) span.window_start = span.duration - e->measure_last * unit;
-  if (e->output_last > 0.0) span.record_start = span.duration - e->output_last * unit;
-  if (span.window_start < 0.0) span.window_start = 0.0;
-  if (span.record_start < 0.0) span.record_start = 0.0;
-  span.record_every =
-      e->output_every > 0.0 ? e->output_every : (span.duration - span.record_start) / 1000.0;
-  return span;
 }

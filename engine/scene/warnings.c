@@ -48,9 +48,10 @@ static double rest_at(const strut_scene *scene, size_t member, double rest, doub
   return rest;
 }
 
-/* The shortest rest length that is met over the run, and when. */
-static double shortest(const strut_scene *scene, size_t member, double rest, double *when) {
-  double last = strut_scene_span(scene).duration, least = (double)INFINITY, time[MOST_TIMES];
+/* The shortest rest length up to the time `last` [s], and when it is met. */
+static double shortest(const strut_scene *scene, double last, size_t member, double rest,
+                       double *when) {
+  double least = (double)INFINITY, time[MOST_TIMES];
   for (int k = 0; k <= SAMPLES; k++) {
     double t = last * k / SAMPLES, length = rest_at(scene, member, rest, t);
     if (length < least) least = length, *when = t;
@@ -71,13 +72,14 @@ static void warn_of_rest_lengths(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   named below = {0};
   double worst = 0.0, when = 0.0;
+  double last = strut_experiment_span(checker->experiment, scene).duration;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     size_t member = (size_t)scene->actuators[i].member, earlier = 0;
     while ((size_t)scene->actuators[earlier].member != member) earlier++;
     strut_rest rest;
     double t = 0.0;
     if (earlier < i || !strut_member_rest(scene, member, &rest)) continue;
-    double least = shortest(scene, member, rest.length, &t);
+    double least = shortest(scene, last, member, rest.length, &t);
     if (!(least < -1e-9 * rest.length)) continue;
     if (!below.count) worst = least, when = t;
     name(&below, member, scene->members[member].name);
@@ -197,10 +199,12 @@ static void warn_of_loose_masses(strut_checker *checker) {
                          loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
 }
 
-strut_status strut_scene_warn(const strut_scene *scene, strut_findings *warnings) {
-  strut_checker checker = {.scene = scene, .findings = warnings};
+strut_status strut_setup_warn(const strut_setup *setup, strut_findings *warnings) {
+  const strut_scene *scene = &setup->scene;
+  strut_checker checker = {.scene = scene, .experiment = &setup->experiment, .findings = warnings};
   strut_c_locale locale = strut_c_locale_enter();
-  if (strut_scene_span(scene).duration > 0.0) warn_of_rest_lengths(&checker);
+  if (strut_experiment_span(&setup->experiment, scene).duration > 0.0)
+    warn_of_rest_lengths(&checker);
   if (scene->ground.present) warn_of_depths(&checker);
   warn_of_pairs(&checker);
   warn_of_loose_masses(&checker);

@@ -62,12 +62,12 @@ static void print_limits(const strut_plan *plan) {
   if (*between == ',') printf("\n");
 }
 
-static void print_run(const strut_plan *plan, const strut_scene *scene) {
+static void print_run(const strut_plan *plan, const strut_experiment *e) {
   if (!plan->runnable) {
     printf("  no run             a free node has no mass: statics only\n");
     return;
   }
-  double step = scene->experiment.step, hertz = plan->largest_frequency / STRUT_TAU;
+  double step = e->step, hertz = plan->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
          plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
   bool bound = plan->limits.bound;
@@ -79,7 +79,7 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
          : plan->step_limit_exact ? "from all eigenvalues"
                                   : "within 1 %");
   print_limits(plan);
-  const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
+  const strut_integrator *method = strut_integrator_find(e->integrator);
   double limit = method ? strut_step_limit_of_method(&plan->limits, method) : plan->step_limit;
   if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
   if (step > limit) {
@@ -90,13 +90,13 @@ static void print_run(const strut_plan *plan, const strut_scene *scene) {
 }
 
 /* Warns of stick bands that a step passes over, in one line for all nodes. */
-static void print_bands(const strut_model *model) {
+static void print_bands(const strut_model *model, const strut_experiment *experiment) {
   const strut_scene *scene = model->scene;
-  const strut_integrator *method = strut_integrator_find(scene->experiment.integrator);
+  const strut_integrator *method = strut_integrator_find(experiment->integrator);
   double needed = 0.0;
   int32_t first = -1, more = -1;
   for (int32_t i = 0; method && i < model->contacts.count; i++) {
-    double here = strut_stick_band_needed(model, method, i, scene->experiment.step);
+    double here = strut_stick_band_needed(model, method, i, experiment->step);
     if (!(here * (1.0 - 1e-6) > model->contacts.entry[i].friction.stick_velocity)) continue;
     if (first < 0) first = i;
     if (here > needed) needed = here;
@@ -111,7 +111,7 @@ static void print_bands(const strut_model *model) {
           "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
           "smaller step, or a method with events\n",
           in(e->friction.stick_velocity, "m/s").text, scene->nodes[e->node].name, others,
-          in(scene->experiment.step, "s").text, in(needed, "m/s").text);
+          in(experiment->step, "s").text, in(needed, "m/s").text);
 }
 
 static void print_terms(const strut_plan *plan, bool wanted, const char *title) {
@@ -162,19 +162,21 @@ static strut_status print_sketch(const strut_model *model) {
   return STRUT_OK;
 }
 
-static strut_status print_plan(const strut_plan *plan, const strut_model *model) {
+static strut_status print_plan(const strut_plan *plan, const strut_model *model,
+                               const strut_experiment *experiment) {
   const strut_scene *scene = model->scene;
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
   strut_status status = print_sketch(model);
   print_counts(plan);
-  print_run(plan, scene);
+  print_run(plan, experiment);
   print_terms(plan, true, "each step evaluates");
   print_terms(plan, false, "omitted, as the scene does not need it");
   print_members(scene);
   return status;
 }
 
-static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene *scene) {
+static void add_plan(strut_json *json, const strut_plan *plan, const strut_setup *setup) {
+  const strut_scene *scene = &setup->scene;
   struct cJSON *root = json->root;
   strut_json_text(json, root, "name", scene->name);
   strut_json_text(json, root, "strut_version", STRUT_VERSION);
@@ -194,7 +196,7 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_scene
   strut_json_bool(json, root, "runnable", plan->runnable);
   strut_json_number(json, root, "largest_frequency",
                     plan->runnable ? plan->largest_frequency / STRUT_TAU : (double)NAN);
-  strut_json_number(json, root, "step", scene->experiment.step);
+  strut_json_number(json, root, "step", setup->experiment.step);
   strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
   strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);
   strut_json_bool(json, root, "step_limit_bound", plan->limits.bound);
@@ -228,9 +230,9 @@ static void add_members(strut_json *json, const strut_scene *scene) {
   }
 }
 
-static bool add_warnings(strut_json *json, const strut_scene *scene) {
+static bool add_warnings(strut_json *json, const strut_setup *setup) {
   strut_findings found = {0};
-  strut_status status = strut_scene_warn(scene, &found);
+  strut_status status = strut_setup_warn(setup, &found);
   struct cJSON *warnings = strut_json_array(json, json->root, "warnings");
   for (size_t i = 0; i < found.count; i++) {
     struct cJSON *warning = strut_json_object(json, warnings, NULL);
@@ -241,52 +243,51 @@ static bool add_warnings(strut_json *json, const strut_scene *scene) {
   return status == STRUT_OK;
 }
 
-static strut_status print_json(const strut_plan *plan, const strut_scene *scene) {
+static strut_status print_json(const strut_plan *plan, const strut_setup *setup) {
   strut_json json = strut_json_begin();
-  add_plan(&json, plan, scene);
+  add_plan(&json, plan, setup);
   add_terms(&json, plan);
-  add_members(&json, scene);
-  if (!add_warnings(&json, scene)) json.failed = true;
+  add_members(&json, &setup->scene);
+  if (!add_warnings(&json, setup)) json.failed = true;
   return strut_print_block(strut_json_end(&json));
 }
 
 /* Does the scene fix the method of a run? If not, it is for statics, or --accuracy chooses. */
-static bool has_fixed_method(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static bool has_fixed_method(const strut_experiment *e) {
   bool by_hand = !(e->accuracy > 0.0);
   return by_hand && (e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0);
 }
 
 static strut_status run_check(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_plan plan;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_run_settings_apply(&strut_command_check, arguments, &scene);
+  status = strut_run_settings_apply(&strut_command_check, arguments, &setup.experiment);
   if (status == STRUT_OK)
-    status = strut_model_options_apply(&strut_command_check, arguments, &scene);
+    status = strut_model_options_apply(&strut_command_check, arguments, &setup.scene);
   if (status != STRUT_OK) {
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
     return status;
   }
-  status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK && has_fixed_method(&scene))
-    status = strut_integrator_check(model, &error);
+  status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK && has_fixed_method(&setup.experiment))
+    status = strut_integrator_check(model, &setup.experiment, &error);
   if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
-  if (status == STRUT_OK) print_bands(model);
-  if (status == STRUT_OK && (status = strut_warn_of_scene(&scene))) {
+  if (status == STRUT_OK) print_bands(model, &setup.experiment);
+  if (status == STRUT_OK && (status = strut_warn_of_scene(&setup))) {
     /* reported already */
   } else if (status != STRUT_OK) {
     strut_print_error(&error);
   } else if (arguments->json) {
-    status = print_json(&plan, &scene);
+    status = print_json(&plan, &setup);
   } else if (!arguments->quiet) {
-    status = print_plan(&plan, model);
+    status = print_plan(&plan, model, &setup.experiment);
   }
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

@@ -23,7 +23,7 @@
 typedef struct compared_models {
   size_t count;
   strut_compare_input *inputs; /* (count) */
-  strut_scene *scenes;         /* (count) */
+  strut_setup *setups;         /* (count) */
   strut_arena arena;           /* of names and differences */
   const char *notes;           /* on --set, as printed so far; or NULL */
 } compared_models;
@@ -89,10 +89,10 @@ static bool print_notes(compared_models *compared, strut_diagnostics *diagnostic
   return notes && compared->notes;
 }
 
-static strut_status read_scene(compared_models *compared, const model_source *from,
-                               const strut_override *overrides, size_t count, strut_scene *scene) {
+static strut_status read_setup(compared_models *compared, const model_source *from,
+                               const strut_override *overrides, size_t count, strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_scene_read(scene, from->shown, from->text, from->length, overrides,
+  strut_status status = strut_setup_read(setup, from->shown, from->text, from->length, overrides,
                                          count, STRUT_FOR_ANY, &diagnostics);
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
@@ -100,7 +100,7 @@ static strut_status read_scene(compared_models *compared, const model_source *fr
     if (!messages) status = STRUT_NO_MEMORY;
   }
   if (status == STRUT_OK && !print_notes(compared, &diagnostics)) {
-    strut_scene_free(scene);
+    strut_setup_free(setup);
     status = STRUT_NO_MEMORY;
   }
   if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
@@ -139,9 +139,9 @@ static strut_status open_one(const strut_arguments *arguments, compared_models *
   const char *path = arguments->models[number];
   model_source from = {.path = path, .shown = strcmp(path, "-") == 0 ? "<stdin>" : path};
   strut_compare_input *input = &compared->inputs[number];
-  strut_scene *scene = &compared->scenes[number];
+  strut_setup *setup = &compared->setups[number];
   strut_error error = {0};
-  input->scene = scene;
+  input->setup = setup;
   input->label = choose_label(arguments, compared, number, path);
   if (!input->label) return strut_print_out_of_memory();
   strut_status status = strut_file_read(path, &from.text, &from.length, &error);
@@ -149,11 +149,12 @@ static strut_status open_one(const strut_arguments *arguments, compared_models *
     strut_print_error(&error);
     return status;
   }
-  status = read_scene(compared, &from, NULL, 0, scene);
-  if (status == STRUT_OK) status = split_settings(arguments, scene, compared, number, &from);
+  status = read_setup(compared, &from, NULL, 0, setup);
+  if (status == STRUT_OK)
+    status = split_settings(arguments, &setup->scene, compared, number, &from);
   if (status == STRUT_OK && from.known_count > 0) {
-    strut_scene_free(scene);
-    status = read_scene(compared, &from, from.known, from.known_count, scene);
+    strut_setup_free(setup);
+    status = read_setup(compared, &from, from.known, from.known_count, setup);
   }
   strut_release(from.text);
   return status;
@@ -165,8 +166,9 @@ static strut_status open_one(const strut_arguments *arguments, compared_models *
 static const char *parameter_at(const void *context, size_t i) {
   const compared_models *compared = context;
   for (size_t k = 0; k < compared->count; k++) {
-    if (i < compared->scenes[k].parameter_count) return compared->scenes[k].parameters[i].name;
-    i -= compared->scenes[k].parameter_count;
+    if (i < compared->setups[k].scene.parameter_count)
+      return compared->setups[k].scene.parameters[i].name;
+    i -= compared->setups[k].scene.parameter_count;
   }
   return NULL;
 }
@@ -178,8 +180,8 @@ static strut_status check_settings(const strut_command *command, const strut_arg
     size_t owner = arguments->override_model[i];
     bool known = false;
     for (size_t k = 0; k < compared->count; k++)
-      known =
-          known || ((owner == 0 || owner == k + 1) && has_parameter(&compared->scenes[k], name));
+      known = known ||
+              ((owner == 0 || owner == k + 1) && has_parameter(&compared->setups[k].scene, name));
     if (known) continue;
     const char *near = strut_did_you_mean(name, parameter_at, compared);
     fprintf(stderr, "strut %s: --set %s: ", command->name, name);
@@ -197,12 +199,12 @@ static strut_status check_settings(const strut_command *command, const strut_arg
 /* Runs before starts are resolved, so that scenes are compared as written. */
 static strut_status find_differences(compared_models *compared) {
   strut_status status = STRUT_OK;
-  char *first = strut_scene_write(&compared->scenes[0]);
+  char *first = strut_setup_write(&compared->setups[0]);
   if (!first) return strut_print_out_of_memory();
   for (size_t i = 1; i < compared->count && status == STRUT_OK; i++) {
     strut_compare_input *input = &compared->inputs[i];
     strut_difference *list = NULL;
-    char *text = strut_scene_write(&compared->scenes[i]);
+    char *text = strut_setup_write(&compared->setups[i]);
     status = text ? strut_text_differences(first, text, &compared->arena, &list,
                                            &input->difference_count)
                   : STRUT_NO_MEMORY;
@@ -232,7 +234,7 @@ static strut_status check_models(const strut_command *command, const strut_argum
 }
 
 static void free_compared(compared_models *compared) {
-  for (size_t i = 0; i < compared->count; i++) strut_scene_free(&compared->scenes[i]);
+  for (size_t i = 0; i < compared->count; i++) strut_setup_free(&compared->setups[i]);
   strut_arena_free(&compared->arena);
   *compared = (compared_models){0};
 }
@@ -244,8 +246,8 @@ static strut_status open_compared(const strut_command *command, const strut_argu
   *compared = (compared_models){.count = 0};
   if (status != STRUT_OK) return status;
   compared->inputs = strut_arena_allocate(&compared->arena, count, sizeof *compared->inputs);
-  compared->scenes = strut_arena_allocate(&compared->arena, count, sizeof *compared->scenes);
-  if (!compared->inputs || !compared->scenes) status = strut_print_out_of_memory();
+  compared->setups = strut_arena_allocate(&compared->arena, count, sizeof *compared->setups);
+  if (!compared->inputs || !compared->setups) status = strut_print_out_of_memory();
   for (size_t i = 0; i < count && status != STRUT_NO_MEMORY; i++) {
     strut_status here = open_one(arguments, compared, i);
     compared->count = i + 1;

@@ -69,16 +69,16 @@ static strut_status read_supports(const strut_arguments *arguments, strut_scene 
   return STRUT_OK;
 }
 
-static strut_status read_options(const strut_arguments *arguments, strut_scene *scene,
+static strut_status read_options(const strut_arguments *arguments, strut_setup *setup,
                                  strut_equilibria_options *to, uint64_t *seed) {
-  int64_t starts = 0, chosen = (int64_t)scene->search.seed;
+  int64_t starts = 0, chosen = (int64_t)setup->experiment.search.seed;
   strut_node_set *set = NULL;
   strut_status status = strut_option_integer(&strut_command_equilibria, arguments,
                                              STRUT_OPTION_STARTS, 0, MOST_STARTS, &starts);
   if (!status)
     status = strut_option_integer(&strut_command_equilibria, arguments, STRUT_OPTION_SEED, 0,
                                   MOST_SEED, &chosen);
-  if (!status) status = read_supports(arguments, scene, &set);
+  if (!status) status = read_supports(arguments, &setup->scene, &set);
   *seed = (uint64_t)chosen;
   *to = (strut_equilibria_options){
       .starts = starts, .seed = seed, .supports = set, .interrupt = strut_interrupt_watch()};
@@ -101,16 +101,17 @@ static strut_status report_equilibria(const strut_arguments *arguments, const st
 }
 
 static strut_status find_and_report(const strut_arguments *arguments, const strut_plot *plot,
-                                    strut_scene *scene) {
+                                    strut_setup *setup) {
   strut_equilibria_options options_read;
   strut_model *model = NULL;
   strut_equilibria all = {0};
   strut_error error = {0};
   uint64_t seed;
-  strut_status status = read_options(arguments, scene, &options_read, &seed);
+  strut_status status = read_options(arguments, setup, &options_read, &seed);
   if (status) return status;
-  status = strut_model_compile(scene, &model, &error);
-  if (!status) status = strut_equilibria_find(model, &options_read, &all, &error);
+  status = strut_model_compile(&setup->scene, &model, &error);
+  if (!status)
+    status = strut_equilibria_find(model, &setup->experiment, &options_read, &all, &error);
   if (status) {
     strut_print_error(&error);
   } else {
@@ -130,15 +131,15 @@ static strut_status find_and_report(const strut_arguments *arguments, const stru
 }
 
 static strut_status run_equilibria(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_plot plot;
   strut_status status = strut_check_output_writable(arguments, file_names);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_equilibria, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
-  status = find_and_report(arguments, &plot, &scene);
-  strut_scene_free(&scene);
+  status = find_and_report(arguments, &plot, &setup);
+  strut_setup_free(&setup);
   return status;
 }
 

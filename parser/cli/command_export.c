@@ -14,10 +14,12 @@
 /* ---- a motion or a shape for ParaView ---- */
 
 /* A motion of one frame at rest, in the arena: the shape, its lengths and its elastic forces. */
-static strut_status still_of(const strut_arguments *arguments, const strut_model *model,
+static strut_status still_of(const strut_arguments *arguments, const strut_opened *opened,
                              strut_arena *arena, strut_trajectory *motion, strut_error *error) {
+  const strut_model *model = opened->model;
   strut_named_shape shape;
-  strut_status status = strut_named_shape_find(arguments, model, arena, &shape, error);
+  strut_status status =
+      strut_named_shape_find(arguments, model, &opened->setup.experiment, arena, &shape, error);
   if (status != STRUT_OK) return status;
   const strut_member_table *table = &model->members;
   size_t nodes = model->scene->node_count, members = model->scene->member_count;
@@ -62,7 +64,7 @@ static strut_status export_vtk(const strut_command *command, const strut_argumen
   if (opened.run && strut_option_text(arguments, STRUT_OPTION_AT)) {
     status = strut_fail(&error, STRUT_USAGE, "--at is for models: a run has its own shapes");
   } else if (!opened.run) {
-    status = still_of(arguments, opened.model, &arena, &still, &error);
+    status = still_of(arguments, &opened, &arena, &still, &error);
   }
   const strut_trajectory *motion = opened.run ? &opened.motion : &still;
   if (status == STRUT_OK)
@@ -87,10 +89,11 @@ static const strut_option options[] = {
 };
 
 static strut_status write_matrices(const strut_arguments *arguments, const char *directory,
-                                   const strut_model *model, strut_error *error) {
+                                   const strut_model *model, const strut_experiment *experiment,
+                                   strut_error *error) {
   strut_arena arena = {0};
   strut_named_shape shape;
-  strut_status status = strut_named_shape_find(arguments, model, &arena, &shape, error);
+  strut_status status = strut_named_shape_find(arguments, model, experiment, &arena, &shape, error);
   if (status == STRUT_OK)
     status = strut_matrices_write(directory, model, shape.q, shape.name, error);
   strut_arena_free(&arena);
@@ -112,7 +115,7 @@ static strut_status export_format(const strut_arguments *arguments, const char *
 
 static strut_status run_export(const strut_arguments *arguments) {
   const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
   if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
@@ -122,13 +125,14 @@ static strut_status run_export(const strut_arguments *arguments) {
                               : "missing --matrices DIR, or --format vtk -o DIR");
     return STRUT_USAGE;
   }
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = write_matrices(arguments, directory, model, &error);
+  status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK)
+    status = write_matrices(arguments, directory, model, &setup.experiment, &error);
   if (status != STRUT_OK) strut_print_error(&error);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

@@ -55,18 +55,18 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
 }
 
 /* The text to print: a report with -o, else the model. */
-static char *text_for(const strut_arguments *arguments, const strut_scene *scene,
+static char *text_for(const strut_arguments *arguments, const strut_setup *setup,
                       const strut_form *form) {
-  if (arguments->json) return strut_form_json(form, scene);
-  return arguments->output ? strut_form_table(form, scene) : strut_scene_write(scene);
+  if (arguments->json) return strut_form_json(form, &setup->scene);
+  return arguments->output ? strut_form_table(form, setup) : strut_setup_write(setup);
 }
 
-static strut_status report_form(const strut_arguments *arguments, const strut_scene *scene,
+static strut_status report_form(const strut_arguments *arguments, const strut_setup *setup,
                                 const strut_form *form) {
   strut_error error = {0};
   bool silent = arguments->quiet && arguments->output && !arguments->json;
-  char *model = arguments->output ? strut_scene_write(scene) : NULL;
-  char *text = silent ? NULL : text_for(arguments, scene, form);
+  char *model = arguments->output ? strut_setup_write(setup) : NULL;
+  char *text = silent ? NULL : text_for(arguments, setup, form);
   strut_status status = STRUT_OK;
   if ((arguments->output && !model) || (!silent && !text)) status = strut_print_out_of_memory();
   if (status == STRUT_OK && model) {
@@ -91,20 +91,21 @@ static strut_status draw_form(const strut_plot *plot, const strut_scene *scene,
 
 /* Finds the form, prints and draws it; `drawn` (node_count) receives the former positions. */
 static strut_status find_form(const strut_arguments *arguments, const strut_form_options *wanted,
-                              const strut_plot *plot, strut_scene *scene, double (*drawn)[2]) {
+                              const strut_plot *plot, strut_setup *setup, double (*drawn)[2]) {
+  const strut_scene *scene = &setup->scene;
   strut_form form;
   strut_error error = {0};
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
-  strut_status status = strut_form_find(scene, wanted, &form, &error);
-  if (status == STRUT_OK) status = report_form(arguments, scene, &form);
+  strut_status status = strut_form_find(setup, wanted, &form, &error);
+  if (status == STRUT_OK) status = report_form(arguments, setup, &form);
   if (status == STRUT_OK) status = draw_form(plot, scene, (const double(*)[2])drawn, &error);
   if (error.message[0]) strut_print_error(&error);
   return status;
 }
 
 static strut_status run_form(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_form_options wanted = {0};
   strut_plot plot;
   strut_arena arena = {0};
@@ -112,13 +113,13 @@ static strut_status run_form(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_form, arguments, 0, &plot);
   if (status == STRUT_OK) status = strut_try_file(arguments->output);
   if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
-  double(*drawn)[2] = strut_arena_allocate(&arena, scene.node_count, sizeof *drawn);
+  double(*drawn)[2] = strut_arena_allocate(&arena, setup.scene.node_count, sizeof *drawn);
   status =
-      drawn ? find_form(arguments, &wanted, &plot, &scene, drawn) : strut_print_out_of_memory();
+      drawn ? find_form(arguments, &wanted, &plot, &setup, drawn) : strut_print_out_of_memory();
   strut_arena_free(&arena);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

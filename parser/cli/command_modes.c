@@ -50,7 +50,7 @@ static strut_status report_modes(const strut_arguments *arguments, const strut_p
 }
 
 static strut_status run_modes(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_modes modes = {0};
   strut_error error = {0};
@@ -62,20 +62,21 @@ static strut_status run_modes(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_check_output_writable(arguments, file_names);
   if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
   strut_modes_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT),
                                 .count = (int32_t)count,
                                 .stuck = arguments->stuck};
-  status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = strut_modes_find(model, &wanted, &modes, &error);
+  status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK)
+    status = strut_modes_find(model, &setup.experiment, &wanted, &modes, &error);
   if (status != STRUT_OK)
     strut_print_error(&error);
   else
     status = report_modes(arguments, &plot, model, &modes, (size_t)count);
   strut_modes_free(&modes);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

@@ -45,7 +45,7 @@ static strut_status report_first(const over_source *source, const strut_diagnost
                     first->place.column, message);
 }
 
-static strut_status make_scene(void *context, double value, strut_scene *scene,
+static strut_status make_setup(void *context, double value, strut_setup *setup,
                                strut_error *error) {
   over_source *source = context;
   strut_diagnostics diagnostics = {0};
@@ -56,7 +56,7 @@ static strut_status make_scene(void *context, double value, strut_scene *scene,
   followed->value = value;
   strut_status status =
       strut_scene_source_read(source->source, source->settings, source->setting_count,
-                              STRUT_FOR_STATICS, &diagnostics, scene);
+                              STRUT_FOR_STATICS, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE)
     status = report_first(source, &diagnostics, error);
   else if (status != STRUT_OK)
@@ -179,7 +179,7 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
     wanted->over = STRUT_PATH_OVER_SCENE;
     wanted->name = name;
     wanted->from = parameter->value;
-    wanted->scene_at = make_scene;
+    wanted->scene_at = make_setup;
     wanted->context = source;
     strut_status status = open_source(arguments, name, source, dimension);
     wanted->unit = unit_of(*dimension);
@@ -270,12 +270,13 @@ static strut_status report_path(const strut_arguments *arguments, const strut_pl
 }
 
 static strut_status follow_path(const strut_arguments *arguments, const strut_plot *plot,
-                                const strut_path_options *wanted, const strut_scene *scene) {
+                                const strut_path_options *wanted, const strut_setup *setup) {
   strut_path path = {0};
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_model_compile(scene, &model, &error);
-  if (status == STRUT_OK) status = strut_path_follow(model, wanted, &path, &error);
+  strut_status status = strut_model_compile(&setup->scene, &model, &error);
+  if (status == STRUT_OK)
+    status = strut_path_follow(model, &setup->experiment, wanted, &path, &error);
   if (status == STRUT_OK)
     status = report_path(arguments, plot, model, &path);
   else
@@ -286,7 +287,7 @@ static strut_status follow_path(const strut_arguments *arguments, const strut_pl
 }
 
 static strut_status run_path(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_path_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT)};
   over_source source = {0};
   strut_plot plot;
@@ -298,12 +299,12 @@ static strut_status run_path(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = strut_check_output_writable(arguments, file_names);
   if (status != STRUT_OK) return status;
-  status = strut_open_model_text(arguments, &source.text, &source.length, &scene);
+  status = strut_open_model_text(arguments, &source.text, &source.length, &setup);
   if (status != STRUT_OK) return status;
-  status = read_over(&strut_command_path, arguments, &scene, &source, &wanted);
-  if (status == STRUT_OK) status = follow_path(arguments, &plot, &wanted, &scene);
+  status = read_over(&strut_command_path, arguments, &setup.scene, &source, &wanted);
+  if (status == STRUT_OK) status = follow_path(arguments, &plot, &wanted, &setup);
   free_over(&source);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

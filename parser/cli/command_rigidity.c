@@ -34,11 +34,12 @@ static strut_status report_rigidity(const strut_arguments *arguments, const stru
 }
 
 static strut_status analyse_rigidity(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_model *model, strut_error *error) {
+                                     const strut_model *model, const strut_experiment *experiment,
+                                     strut_error *error) {
   strut_arena arena = {0};
   strut_named_shape shape;
   strut_rigidity rigidity = {0};
-  strut_status status = strut_named_shape_find(arguments, model, &arena, &shape, error);
+  strut_status status = strut_named_shape_find(arguments, model, experiment, &arena, &shape, error);
   if (status == STRUT_OK) status = strut_rigidity_find(model, shape.q, &rigidity, error);
   if (status == STRUT_OK) status = report_rigidity(arguments, model, &shape, &rigidity, error);
   if (status == STRUT_OK && plot->path)
@@ -50,20 +51,21 @@ static strut_status analyse_rigidity(const strut_arguments *arguments, const str
 }
 
 static strut_status run_rigidity(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
   strut_plot plot;
   strut_status status = strut_check_output_writable(arguments, file_names);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_rigidity, arguments, 0, &plot);
   if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &scene);
+  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = analyse_rigidity(arguments, &plot, model, &error);
+  status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK)
+    status = analyse_rigidity(arguments, &plot, model, &setup.experiment, &error);
   if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

@@ -43,12 +43,12 @@ static bool has_results(strut_status status) {
   return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
 }
 
-static strut_status begin_results(const strut_arguments *arguments, const strut_scene *scene,
+static strut_status begin_results(const strut_arguments *arguments, const strut_setup *setup,
                                   run_files *keep, strut_error *error) {
   if (!arguments->output) return STRUT_OK;
   strut_status status = strut_results_begin(&keep->results, arguments->output, error);
   if (status != STRUT_OK) return status;
-  keep->scene_text = strut_scene_write(scene);
+  keep->scene_text = strut_setup_write(setup);
   if (keep->scene_text) {
     keep->csv = keep->sinks[keep->sink_count++] = strut_csv_create(keep->results.stage);
     keep->hdf5 = keep->sinks[keep->sink_count++] =
@@ -78,17 +78,18 @@ static void free_results(run_files *keep) {
   strut_results_abandon(&keep->results); /* nothing where they are complete */
 }
 
-static strut_status simulate(const strut_model *model, const strut_arguments *arguments,
-                             run_files *keep, strut_run_pictures *pictures, strut_summary *summary,
+static strut_status simulate(const strut_model *model, const strut_setup *setup,
+                             const strut_arguments *arguments, run_files *keep,
+                             strut_run_pictures *pictures, strut_summary *summary,
                              strut_error *error) {
   const volatile sig_atomic_t *interrupt = strut_interrupt_watch(); /* before there are files */
-  strut_status status = begin_results(arguments, model->scene, keep, error);
+  strut_status status = begin_results(arguments, setup, keep, error);
   if (status != STRUT_OK) return status;
   strut_sink *pictures_sink = strut_run_pictures_sink(pictures, model->scene, &status);
   if (status != STRUT_OK) return strut_fail(error, status, "out of memory");
   if (pictures_sink) keep->sinks[keep->sink_count++] = pictures_sink;
   strut_progress progress = strut_progress_begin(arguments->quiet);
-  progress.span = strut_scene_span(model->scene).duration;
+  progress.span = strut_experiment_span(&setup->experiment, model->scene).duration;
   const strut_run_options run = {
       .force = arguments->force,
       .interrupt = interrupt,
@@ -98,9 +99,9 @@ static strut_status simulate(const strut_model *model, const strut_arguments *ar
       .sinks = keep->sinks,
       .sink_count = keep->sink_count,
   };
-  status = model->scene->experiment.accuracy > 0.0
-               ? strut_simulate_accurately(model->scene, &run, summary, error)
-               : strut_simulate(model, &run, summary, error);
+  status = setup->experiment.accuracy > 0.0
+               ? strut_simulate_accurately(model, &setup->experiment, &run, summary, error)
+               : strut_simulate(model, &setup->experiment, &run, summary, error);
   strut_progress_end(&progress);
   return status;
 }
@@ -127,12 +128,12 @@ static strut_status make_film(strut_run_pictures *pictures, const strut_model *m
   return status;
 }
 
-static strut_status run_model(const strut_arguments *arguments, const strut_model *model,
-                              strut_run_pictures *pictures) {
+static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
+                              const strut_model *model, strut_run_pictures *pictures) {
   run_files keep = {0};
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
-  strut_status status = simulate(model, arguments, &keep, pictures, &summary, &error);
+  strut_status status = simulate(model, setup, arguments, &keep, pictures, &summary, &error);
   if (status != STRUT_OK) strut_print_error(&error);
   if (has_results(status)) {
     print_warnings(&summary);
@@ -153,32 +154,34 @@ static strut_status run_model(const strut_arguments *arguments, const strut_mode
 }
 
 static strut_status run_run(const strut_arguments *arguments) {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
   strut_run_pictures pictures = {0};
   strut_status status = strut_run_pictures_read(&strut_command_run, arguments, &pictures);
-  if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &scene);
+  if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_run_settings_apply(&strut_command_run, arguments, &scene);
-  if (status == STRUT_OK) status = strut_model_options_apply(&strut_command_run, arguments, &scene);
+  status = strut_run_settings_apply(&strut_command_run, arguments, &setup.experiment);
+  if (status == STRUT_OK)
+    status = strut_model_options_apply(&strut_command_run, arguments, &setup.scene);
   if (status != STRUT_OK) {
     strut_run_pictures_free(&pictures);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
     return status;
   }
-  if (status == STRUT_OK) status = strut_warn_of_scene(&scene);
+  if (status == STRUT_OK) status = strut_warn_of_scene(&setup);
   if (status != STRUT_OK) error.status = status;
-  if (status == STRUT_OK) status = strut_model_compile(&scene, &model, &error);
-  if (status == STRUT_OK) status = strut_run_pictures_check(&pictures, model, &error);
+  if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &error);
+  if (status == STRUT_OK)
+    status = strut_run_pictures_check(&pictures, &setup.experiment, model, &error);
   if (status == STRUT_OK) {
-    status = run_model(arguments, model, &pictures);
+    status = run_model(arguments, &setup, model, &pictures);
   } else {
     strut_print_error(&error);
   }
   strut_run_pictures_free(&pictures);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 

@@ -20,8 +20,8 @@
 
 /* Scenes of one model. Zero-initialise. */
 typedef struct operating_points {
-  strut_scene *scenes;      /* (count) */
-  const strut_scene **list; /* (count) them */
+  strut_setup *setups;      /* (count) */
+  const strut_setup **list; /* (count) them */
   size_t count;
 } operating_points;
 
@@ -73,7 +73,7 @@ static strut_status check_varied(const strut_command *command, const strut_overr
 }
 
 static strut_status open_point(const strut_command *command, const strut_arguments *arguments,
-                               uint64_t *seed, size_t number, strut_scene *scene) {
+                               uint64_t *seed, size_t number, strut_setup *setup) {
   size_t varied = arguments->varied_count, set = arguments->override_count;
   strut_override *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
   char(*texts)[MOST_TEXT] = strut_allocate(varied + 1, sizeof *texts);
@@ -87,7 +87,7 @@ static strut_status open_point(const strut_command *command, const strut_argumen
     strut_arguments here = *arguments;
     here.overrides = overrides;
     here.override_count = set + varied;
-    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, scene);
+    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup);
     if (status != STRUT_OK && varied > 0) {
       fprintf(stderr, "strut %s: at operating point %zu:", command->name, number + 1);
       for (size_t i = 0; i < varied; i++)
@@ -101,8 +101,8 @@ static strut_status open_point(const strut_command *command, const strut_argumen
 }
 
 static void free_points(operating_points *points) {
-  for (size_t p = 0; p < points->count; p++) strut_scene_free(&points->scenes[p]);
-  strut_release(points->scenes);
+  for (size_t p = 0; p < points->count; p++) strut_setup_free(&points->setups[p]);
+  strut_release(points->setups);
   strut_release(points->list);
   *points = (operating_points){.count = 0};
 }
@@ -119,12 +119,12 @@ static strut_status open_points(const strut_command *command, const strut_argume
   }
   *points = (operating_points){.count = 0};
   if (status != STRUT_OK) return status;
-  points->scenes = strut_allocate(count, sizeof *points->scenes);
+  points->setups = strut_allocate(count, sizeof *points->setups);
   points->list = strut_allocate(count, sizeof *points->list);
-  if (!points->scenes || !points->list) status = strut_print_out_of_memory();
+  if (!points->setups || !points->list) status = strut_print_out_of_memory();
   for (size_t p = 0; p < count && status == STRUT_OK; p++) {
-    status = open_point(command, arguments, &seed, p, &points->scenes[p]);
-    points->list[p] = &points->scenes[p];
+    status = open_point(command, arguments, &seed, p, &points->setups[p]);
+    points->list[p] = &points->setups[p];
     if (status == STRUT_OK) points->count++;
   }
   if (status != STRUT_OK) free_points(points);

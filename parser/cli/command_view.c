@@ -58,12 +58,13 @@ static strut_status check_output(const char *path) {
 }
 
 /* A search that fails leaves a remark on the page; only an interrupt or lack of memory is a failure. */
-static strut_status find_equilibria(const strut_model *model, int search,
+static strut_status find_equilibria(const strut_opened *opened, int search,
                                     const volatile sig_atomic_t *interrupt, strut_equilibria *all,
                                     strut_error *remark) {
   strut_equilibria_options wanted = {.interrupt = interrupt};
   if (search != SEARCH_ALL) return STRUT_OK;
-  strut_status status = strut_equilibria_find(model, &wanted, all, remark);
+  strut_status status =
+      strut_equilibria_find(opened->model, &opened->setup.experiment, &wanted, all, remark);
   return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
 
@@ -96,15 +97,16 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
   strut_error error = {0}, remark = {0};
   char *yaml = NULL;
   const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
-  strut_status status = find_equilibria(opened->model, search, interrupt, &all, &remark);
+  strut_status status = find_equilibria(opened, search, interrupt, &all, &remark);
   if (status != STRUT_OK) error = remark;
   if (status == STRUT_OK) {
-    yaml = strut_scene_write(&opened->scene);
+    yaml = strut_setup_write(&opened->setup);
     if (!yaml) status = strut_fail(&error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK) {
     strut_page page = {
         .model = opened->model,
+        .experiment = &opened->setup.experiment,
         .motion = opened->run ? &opened->motion : NULL,
         .equilibria = remark.status == STRUT_OK ? &all : NULL,
         .remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message,

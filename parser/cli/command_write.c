@@ -11,11 +11,11 @@ static const strut_option options[] = {
 };
 
 static strut_status run_write(const strut_arguments *arguments) {
-  strut_scene scene;
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &scene);
+  strut_setup setup;
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &setup);
   if (status != STRUT_OK) return status;
-  status = strut_print_block(strut_scene_write(&scene));
-  strut_scene_free(&scene);
+  status = strut_print_block(strut_setup_write(&setup));
+  strut_setup_free(&setup);
   return status;
 }
 

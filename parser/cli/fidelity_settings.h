@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_CLI_FIDELITY_SETTINGS_H
 #define STRUT_PARSER_CLI_FIDELITY_SETTINGS_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/cli/options.h"
 
 /** Rows of a command's table of options. */
@@ -20,7 +20,7 @@
         "of the ground: approach_only or hunt_crossley, instead of the file's"                     \
   }
 
-/** Puts the options into the scene. STRUT_USAGE with the reason on stderr. */
+/** Puts the options into the experiment. STRUT_USAGE with the reason on stderr. */
 strut_status strut_model_options_apply(const strut_command *command,
                                        const strut_arguments *arguments, strut_scene *scene);
 

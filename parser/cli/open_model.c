@@ -22,7 +22,7 @@ typedef struct source {
 } source;
 
 static strut_status read_source(const strut_arguments *arguments, const source *from,
-                                strut_purpose purpose, strut_scene *scene) {
+                                strut_purpose purpose, strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
   strut_error error = {0};
   strut_status status = strut_memory_check_document(from->name, from->text, from->length, &error);
@@ -30,7 +30,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
     strut_print_error(&error);
     return status;
   }
-  status = strut_scene_read(scene, from->name, from->text, from->length, arguments->overrides,
+  status = strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
                             arguments->override_count, purpose, &diagnostics);
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
@@ -40,7 +40,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
   if (status == STRUT_OK && diagnostics.note_count) {
     const char *notes = strut_diagnostics_render_notes(&diagnostics);
     if (notes) fputs(notes, stderr);
-    if (!notes) strut_scene_free(scene);
+    if (!notes) strut_setup_free(setup);
     if (!notes) status = STRUT_NO_MEMORY;
   }
   if (status == STRUT_NO_MEMORY) {
@@ -52,7 +52,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
 }
 
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
-                              strut_scene *scene) {
+                              strut_setup *setup) {
   source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
   strut_error error = {0};
   strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
@@ -64,20 +64,20 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
               strut_option_text(arguments, STRUT_OPTION_STEP);
   strut_purpose run = told ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
   status =
-      read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, scene);
+      read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, setup);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
-  status = strut_resolve_start_equilibrium(scene, &error);
+  status = strut_resolve_start_equilibrium(setup, &error);
   if (status != STRUT_OK) {
     strut_print_error(&error);
-    strut_scene_free(scene);
+    strut_setup_free(setup);
   }
   return status;
 }
 
-strut_status strut_warn_of_scene(const strut_scene *scene) {
+strut_status strut_warn_of_scene(const strut_setup *setup) {
   strut_findings warnings = {0};
-  strut_status status = strut_scene_warn(scene, &warnings);
+  strut_status status = strut_setup_warn(setup, &warnings);
   for (size_t i = 0; i < warnings.count && !status; i++)
     fprintf(stderr, "strut: warning: %s\n", warnings.items[i].message);
   strut_findings_free(&warnings);
@@ -85,7 +85,7 @@ strut_status strut_warn_of_scene(const strut_scene *scene) {
 }
 
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
-                                   strut_scene *scene) {
+                                   strut_setup *setup) {
   source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
   strut_error error = {0};
   strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
@@ -94,7 +94,7 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
     strut_print_error(&error);
     return status;
   }
-  status = read_source(arguments, &from, STRUT_FOR_ANY, scene);
+  status = read_source(arguments, &from, STRUT_FOR_ANY, setup);
   if (status != STRUT_OK) {
     strut_release(from.text);
     return status;
@@ -128,11 +128,12 @@ strut_status strut_try_file(const char *path) {
 /* ---- the shape that --at names ---- */
 
 strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    strut_arena *arena, strut_named_shape *shape,
-                                    strut_error *error) {
+                                    const strut_experiment *experiment, strut_arena *arena,
+                                    strut_named_shape *shape, strut_error *error) {
   const char *name = strut_option_text(arguments, STRUT_OPTION_AT);
   strut_rest_state stand = {0};
-  strut_status status = strut_rest_state_find(model, name ? name : "drawn", arena, &stand, error);
+  strut_status status =
+      strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
   if (status != STRUT_OK) return status;
   *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
   return STRUT_OK;
@@ -172,7 +173,7 @@ static strut_status check_files(const char *directory, const char *scene, const 
 static strut_status read_motion(const char *directory, size_t room, strut_opened *opened,
                                 strut_error *error) {
   strut_status status =
-      strut_trajectory_read(directory, &opened->scene, room, &opened->motion, error);
+      strut_trajectory_read(directory, &opened->setup.scene, room, &opened->motion, error);
   if (status != STRUT_OK) return status;
   if (opened->motion.position && opened->motion.frames > 0) return STRUT_OK;
   return strut_fail(
@@ -196,9 +197,9 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;
   inner.model = scene;
-  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->scene);
+  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->setup);
   if (status != STRUT_OK) return status;
-  status = strut_model_compile(&opened->scene, &opened->model, error);
+  status = strut_model_compile(&opened->setup.scene, &opened->model, error);
   if (status == STRUT_OK) status = read_motion(directory, room, opened, error);
   size_t length = 0;
   struct stat found;
@@ -221,8 +222,9 @@ strut_status strut_open_run(const strut_command *command, const strut_arguments 
   if (opened->run) {
     status = open_directory(arguments, room, &arena, opened, &error);
   } else {
-    status = strut_open_model(arguments, purpose, &opened->scene);
-    if (status == STRUT_OK) status = strut_model_compile(&opened->scene, &opened->model, &error);
+    status = strut_open_model(arguments, purpose, &opened->setup);
+    if (status == STRUT_OK)
+      status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
   }
   if (status != STRUT_OK && error.status != STRUT_OK) strut_print_error(&error);
   if (status != STRUT_OK) strut_opened_free(opened);
@@ -234,6 +236,6 @@ void strut_opened_free(strut_opened *opened) {
   strut_release(opened->summary);
   strut_trajectory_free(&opened->motion);
   strut_model_free(opened->model);
-  strut_scene_free(&opened->scene);
+  strut_setup_free(&opened->setup);
   *opened = (strut_opened){0};
 }

@@ -8,7 +8,7 @@
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
 #include "engine/scene/check.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/cli/options.h"
 
 /** Purpose of opening a scene. */
@@ -18,19 +18,19 @@ typedef enum strut_open_purpose {
   STRUT_OPEN_FOR_ANY  /* as STRUT_OPEN_AS_RUN, but a start equilibrium stays unresolved */
 } strut_open_purpose;
 
-/** Reads the model that the arguments name; messages go to stderr. strut_scene_free frees it. */
+/** Reads the model that the arguments name; messages go to stderr. strut_setup_free frees it. */
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
-                              strut_scene *scene);
+                              strut_setup *setup);
 
 /**
  * The same, STRUT_OPEN_FOR_ANY, which keeps the file's text[0..length) for who reads it again; a block of
  * strut_allocate. *text is NULL after a failure.
  */
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
-                                   strut_scene *scene);
+                                   strut_setup *setup);
 
-/** Prints the warnings of a valid scene on stderr: see strut_scene_warn. */
-strut_status strut_warn_of_scene(const strut_scene *scene);
+/** Prints the warnings of a valid scene on stderr: see strut_setup_warn. */
+strut_status strut_warn_of_scene(const strut_setup *setup);
 
 /**
  * Finds out, before anything is computed, whether files of these names (NULL after the last) can go
@@ -48,13 +48,13 @@ typedef struct strut_named_shape {
 
 /** Finds the shape that --at names, by default the drawn one; errors as strut_rest_state_find. */
 strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    strut_arena *arena, strut_named_shape *shape,
-                                    strut_error *error);
+                                    const strut_experiment *experiment, strut_arena *arena,
+                                    strut_named_shape *shape, strut_error *error);
 
 /** Must not move in memory: the model refers to the scene. Zero-initialise. */
 typedef struct strut_opened {
   bool run; /* the argument was a directory that `strut run -o` made */
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_trajectory motion; /* of a run: positions of one frame or more */
   char *summary;           /* of a run: the text of its summary.json, or NULL */

@@ -159,9 +159,10 @@ strut_status strut_run_pictures_read(const strut_command *command, const strut_a
   return status == STRUT_OK ? strut_run_film_read(command, arguments, &p->film) : status;
 }
 
-strut_status strut_run_pictures_check(const strut_run_pictures *p, const strut_model *model,
-                                      strut_error *error) {
-  strut_span span = strut_scene_span(model->scene);
+strut_status strut_run_pictures_check(strut_run_pictures *p, const strut_experiment *experiment,
+                                      const strut_model *model, strut_error *error) {
+  p->figure.experiment = p->film.experiment = experiment;
+  strut_span span = strut_experiment_span(experiment, model->scene);
   strut_status status = strut_film_check_length(&p->film, span.duration - span.record_start, error);
   if (status != STRUT_OK || !p->plot.path) return status;
   return strut_run_figure_check(&p->figure, model, error);

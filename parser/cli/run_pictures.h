@@ -57,7 +57,8 @@ typedef struct strut_run_pictures {
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *pictures);
 /** Checks before the run that it will record what is to be drawn; STRUT_USAGE if not. */
-strut_status strut_run_pictures_check(const strut_run_pictures *pictures, const strut_model *model,
+strut_status strut_run_pictures_check(strut_run_pictures *pictures,
+                                      const strut_experiment *experiment, const strut_model *model,
                                       strut_error *error);
 /** The sink that collects the motion, or NULL where none is needed or *status is an error. */
 strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_scene *scene,

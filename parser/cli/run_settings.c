@@ -27,8 +27,7 @@ static strut_status set_method(const strut_command *command, const strut_argumen
 }
 
 strut_status strut_run_settings_apply(const strut_command *command,
-                                      const strut_arguments *arguments, strut_scene *scene) {
-  strut_experiment *e = &scene->experiment;
+                                      const strut_arguments *arguments, strut_experiment *e) {
   double steady = 0.0;
   const struct {
     strut_option_id id;

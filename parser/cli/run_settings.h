@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_CLI_RUN_SETTINGS_H
 #define STRUT_PARSER_CLI_RUN_SETTINGS_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/cli/options.h"
 
 /** Rows for a table of options. */
@@ -24,6 +24,6 @@
 
 /** Applies the options to the scene. STRUT_USAGE with the reason on stderr. */
 strut_status strut_run_settings_apply(const strut_command *command,
-                                      const strut_arguments *arguments, strut_scene *scene);
+                                      const strut_arguments *arguments, strut_experiment *e);
 
 #endif

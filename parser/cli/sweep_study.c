@@ -45,9 +45,9 @@ static strut_status try_ends(strut_study_file *file) {
   return status;
 }
 
-static strut_status scene_of(void *context, const strut_study_value *values, strut_scene *scene,
+static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
                              strut_error *error) {
-  return strut_study_scene(context, values, scene, error);
+  return strut_study_setup(context, values, setup, error);
 }
 
 /* Hashes everything that decides the results: the study, its model and the version. */
@@ -67,7 +67,7 @@ static bool identify(const strut_study_file *file, uint8_t hash[STRUT_STUDY_HASH
 strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_error error = {0};
   strut_study_file *file = &study->file;
-  const strut_sweep_scenes scenes = {scene_of, strut_scene_write, file};
+  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file};
   strut_status status = strut_study_open(arguments->model, arguments->overrides,
                                          arguments->override_count, file, &error);
   if (!status) status = try_ends(file);

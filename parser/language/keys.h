@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 

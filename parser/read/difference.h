@@ -13,7 +13,7 @@
 #include "engine/scene/difference.h"
 
 /**
- * Compares two texts of strut_scene_write (or any YAML) key by key in the order of the first, then lists
+ * Compares two texts of strut_setup_write (or any YAML) key by key in the order of the first, then lists
  * what only the second has. A list counts as one value, and so does a node or member that only one
  * has. The scenes' name, description and source are left out. The results belong to the arena.
  * STRUT_OK, STRUT_BAD_SCENE if a text is not YAML, or STRUT_NO_MEMORY.

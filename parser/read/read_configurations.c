@@ -202,7 +202,7 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
 }
 
 void strut_read_search(strut_reader *reader) {
-  strut_search *search = &reader->scene->search;
+  strut_search *search = &reader->experiment->search;
   if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
                           search_owner.kind, &reader->search))
     return;

@@ -35,7 +35,7 @@ static bool read_switch(strut_reader *reader, const strut_slot *slot, int key, s
 }
 
 static void read_settle(strut_reader *reader, const strut_slot *slot) {
-  strut_settle *settle = &reader->scene->settle;
+  strut_settle *settle = &reader->experiment->settle;
   strut_owner initial = {"the initial state", NULL}, owner = {"the settling", NULL};
   if (!read_switch(reader, slot, STRUT_KEY_INITIAL_SETTLE, initial, &settle->wanted)) return;
   strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
@@ -147,7 +147,7 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
 }
 
 static void read_of(strut_reader *reader) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
   const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
   strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
@@ -189,7 +189,7 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
 }
 
 static void read_steady(strut_reader *reader, const strut_slot *slot) {
-  strut_steady *steady = &reader->scene->experiment.steady;
+  strut_steady *steady = &reader->experiment->steady;
   strut_owner measurement = {"the measurement", NULL}, owner = {"the steady state", NULL};
   if (!read_switch(reader, slot, STRUT_KEY_MEASURE_STEADY, measurement, &steady->wanted)) return;
   strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
@@ -197,7 +197,7 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
 }
 
 static void read_run(strut_reader *reader) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   strut_owner owner = {"the measurement", NULL};
   reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
   if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, "the run", &reader->run))
@@ -228,16 +228,16 @@ static void read_run(strut_reader *reader) {
  * it always ends in the same bits. A step below zero is chosen by the stability limit.
  */
 static void choose_settling_step(strut_reader *reader) {
-  strut_settle *settle = &reader->scene->settle;
+  strut_settle *settle = &reader->experiment->settle;
   if (!settle->wanted) return;
   const strut_slot *step = strut_slot_of(&reader->settle, STRUT_KEY_SETTLE_STEP);
-  double given = reader->scene->experiment.step;
+  double given = reader->experiment->step;
   if (step->state == STRUT_GIVEN) given = step->number[0];
   settle->step = given > 0.0 ? given : -1.0;
 }
 
 void strut_read_experiment(strut_reader *reader) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   read_run(reader);
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, "the solver",
                          &reader->solver))

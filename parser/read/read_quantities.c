@@ -370,7 +370,7 @@ static bool may_be_called(strut_reader *reader, const strut_tree *key) {
 }
 
 void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
-  strut_experiment *e = &reader->scene->experiment;
+  strut_experiment *e = reader->experiment;
   if (slot->state != STRUT_GIVEN) return;
   const strut_tree *map = slot->value;
   e->quantities =

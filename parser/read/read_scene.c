@@ -69,6 +69,12 @@ bool strut_tree_is_study(const strut_tree *root) {
          !strut_tree_find(root, "nodes", NULL);
 }
 
+void strut_reader_target(strut_reader *reader, strut_setup *setup) {
+  reader->setup = setup;
+  reader->scene = &setup->scene;
+  reader->experiment = &setup->experiment;
+}
+
 /* Reads and checks the tree; reports all errors. */
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
@@ -86,7 +92,7 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;
-  if (strut_scene_check(reader->scene, reader->purpose, &findings) == STRUT_NO_MEMORY)
+  if (strut_setup_check(reader->setup, reader->purpose, &findings) == STRUT_NO_MEMORY)
     reader->out_of_memory = true;
   strut_place_findings(reader, &findings);
   reader->diagnostics->unstored += findings.unstored;
@@ -108,15 +114,15 @@ static void free_reader(strut_reader *reader) {
 /* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
 static strut_status read_from(const strut_document *document, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
-                              strut_scene *scene) {
+                              strut_setup *setup) {
   strut_reader *reader = strut_allocate(1, sizeof *reader);
   strut_status status = STRUT_OK;
-  strut_scene_init(scene);
+  strut_setup_init(setup);
   if (!reader) {
-    strut_scene_free(scene);
+    strut_setup_free(setup);
     return STRUT_NO_MEMORY;
   }
-  reader->scene = scene;
+  strut_reader_target(reader, setup);
   reader->diagnostics = diagnostics;
   reader->purpose = purpose;
   clear_sections(reader);
@@ -132,20 +138,20 @@ static strut_status read_from(const strut_document *document, const strut_settin
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   free_reader(reader);
   strut_release(reader);
-  if (status) strut_scene_free(scene);
+  if (status) strut_setup_free(setup);
   return status;
 }
 
-strut_status strut_scene_read(strut_scene *scene, const char *file, const char *text, size_t length,
+strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text, size_t length,
                               const strut_override *overrides, size_t override_count,
                               strut_purpose purpose, strut_diagnostics *diagnostics) {
   strut_setting *settings = strut_allocate(override_count, sizeof *settings);
-  strut_scene_init(scene);
+  strut_setup_init(setup);
   strut_diagnostics_source(diagnostics, file, text, length);
   if (!settings) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < override_count; i++)
     settings[i] = (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
-  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, scene);
+  strut_status status = read_from(NULL, settings, override_count, purpose, diagnostics, setup);
   strut_release(settings);
   return status;
 }
@@ -174,11 +180,11 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
 
 /* Reads nothing but the parameters. */
 static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
-  strut_scene scene;
+  strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
   if (!reader) return STRUT_NO_MEMORY;
-  strut_scene_init(&scene);
-  reader->scene = &scene;
+  strut_setup_init(&setup);
+  strut_reader_target(reader, &setup);
   reader->diagnostics = diagnostics;
   clear_sections(reader);
   reader->document.root = source->document.root;
@@ -189,7 +195,7 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   free_reader(reader);
   strut_release(reader);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 
@@ -208,10 +214,10 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   strut_c_locale_leave(locale);
   strut_diagnostics_free(&unused);
   if (status == STRUT_OK) return status;
-  strut_scene scene; /* read again to report all errors */
+  strut_setup setup; /* read again to report all errors */
   if (status == STRUT_BAD_SCENE)
-    status = strut_scene_read(&scene, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
-  if (status == STRUT_OK) strut_scene_free(&scene);
+    status = strut_setup_read(&setup, file, text, length, NULL, 0, STRUT_FOR_RUN, diagnostics);
+  if (status == STRUT_OK) strut_setup_free(&setup);
   strut_scene_source_free(source);
   *result = NULL;
   return status == STRUT_OK ? STRUT_BAD_SCENE : status;
@@ -237,9 +243,9 @@ strut_document *strut_scene_source_document(strut_scene_source *source) {
 strut_status strut_scene_source_read(const strut_scene_source *source,
                                      const strut_setting *settings, size_t setting_count,
                                      strut_purpose purpose, strut_diagnostics *diagnostics,
-                                     strut_scene *scene) {
+                                     strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
-  return read_from(&source->document, settings, setting_count, purpose, diagnostics, scene);
+  return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
 }
 
 enum { FIRST_SIZE = 64 * 1024 };

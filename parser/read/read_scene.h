@@ -6,7 +6,7 @@
 #define STRUT_PARSER_READ_READ_SCENE_H
 
 #include "engine/scene/check.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/expression/units.h"
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/document.h"
@@ -26,11 +26,12 @@ typedef struct strut_setting {
 } strut_setting;
 
 /**
- * Reads and checks the scene in text[0..length). On STRUT_OK the scene is complete and valid for
- * its purpose. On STRUT_BAD_SCENE diagnostics holds every finding and the scene is empty. `file` is
+ * Reads and checks a scene and its experiment in text[0..length). On STRUT_OK both are complete and
+ * valid for
+ * its purpose. On STRUT_BAD_SCENE diagnostics holds every finding and both are empty. `file` is
  * the name that messages show. Neither file nor text is copied: diagnostics refers to both.
  */
-STRUT_API strut_status strut_scene_read(strut_scene *scene, const char *file, const char *text,
+STRUT_API strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text,
                                         size_t length, const strut_override *overrides,
                                         size_t override_count, strut_purpose purpose,
                                         strut_diagnostics *diagnostics);
@@ -47,7 +48,7 @@ typedef struct strut_declared {
 
 /**
  * Reads the text as a tree and its parameters. STRUT_BAD_SCENE with every finding about the whole
- * scene where the tree or a parameter cannot be read. file, text and diagnostics as strut_scene_read.
+ * scene where the tree or a parameter cannot be read. file, text and diagnostics as strut_setup_read.
  */
 STRUT_API strut_status strut_scene_source_open(const char *file, const char *text, size_t length,
                                                strut_diagnostics *diagnostics,
@@ -58,11 +59,11 @@ STRUT_API const strut_declared *strut_scene_source_parameters(const strut_scene_
                                                               size_t *count);
 /** The tree; whoever changes it does so before the first scene is made. */
 STRUT_API strut_document *strut_scene_source_document(strut_scene_source *source);
-/** As strut_scene_read, from the tree, with settings in place of overrides. */
+/** As strut_setup_read, from the tree, with settings in place of overrides. */
 STRUT_API strut_status strut_scene_source_read(const strut_scene_source *source,
                                                const strut_setting *settings, size_t setting_count,
                                                strut_purpose purpose,
-                                               strut_diagnostics *diagnostics, strut_scene *scene);
+                                               strut_diagnostics *diagnostics, strut_setup *setup);
 
 /**
  * Reads a whole file into a block of strut_allocate (NUL-terminated; *length without it); "-" is

@@ -12,7 +12,7 @@
 
 #include "engine/base/name_map.h"
 #include "engine/scene/check.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/expression/expression.h"
 #include "parser/language/keys.h"
 #include "parser/read/read_scene.h"
@@ -97,7 +97,9 @@ typedef struct strut_named_signal {
 enum { STRUT_DEEPEST_PARAMETER = 200, STRUT_DEEPEST_SIGNAL = 64 };
 
 typedef struct strut_reader {
+  strut_setup *setup; /* what is read, in its two parts: */
   strut_scene *scene;
+  strut_experiment *experiment;
   strut_diagnostics *diagnostics;
   strut_document document;
   strut_arena scratch; /* freed with the reader */
@@ -200,6 +202,8 @@ void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t cou
  */
 size_t strut_next_entry(const strut_reader *reader, size_t *count);
 
+/** Sets what the reader fills. */
+void strut_reader_target(strut_reader *reader, strut_setup *setup);
 /** A copy in the scene's arena; "" if memory is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
 

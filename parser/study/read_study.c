@@ -273,11 +273,11 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
   *file = (strut_study_file){.path = path};
   strut_status status = strut_file_read(path, &file->text, &file->length, error);
   if (status != STRUT_OK) return status;
-  strut_scene scene;
+  strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
   if (!reader) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  strut_scene_init(&scene);
-  reader->scene = &scene;
+  strut_setup_init(&setup);
+  strut_reader_target(reader, &setup);
   reader->diagnostics = &file->diagnostics;
   strut_diagnostics_source(&file->diagnostics, path, file->text, file->length);
   strut_study_reader r = {.reader = reader, .file = file};
@@ -288,7 +288,7 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
   strut_name_map_free(&r.given);
   strut_arena_free(&reader->scratch);
   strut_release(reader);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status;
 }
 
@@ -316,7 +316,7 @@ static const strut_scene_source *source_of(const strut_study_file *file,
 
 /* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
-                               strut_diagnostics *diagnostics, strut_scene *scene) {
+                               strut_diagnostics *diagnostics, strut_setup *setup) {
   size_t first = file->variants, fixed = file->setting_count;
   size_t count = fixed + file->column_count - first;
   strut_setting *settings = strut_allocate(count, sizeof *settings + STRUT_NUMBER_TEXT);
@@ -332,15 +332,15 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
   strut_status status = strut_scene_source_read(source_of(file, values), settings, count,
-                                                STRUT_FOR_RUN, diagnostics, scene);
+                                                STRUT_FOR_RUN, diagnostics, setup);
   strut_release(settings);
   return status;
 }
 
-strut_status strut_study_scene(const strut_study_file *file, const strut_study_value *values,
-                               strut_scene *scene, strut_error *error) {
+strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
+                               strut_setup *setup, strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = read_point(file, values, &diagnostics, scene);
+  strut_status status = read_point(file, values, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
     const strut_diagnostic *first = &diagnostics.items[0];
     for (size_t i = 1; i < diagnostics.count; i++)
@@ -374,10 +374,10 @@ static void format_values(const strut_study_file *file, const strut_study_value 
 }
 
 strut_status strut_study_try(strut_study_file *file, const strut_study_value *values) {
-  strut_scene scene;
+  strut_setup setup;
   char text[300];
-  strut_status status = read_point(file, values, &file->model_diagnostics, &scene);
-  if (status == STRUT_OK) strut_scene_free(&scene);
+  strut_status status = read_point(file, values, &file->model_diagnostics, &setup);
+  if (status == STRUT_OK) strut_setup_free(&setup);
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
   if (status != STRUT_BAD_SCENE) return status;
   format_values(file, values, text, sizeof text);

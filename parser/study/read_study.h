@@ -42,13 +42,13 @@ STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
 /** All notes of the points tried, such as on former names of keys; NULL: memory is out. */
 STRUT_API const char *strut_study_notes(strut_study_file *file);
 /**
- * The scene where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
+ * The scene and experiment where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
  * finding with its place. Safe from several threads.
  */
-STRUT_API strut_status strut_study_scene(const strut_study_file *file,
-                                         const strut_study_value *values, strut_scene *scene,
+STRUT_API strut_status strut_study_setup(const strut_study_file *file,
+                                         const strut_study_value *values, strut_setup *setup,
                                          strut_error *error);
-/** Like strut_study_scene, for one thread: all findings go to the messages, with the values of the axes. */
+/** Like strut_study_setup, for one thread: all findings go to the messages, with the values of the axes. */
 STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
 /**
  * All that decides the results, as a text that does not change with comments, blanks and the order

@@ -162,8 +162,7 @@ static bool refers_to(const strut_scene *scene, const char *name, int32_t signal
 }
 
 /* A name that `of` may use for the signal whose periods count; NULL: the signal needs a name first. */
-static const char *period_name(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static const char *period_name(const strut_scene *scene, const strut_experiment *e) {
   if (e->period_of && refers_to(scene, e->period_of, e->period_signal)) return e->period_of;
   const char *own = scene->signals[e->period_signal].name;
   if (own && refers_to(scene, own, e->period_signal)) return own;
@@ -200,7 +199,7 @@ static void put_run_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   bool measures =
       e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted || e->quantity_count;
   if (key == STRUT_KEY_RUN_OF && e->periods > 0.0) {
-    const char *name = period_name(writer->scene);
+    const char *name = period_name(writer->scene, e);
     strut_put_key_name(writer, mapping, key);
     strut_put_name(writer, name ? name : signal_name(writer, e->period_signal));
   } else if (key == STRUT_KEY_RUN_MEASURE && measures) {
@@ -218,13 +217,13 @@ static void put_section(strut_writer *writer, int key, strut_section section,
   strut_mapping top = STRUT_MAPPING_INLINE, mapping = STRUT_MAPPING_INLINE;
   strut_put_key_name(writer, &top, key);
   strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, section, &writer->scene->experiment, &writer->usual.experiment,
+  strut_put_fields(writer, &mapping, section, writer->experiment, &writer->usual.experiment,
                    by_hand);
   strut_put(writer, "}\n");
 }
 
 void strut_put_experiment(strut_writer *writer) {
-  const strut_experiment *e = &writer->scene->experiment;
+  const strut_experiment *e = writer->experiment;
   put_section(writer, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, NULL);
   if (e->duration != 0.0 || e->periods != 0.0)
     put_section(writer, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, put_run_by_hand);

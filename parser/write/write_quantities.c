@@ -160,7 +160,7 @@ static void put_quantity_by_hand(strut_writer *writer, strut_mapping *mapping, i
 }
 
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {
-  const strut_experiment *e = &writer->scene->experiment;
+  const strut_experiment *e = writer->experiment;
   const strut_quantity_definition usual = {0};
   if (!e->quantity_count) return;
   strut_put_key_name(writer, mapping, STRUT_KEY_MEASURE_QUANTITIES);

@@ -189,8 +189,7 @@ static void put_ground(strut_writer *writer) {
 }
 
 /* The signal whose periods count, if it has no name and nothing named uses it; else -1. */
-static int32_t nameless_period(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static int32_t nameless_period(const strut_scene *scene, const strut_experiment *e) {
   if (e->periods == 0.0 || scene->signals[e->period_signal].name) return -1;
   for (size_t i = 0; i < scene->actuator_count; i++)
     if (scene->actuators[i].signal == e->period_signal) return -1;
@@ -199,9 +198,11 @@ static int32_t nameless_period(const strut_scene *scene) {
   return e->period_signal;
 }
 
-char *strut_scene_write(const strut_scene *scene) {
-  strut_writer writer = {.scene = scene, .period_signal = nameless_period(scene)};
-  strut_scene_init(&writer.usual);
+char *strut_setup_write(const strut_setup *setup) {
+  const strut_experiment *e = &setup->experiment;
+  strut_writer writer = {
+      .scene = &setup->scene, .experiment = e, .period_signal = nameless_period(&setup->scene, e)};
+  strut_setup_init(&writer.usual);
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
   put_nodes(&writer);

@@ -5,9 +5,9 @@
 #ifndef STRUT_PARSER_WRITE_WRITE_SCENE_H
 #define STRUT_PARSER_WRITE_WRITE_SCENE_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
-/** The effective scene as YAML text in a block of strut_allocate (release it); NULL: no memory. */
-STRUT_API char *strut_scene_write(const strut_scene *scene);
+/** The effective scene and experiment as YAML text in a block of strut_allocate (release it); NULL: no memory. */
+STRUT_API char *strut_setup_write(const strut_setup *setup);
 
 #endif

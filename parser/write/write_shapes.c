@@ -68,7 +68,8 @@ static void put_supports(strut_writer *writer, strut_mapping *mapping, int key,
 }
 
 static void put_search(strut_writer *writer) {
-  const strut_search *search = &writer->scene->search, *usual = &writer->usual.search;
+  const strut_search *search = &writer->experiment->search,
+                     *usual = &writer->usual.experiment.search;
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   if (!search->support_count && !strut_fields_differ(STRUT_SECTION_EQUILIBRIA, search, usual))
     return;
@@ -112,7 +113,7 @@ static void put_initial_pair(strut_writer *writer, bool *begun, bool *listed, co
 static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int key,
                               const void *object) {
   const strut_settle *settle = object;
-  if (settle->step <= 0.0 || settle->step == writer->scene->experiment.step) return;
+  if (settle->step <= 0.0 || settle->step == writer->experiment->step) return;
   strut_put_key_name(writer, mapping, key);
   strut_put_number(writer, settle->step);
 }
@@ -120,7 +121,7 @@ static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int 
 static void put_settle(strut_writer *writer, const strut_settle *settle) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   strut_put(writer, "  settle: {");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_SETTLE, settle, &writer->usual.settle,
+  strut_put_fields(writer, &mapping, STRUT_SECTION_SETTLE, settle, &writer->usual.experiment.settle,
                    put_settling_step);
   strut_put(writer, "}\n");
 }
@@ -146,9 +147,9 @@ static void put_initial(strut_writer *writer) {
     if (!same(node->velocity, rest))
       put_initial_pair(writer, &begun, &velocities, "  velocities:\n", node->name, node->velocity);
   }
-  if (!scene->settle.wanted) return;
+  if (!writer->experiment->settle.wanted) return;
   if (!begun) strut_put(writer, "initial:\n");
-  put_settle(writer, &scene->settle);
+  put_settle(writer, &writer->experiment->settle);
 }
 
 void strut_put_shapes(strut_writer *writer) {

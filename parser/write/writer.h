@@ -8,16 +8,17 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "parser/language/keys.h"
 
 typedef struct strut_writer {
   const strut_scene *scene;
+  const strut_experiment *experiment;
   char *text; /* strut_allocate; NUL-terminated */
   size_t length, capacity;
   bool failed;           /* memory was out; all later writing is ignored */
   int32_t period_signal; /* a signal that has no name but needs one; else -1 */
-  strut_scene usual;     /* the defaults */
+  strut_setup usual;     /* the defaults */
 } strut_writer;
 
 void strut_put(strut_writer *writer, const char *text);

@@ -81,7 +81,7 @@ static void compare_crawlers(int repeats) {
 
 /* One chain, ready to step. */
 typedef struct chain {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_state *state;
   void *workspace;
@@ -90,17 +90,18 @@ typedef struct chain {
 static void chain_free(chain *it) {
   strut_state_free(it->state);
   strut_model_free(it->model);
-  strut_scene_free(&it->scene);
+  strut_setup_free(&it->setup);
 }
 
 static bool chain_make(chain *it, size_t members, strut_mass_model mass) {
   strut_error error = {0};
   *it = (chain){0};
-  strut_status status = bench_chain_scene(&it->scene, members, mass);
-  if (status == STRUT_OK) status = strut_model_compile(&it->scene, &it->model, &error);
+  strut_status status = bench_chain_scene(&it->setup, members, mass);
+  if (status == STRUT_OK) status = strut_model_compile(&it->setup.scene, &it->model, &error);
+  const strut_integrator_settings settings = strut_integrator_settings_of(&it->setup.experiment);
   if (status == STRUT_OK) status = strut_state_create(it->model, &it->state, &error);
   if (status == STRUT_OK)
-    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state);
+    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state, &settings);
   if (it->workspace) {
     strut_state_reset(it->model, it->state);
     return true;
@@ -158,22 +159,22 @@ static int load(const char *path) {
   char *text = NULL;
   size_t length = 0;
   strut_error error = {0};
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_diagnostics diagnostics = {0};
   double start = bench_seconds();
   strut_status status = strut_file_read(path, &text, &length, &error);
   if (status == STRUT_OK)
-    status = strut_scene_read(&scene, path, text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    status = strut_setup_read(&setup, path, text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
   double read = bench_seconds();
   if (status == STRUT_OK) {
-    status = strut_model_compile(&scene, &model, &error);
+    status = strut_model_compile(&setup.scene, &model, &error);
     printf(
         "%zu members: read in %.2f s, compiled in %.2f s, together %.2f s, peak memory %.0f MB\n",
-        scene.member_count, read - start, bench_seconds() - read, bench_seconds() - start,
+        setup.scene.member_count, read - start, bench_seconds() - read, bench_seconds() - start,
         peak_megabytes());
     strut_model_free(model);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   if (status != STRUT_OK)
     fprintf(stderr, "strut_bench: %s: %s %s\n", path, strut_status_text(status), error.message);

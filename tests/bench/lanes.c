@@ -19,7 +19,7 @@ static const char *const methods[METHODS] = {"rk4", "verlet-events"};
 static const double step_of[METHODS] = {1e-4, 8e-5};
 
 typedef struct lane {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_state *state;
   void *workspace;
@@ -45,10 +45,13 @@ static int ascending(const void *a, const void *b) {
 
 static bool lane_make(lane *it, int i, const strut_integrator *method, double step, bool ledger) {
   *it = (lane){0};
-  if (bench_crawler_scene(&it->scene, 10.0 + 0.1 * i, 1e-4, 0.1) != STRUT_OK ||
-      strut_model_compile(&it->scene, &it->model, NULL) != STRUT_OK ||
+  strut_experiment experiment = strut_experiment_default();
+  experiment.step = step;
+  const strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
+  if (bench_crawler_scene(&it->setup, 10.0 + 0.1 * i, 1e-4, 0.1) != STRUT_OK ||
+      strut_model_compile(&it->setup.scene, &it->model, NULL) != STRUT_OK ||
       strut_state_create(it->model, &it->state, NULL) != STRUT_OK ||
-      !(it->workspace = method->create(it->model, it->state)))
+      !(it->workspace = method->create(it->model, it->state, &settings)))
     return false;
   it->state->ledger = ledger;
   if (method->restart) method->restart(it->model, it->state, it->workspace, step);
@@ -58,7 +61,7 @@ static bool lane_make(lane *it, int i, const strut_integrator *method, double st
 static void lane_free(lane *it) {
   strut_state_free(it->state);
   strut_model_free(it->model);
-  strut_scene_free(&it->scene);
+  strut_setup_free(&it->setup);
 }
 
 static bool together_make(together *it, int w, const strut_integrator *method, double step,
@@ -132,7 +135,8 @@ typedef struct points {
 static bool next_point(void *context, strut_batch_point *point) {
   points *all = context;
   if (all->next == POINTS) return false;
-  *point = (strut_batch_point){all->at[all->next++].model, &all->options, NULL};
+  const lane *it = &all->at[all->next++];
+  *point = (strut_batch_point){it->model, &it->setup.experiment, &all->options, NULL};
   return true;
 }
 
@@ -151,6 +155,7 @@ static double time_points(points *all, int32_t width, bool halves) {
                                              .next = next_point,
                                              .result = take_result,
                                              .example = all->at[0].model,
+                                             .integrator = all->at[0].setup.experiment.integrator,
                                              .without_ledger = all->options.without_ledger,
                                              .width = width,
                                              .halves = halves});
@@ -164,9 +169,9 @@ static void compare_points(int m, bool ledger, int repeats) {
   all = (points){.options = {.without_ledger = !ledger}};
   for (int i = 0; i < POINTS; i++) {
     good &= lane_make(&all.at[i], 2 * i, strut_integrator_find(methods[m]), step_of[m], ledger);
-    all.at[i].scene.experiment.integrator = methods[m];
-    all.at[i].scene.experiment.step = step_of[m];
-    all.at[i].scene.experiment.measure_last = 0.1;
+    all.at[i].setup.experiment.integrator = methods[m];
+    all.at[i].setup.experiment.step = step_of[m];
+    all.at[i].setup.experiment.measure_last = 0.1;
   }
   for (int r = 0; r < repeats && good; r++)
     for (int w = 0; w < WIDTHS; w++)

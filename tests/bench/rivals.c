@@ -24,7 +24,7 @@ double bench_seconds(void) {
 /* strut */
 
 typedef struct engine_crawler {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_state *state;
   void *workspace;
@@ -34,17 +34,18 @@ static void engine_free(void *crawler) {
   engine_crawler *it = crawler;
   strut_state_free(it->state);
   strut_model_free(it->model);
-  strut_scene_free(&it->scene);
+  strut_setup_free(&it->setup);
   free(it);
 }
 
 static void *engine_make(bool ledger) {
   engine_crawler *it = calloc(1, sizeof *it);
   if (!it) return NULL;
-  if (bench_crawler_scene(&it->scene, frequency, amplitude, friction) == STRUT_OK &&
-      strut_model_compile(&it->scene, &it->model, NULL) == STRUT_OK &&
+  const strut_integrator_settings settings = {.step = 1e-4};
+  if (bench_crawler_scene(&it->setup, frequency, amplitude, friction) == STRUT_OK &&
+      strut_model_compile(&it->setup.scene, &it->model, NULL) == STRUT_OK &&
       strut_state_create(it->model, &it->state, NULL) == STRUT_OK)
-    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state);
+    it->workspace = strut_integrator_find("rk4")->create(it->model, it->state, &settings);
   if (!it->workspace) {
     engine_free(it);
     return NULL;

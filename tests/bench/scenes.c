@@ -10,15 +10,16 @@
 #define DAMPING 0.2
 enum { PER_FRAME = 5 };
 
-static strut_status allocate(strut_scene *scene, size_t nodes, size_t members) {
-  strut_scene_init(scene);
-  scene->nodes = strut_arena_allocate(&scene->arena, nodes, sizeof *scene->nodes);
-  scene->members = strut_arena_allocate(&scene->arena, members, sizeof *scene->members);
-  if (!scene->nodes || !scene->members) {
-    strut_scene_free(scene);
+static strut_status allocate(strut_setup *setup, size_t nodes, size_t members) {
+  strut_setup_init(setup);
+  setup->scene.nodes = strut_arena_allocate(&setup->scene.arena, nodes, sizeof *setup->scene.nodes);
+  setup->scene.members =
+      strut_arena_allocate(&setup->scene.arena, members, sizeof *setup->scene.members);
+  if (!setup->scene.nodes || !setup->scene.members) {
+    strut_setup_free(setup);
     return STRUT_NO_MEMORY;
   }
-  scene->node_count = nodes, scene->member_count = members;
+  setup->scene.node_count = nodes, setup->scene.member_count = members;
   return STRUT_OK;
 }
 
@@ -49,34 +50,36 @@ static void fill_members(strut_member *m) {
   table1(&m[8], 2, 5, 0.01, 1e4, 0);
 }
 
-strut_status bench_crawler_scene(strut_scene *scene, double f, double a, double mu) {
+strut_status bench_crawler_scene(strut_setup *setup, double f, double a, double mu) {
   static const double drawn[5][2] = {{0, 0},
                                      {0.0965109, 0.0238714},
                                      {0.0526668, 0.0283691},
                                      {0.0602933, 0},
                                      {0.0434758, 0.0106875}};
-  strut_status status = allocate(scene, 5, 9);
+  strut_status status = allocate(setup, 5, 9);
   if (status != STRUT_OK) return status;
-  for (int i = 0; i < 5; i++) place(&scene->nodes[i], drawn[i][0], drawn[i][1]);
-  fill_members(scene->members);
-  scene->gravity[1] = -9.81;
-  scene->ground.present = true;
-  scene->contacts = strut_arena_allocate(&scene->arena, 5, sizeof *scene->contacts);
-  scene->signals = strut_arena_allocate(&scene->arena, 1, sizeof *scene->signals);
-  scene->actuators = strut_arena_allocate(&scene->arena, 1, sizeof *scene->actuators);
-  if (!scene->contacts || !scene->signals || !scene->actuators) {
-    strut_scene_free(scene);
+  for (int i = 0; i < 5; i++) place(&setup->scene.nodes[i], drawn[i][0], drawn[i][1]);
+  fill_members(setup->scene.members);
+  setup->scene.gravity[1] = -9.81;
+  setup->scene.ground.present = true;
+  setup->scene.contacts =
+      strut_arena_allocate(&setup->scene.arena, 5, sizeof *setup->scene.contacts);
+  setup->scene.signals = strut_arena_allocate(&setup->scene.arena, 1, sizeof *setup->scene.signals);
+  setup->scene.actuators =
+      strut_arena_allocate(&setup->scene.arena, 1, sizeof *setup->scene.actuators);
+  if (!setup->scene.contacts || !setup->scene.signals || !setup->scene.actuators) {
+    strut_setup_free(setup);
     return STRUT_NO_MEMORY;
   }
-  scene->contact_count = 5, scene->signal_count = scene->actuator_count = 1;
+  setup->scene.contact_count = 5, setup->scene.signal_count = setup->scene.actuator_count = 1;
   for (int i = 0; i < 5; i++) {
-    scene->contacts[i] = (strut_contact){.node = i, .stiffness = 1e5, .damping = 100};
-    scene->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, mu, mu, 1e-4, 0};
+    setup->scene.contacts[i] = (strut_contact){.node = i, .stiffness = 1e5, .damping = 100};
+    setup->scene.contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, mu, mu, 1e-4, 0};
   }
-  scene->signals[0] = strut_signal_default(STRUT_SINE);
-  scene->signals[0].amplitude = a, scene->signals[0].frequency = f;
-  scene->actuators[0] = (strut_actuator){.name = "drive", .member = 7, .signal = 0};
-  scene->experiment.step = 1e-4, scene->experiment.duration = 1;
+  setup->scene.signals[0] = strut_signal_default(STRUT_SINE);
+  setup->scene.signals[0].amplitude = a, setup->scene.signals[0].frequency = f;
+  setup->scene.actuators[0] = (strut_actuator){.name = "drive", .member = 7, .signal = 0};
+  setup->experiment.step = 1e-4, setup->experiment.duration = 1;
   return STRUT_OK;
 }
 
@@ -93,16 +96,17 @@ static strut_member link(strut_member_kind kind, size_t from, size_t to) {
 
 static size_t frames_of(size_t members) { return members < PER_FRAME ? 1 : members / PER_FRAME; }
 
-strut_status bench_chain_scene(strut_scene *scene, size_t members, strut_mass_model mass) {
+strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_model mass) {
   size_t frames = frames_of(members);
-  strut_status status = allocate(scene, 2 * (frames + 1), PER_FRAME * frames);
+  strut_status status = allocate(setup, 2 * (frames + 1), PER_FRAME * frames);
   if (status != STRUT_OK) return status;
   for (size_t i = 0; i <= frames; i++) {
-    place(&scene->nodes[2 * i], SIDE * (double)i, 0);
-    place(&scene->nodes[2 * i + 1], SIDE * (double)i, SIDE);
+    place(&setup->scene.nodes[2 * i], SIDE * (double)i, 0);
+    place(&setup->scene.nodes[2 * i + 1], SIDE * (double)i, SIDE);
   }
-  for (int i = 0; i < 2; i++) scene->nodes[i].fixed[0] = scene->nodes[i].fixed[1] = true;
-  strut_member *next = scene->members;
+  for (int i = 0; i < 2; i++)
+    setup->scene.nodes[i].fixed[0] = setup->scene.nodes[i].fixed[1] = true;
+  strut_member *next = setup->scene.members;
   for (size_t low = 0; low < 2 * frames; low += 2) {
     *next++ = link(STRUT_BAR, low, low + 3);
     *next++ = link(STRUT_BAR, low + 1, low + 2);
@@ -110,8 +114,8 @@ strut_status bench_chain_scene(strut_scene *scene, size_t members, strut_mass_mo
     *next++ = link(STRUT_CABLE, low + 1, low + 3);
     *next++ = link(STRUT_CABLE, low + 2, low + 3);
   }
-  scene->mass_model = mass;
-  scene->experiment.step = 1e-4, scene->experiment.duration = 1e-3;
+  setup->scene.mass_model = mass;
+  setup->experiment.step = 1e-4, setup->experiment.duration = 1e-3;
   return STRUT_OK;
 }
 

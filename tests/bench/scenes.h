@@ -5,20 +5,20 @@
 
 #include <stdio.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 /**
  * The crawler of Table 1 at state I as drawn, drive f [Hz], a [m], friction mu, every node may touch
  * the ground, step 1e-4 s. STRUT_OK or STRUT_NO_MEMORY; free with strut_scene_free.
  */
-strut_status bench_crawler_scene(strut_scene *scene, double f, double a, double mu);
+strut_status bench_crawler_scene(strut_setup *setup, double f, double a, double mu);
 
 /**
  * A chain of `members` / 5 X-frames (at least one), each two crossed bars and three cables and two
  * nodes more than the one before; the first two nodes are fixed. The cables are shorter than drawn,
  * so it vibrates. Free with strut_scene_free.
  */
-strut_status bench_chain_scene(strut_scene *scene, size_t members, strut_mass_model mass);
+strut_status bench_chain_scene(strut_setup *setup, size_t members, strut_mass_model mass);
 
 /** The same chain as a scene file. */
 void bench_chain_write(FILE *file, size_t members, strut_mass_model mass);

@@ -12,7 +12,7 @@
 
 enum { STEPS = 4000, MOST_REPEATS = 1001 };
 
-typedef void (*change)(strut_scene *scene);
+typedef void (*change)(strut_setup *setup);
 
 /* One side of a row: the crawler after these changes (NULL: none), by this method. */
 typedef struct side {
@@ -26,33 +26,35 @@ typedef struct row {
   side with, without;
 } row;
 
-static void no_damping(strut_scene *s) {
-  for (size_t i = 0; i < s->member_count; i++) s->members[i].damping = 0.0;
+static void no_damping(strut_setup *s) {
+  for (size_t i = 0; i < s->scene.member_count; i++) s->scene.members[i].damping = 0.0;
 }
-static void cables(strut_scene *s) {
-  for (size_t i = 3; i < s->member_count; i++) s->members[i].kind = STRUT_CABLE;
+static void cables(strut_setup *s) {
+  for (size_t i = 3; i < s->scene.member_count; i++) s->scene.members[i].kind = STRUT_CABLE;
 }
-static void no_drive(strut_scene *s) { s->actuator_count = 0; }
-static void no_ground(strut_scene *s) { s->contact_count = 0, s->ground.present = false; }
-static void no_friction(strut_scene *s) {
-  for (size_t i = 0; i < s->contact_count; i++)
-    s->contacts[i].friction = (strut_friction){.law = STRUT_FRICTION_NONE};
+static void no_drive(strut_setup *s) { s->scene.actuator_count = 0; }
+static void no_ground(strut_setup *s) {
+  s->scene.contact_count = 0, s->scene.ground.present = false;
 }
-static void smooth(strut_scene *s) {
-  for (size_t i = 0; i < s->contact_count; i++)
-    s->contacts[i].friction = (strut_friction){STRUT_FRICTION_SMOOTH, 0.1, 0.1, 0, 1e-4};
+static void no_friction(strut_setup *s) {
+  for (size_t i = 0; i < s->scene.contact_count; i++)
+    s->scene.contacts[i].friction = (strut_friction){.law = STRUT_FRICTION_NONE};
 }
-static void exact(strut_scene *s) {
-  for (size_t i = 0; i < s->contact_count; i++)
-    s->contacts[i].friction.law = STRUT_FRICTION_COULOMB;
+static void smooth(strut_setup *s) {
+  for (size_t i = 0; i < s->scene.contact_count; i++)
+    s->scene.contacts[i].friction = (strut_friction){STRUT_FRICTION_SMOOTH, 0.1, 0.1, 0, 1e-4};
 }
-static void hunt_crossley(strut_scene *s) {
-  s->ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
-  for (size_t i = 0; i < s->contact_count; i++) s->contacts[i].dissipation = 5.0;
+static void exact(strut_setup *s) {
+  for (size_t i = 0; i < s->scene.contact_count; i++)
+    s->scene.contacts[i].friction.law = STRUT_FRICTION_COULOMB;
 }
-static void slope(strut_scene *s) { s->ground.slope = 1e-300; }
-static void lumped(strut_scene *s) { s->mass_model = STRUT_MASS_LUMPED; }
-static void rigid(strut_scene *s) { s->bar_model = STRUT_BARS_RIGID; }
+static void hunt_crossley(strut_setup *s) {
+  s->scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
+  for (size_t i = 0; i < s->scene.contact_count; i++) s->scene.contacts[i].dissipation = 5.0;
+}
+static void slope(strut_setup *s) { s->scene.ground.slope = 1e-300; }
+static void lumped(strut_setup *s) { s->scene.mass_model = STRUT_MASS_LUMPED; }
+static void rigid(strut_setup *s) { s->scene.bar_model = STRUT_BARS_RIGID; }
 
 static const row rows[] = {
     {"member dampers", {"rk4", {NULL}, false}, {"rk4", {no_damping}, false}},
@@ -97,9 +99,14 @@ static double run(const strut_model *model, const side *it) {
   const double dt = 5e-5;
   strut_state *state = NULL;
   double time = (double)NAN;
-  if (strut_integrator_check(model, NULL) || strut_state_create(model, &state, NULL)) return time;
+  strut_experiment experiment = strut_experiment_default();
+  experiment.integrator = it->method;
+  experiment.step = dt;
+  const strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
+  if (strut_integrator_check(model, &experiment, NULL) || strut_state_create(model, &state, NULL))
+    return time;
   const strut_integrator *method = strut_integrator_find(it->method);
-  void *work = method->create(model, state);
+  void *work = method->create(model, state, &settings);
   if (work) {
     state->ledger = !it->without_ledger;
     if (method->restart) method->restart(model, state, work, dt);
@@ -112,19 +119,17 @@ static double run(const strut_model *model, const side *it) {
 }
 
 /* NULL where there is no such model. */
-static strut_model *make(const side *it, strut_scene *scene) {
+static strut_model *make(const side *it, strut_setup *setup) {
   strut_model *model = NULL;
-  if (bench_crawler_scene(scene, 10.0, 1e-4, 0.1)) return NULL;
-  scene->experiment.integrator = it->method;
-  scene->experiment.step = 5e-5;
+  if (bench_crawler_scene(setup, 10.0, 1e-4, 0.1)) return NULL;
   for (int i = 0; i < 2; i++)
-    if (it->changes[i]) it->changes[i](scene);
-  return strut_model_compile(scene, &model, NULL) ? NULL : model;
+    if (it->changes[i]) it->changes[i](setup);
+  return strut_model_compile(&setup->scene, &model, NULL) ? NULL : model;
 }
 
 static void time_row(const row *it, int repeats) {
   static double times[2][MOST_REPEATS];
-  strut_scene scenes[2] = {0};
+  strut_setup scenes[2] = {0};
   const side *sides[2] = {&it->with, &it->without};
   strut_model *models[2];
   for (int k = 0; k < 2; k++) models[k] = make(sides[k], &scenes[k]);
@@ -133,7 +138,7 @@ static void time_row(const row *it, int repeats) {
   for (int k = 0; k < 2; k++) {
     qsort(times[k], (size_t)repeats, sizeof times[k][0], ascending);
     strut_model_free(models[k]);
-    strut_scene_free(&scenes[k]);
+    strut_setup_free(&scenes[k]);
   }
   double with = times[0][repeats / 2], without = times[1][repeats / 2];
   printf("  %-32s %10.1f %10.1f %10.2f %10.2f\n", it->term, with, without, with / without,

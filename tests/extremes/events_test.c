@@ -26,20 +26,20 @@ static double hurry(double zeta) { return zeta > 1 ? zeta + sqrt(zeta * zeta - 1
  */
 static double bounce(const char *method, double zeta, double z) {
   const double k = 2500, mass = 0.04, omega = sqrt(k / mass) * hurry(zeta), speed = 3;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
-  strut_scene_init(&scene);
-  build_mass(&scene, 0, 1.37 * speed * 0.01 / omega, mass);
-  scene.nodes[0].velocity[1] = -speed;
-  build_contact(&scene, 0, k, 2 * zeta * sqrt(k * mass));
-  scene.experiment.tolerance = 1e-11;
-  motion_begin_by(&m, &scene, method, z / omega);
+  strut_setup_init(&setup);
+  build_mass(&setup.scene, 0, 1.37 * speed * 0.01 / omega, mass);
+  setup.scene.nodes[0].velocity[1] = -speed;
+  build_contact(&setup.scene, 0, k, 2 * zeta * sqrt(k * mass));
+  setup.experiment.tolerance = 1e-11;
+  motion_begin_by(&m, &setup, method, z / omega);
   double touching = (zeta < 1 ? PI : PI + 4 * zeta) * hurry(zeta);
   motion_steps(&m, (int64_t)ceil((touching + 0.1) / z) + 2);
   assert_true(m.state->q[1] > 0);
   double e = m.state->v[1] / speed;
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return e;
 }
 
@@ -72,17 +72,17 @@ static void test_order_through_a_bounce(void **unused) {
 }
 
 /* One block of 1 kg on level ground that carries it already, on a spring to a wall. */
-static void spring_block(strut_scene *scene, double stiffness, double mu_static, double mu_kinetic,
+static void spring_block(strut_setup *setup, double stiffness, double mu_static, double mu_kinetic,
                          double stretch) {
   const double g = 9.81, ground = 1e5;
-  strut_scene_init(scene);
-  scene->gravity[1] = -g;
-  int32_t block = build_mass(scene, 0, -g / ground, 1);
-  int32_t wall = build_support(scene, -1, -g / ground);
-  build_member(scene, STRUT_SPRING, block, wall, stiffness, 0, 0);
-  scene->nodes[0].start[0] = stretch;
-  build_rough_contact(scene, 0, ground, 0, mu_static, mu_kinetic, 1e-4);
-  scene->contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  strut_setup_init(setup);
+  setup->scene.gravity[1] = -g;
+  int32_t block = build_mass(&setup->scene, 0, -g / ground, 1);
+  int32_t wall = build_support(&setup->scene, -1, -g / ground);
+  build_member(&setup->scene, STRUT_SPRING, block, wall, stiffness, 0, 0);
+  setup->scene.nodes[0].start[0] = stretch;
+  build_rough_contact(&setup->scene, 0, ground, 0, mu_static, mu_kinetic, 1e-4);
+  setup->scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
 }
 
 /* Time within the latest step at which the velocity fell through 0, by Newton on its expansion. */
@@ -118,17 +118,17 @@ static void test_belt_stick_slip_period(void **unused) {
   const double gap = (most - kinetic) / k;
   const double period = 2 * gap / belt + (PI + 2 * atan(belt / (omega * gap))) / omega;
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
-    spring_block(&scene, k, most / weight, kinetic / weight, 0);
-    scene.ground.belt_speed = scene.nodes[0].velocity[0] = belt;
-    scene.experiment.tolerance = 1e-10;
-    motion_begin_by(&m, &scene, LOCATED[i], 3e-4);
+    spring_block(&setup, k, most / weight, kinetic / weight, 0);
+    setup.scene.ground.belt_speed = setup.scene.nodes[0].velocity[0] = belt;
+    setup.experiment.tolerance = 1e-10;
+    motion_begin_by(&m, &setup, LOCATED[i], 3e-4);
     double found = turning_period(&m, k, kinetic, 6);
     print_message("%s: stick-slip period %.10f s, exactly %.10f s\n", LOCATED[i], found, period);
     assert_relative(found, period, 1e-6);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -137,18 +137,18 @@ static void test_no_stick_slip_with_equal_coefficients(void **unused) {
   (void)unused;
   const double k = 100, belt = 0.1, weight = 9.81, kinetic = 1, omega = 10;
   for (int i = 0; i < LOCATED_COUNT; i++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
-    spring_block(&scene, k, kinetic / weight, kinetic / weight, 0);
-    scene.ground.belt_speed = scene.nodes[0].velocity[0] = belt;
-    scene.experiment.tolerance = 1e-10;
-    motion_begin_by(&m, &scene, LOCATED[i], 3e-4);
+    spring_block(&setup, k, kinetic / weight, kinetic / weight, 0);
+    setup.scene.ground.belt_speed = setup.scene.nodes[0].velocity[0] = belt;
+    setup.experiment.tolerance = 1e-10;
+    motion_begin_by(&m, &setup, LOCATED[i], 3e-4);
     double found = turning_period(&m, k, kinetic, 30);
     assert_relative(found, 2 * PI / omega, 1e-6);
     double way = hypot(m.state->q[0] - kinetic / k, m.state->v[0] / omega);
     assert_relative(way, belt / omega, 1e-6);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -163,12 +163,12 @@ static void test_coulomb_oscillator(void **unused) {
   const double k = 100, omega = 10, weight = 9.81, start = 0.1;
   static const double mus[] = {0.05, 0.0813, 0.2};
   for (int i = 0; i < LOCATED_COUNT * 3; i++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     double mu = mus[i / LOCATED_COUNT], shift = mu * weight / k, step = 2e-4;
-    spring_block(&scene, k, mu, mu, start);
-    scene.experiment.tolerance = 1e-12;
-    motion_begin_by(&m, &scene, LOCATED[i % LOCATED_COUNT], step);
+    spring_block(&setup, k, mu, mu, start);
+    setup.experiment.tolerance = 1e-12;
+    motion_begin_by(&m, &setup, LOCATED[i % LOCATED_COUNT], step);
     int halves = (int)ceil((start - shift) / (2 * shift));
     double last = start + shift, worst = 0;
     for (int half = 0; half < halves; half++) {
@@ -188,7 +188,7 @@ static void test_coulomb_oscillator(void **unused) {
     print_message("%s, mu %g: drop of a half-cycle off by %.1e m, stopping place by %.1e m\n",
                   LOCATED[i % LOCATED_COUNT], mu, worst, fabs(stood - rest));
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 

@@ -32,12 +32,12 @@ static long resident(void) {
 }
 
 /* A grid of about n nodes that falls at 1 m/s, and drifts where it may slide. */
-static void falling(strut_scene *scene, int32_t n, strut_mass_model mass, double mu) {
-  strut_scene_init(scene);
-  structure_grid(scene, n / ROWS, ROWS, mass, HEIGHT, 0.2, mu);
-  for (size_t i = 0; i < scene->node_count; i++) {
-    scene->nodes[i].velocity[0] = 0.3;
-    scene->nodes[i].velocity[1] = -FALL;
+static void falling(strut_setup *setup, int32_t n, strut_mass_model mass, double mu) {
+  strut_setup_init(setup);
+  structure_grid(&setup->scene, n / ROWS, ROWS, mass, HEIGHT, 0.2, mu);
+  for (size_t i = 0; i < setup->scene.node_count; i++) {
+    setup->scene.nodes[i].velocity[0] = 0.3;
+    setup->scene.nodes[i].velocity[1] = -FALL;
   }
 }
 
@@ -69,8 +69,8 @@ static double residual(const motion *m, const strut_energies *begin) {
   return e.residual / e.moved;
 }
 
-static void begin(motion *m, const strut_scene *scene, double step, strut_energies *stored) {
-  motion_begin(m, scene, step);
+static void begin(motion *m, const strut_setup *setup, double step, strut_energies *stored) {
+  motion_begin(m, &setup->scene, step);
   m->state->ledger = true;
   strut_energy_reset_load_work(m->model, m->state);
   *stored = strut_energy_evaluate(m->model, m->state, 0);
@@ -97,16 +97,16 @@ static void march(motion *m, int64_t count) {
 }
 
 static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   strut_energies stored;
   double size, start = seconds();
-  falling(&scene, n, mass, mu);
-  begin(&m, &scene, mu > 0 ? ROUGH_STEP : STEP, &stored);
+  falling(&setup, n, mass, mu);
+  begin(&m, &setup, mu > 0 ? ROUGH_STEP : STEP, &stored);
   double before = momentum(&m, &size);
   print_message("%s mass, friction %g, %d nodes, %zu members, %lld steps; made in %.2f s\n",
-                mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", mu, (int)n, scene.member_count,
-                (long long)count, seconds() - start);
+                mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", mu, (int)n,
+                setup.scene.member_count, (long long)count, seconds() - start);
   march(&m, count);
   double after = momentum(&m, &size), left = residual(&m, &stored), speed = fastest(&m);
   print_message("  residual %.1e of the energy moved, fastest %.2f m/s, momentum changed by %.1e\n",
@@ -119,7 +119,7 @@ static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
   else
     assert_true(fabs(after) < 0.9 * before);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_many_nodes(void **unused) {
@@ -139,20 +139,21 @@ static void test_many_steps(void **unused) {
 static void test_copies(void **unused) {
   (void)unused;
   enum { COPIES = 50, EACH = 100 };
-  strut_scene one, all;
+  strut_setup one, all;
   motion a, b;
-  strut_scene_init(&all);
+  strut_setup_init(&all);
   for (int copy = 0; copy < COPIES; copy++) {
-    structure_grid(&all, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
-    for (size_t j = all.member_count / (size_t)(copy + 1) * (size_t)copy; j < all.member_count; j++)
-      for (int end = 0; end < 2; end++) all.members[j].node[end] += copy * EACH;
+    structure_grid(&all.scene, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
+    for (size_t j = all.scene.member_count / (size_t)(copy + 1) * (size_t)copy;
+         j < all.scene.member_count; j++)
+      for (int end = 0; end < 2; end++) all.scene.members[j].node[end] += copy * EACH;
     for (int32_t i = 0; i < EACH; i++)
-      all.contacts[copy * EACH + i].node = all.contacts[i].node + copy * EACH;
+      all.scene.contacts[copy * EACH + i].node = all.scene.contacts[i].node + copy * EACH;
   }
-  strut_scene_init(&one);
-  structure_grid(&one, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
-  motion_begin(&a, &one, STEP);
-  motion_begin(&b, &all, STEP);
+  strut_setup_init(&one);
+  structure_grid(&one.scene, EACH / ROWS, ROWS, STRUT_MASS_LUMPED, HEIGHT, 0.2, 0.3);
+  motion_begin(&a, &one.scene, STEP);
+  motion_begin(&b, &all.scene, STEP);
   motion_steps(&a, 400), motion_steps(&b, 400);
   for (int32_t copy = 0; copy < COPIES; copy++)
     for (int32_t i = 0; i < 2 * EACH; i++) {
@@ -160,16 +161,17 @@ static void test_copies(void **unused) {
       assert_same_bits(b.state->v[2 * copy * EACH + i], a.state->v[i]);
     }
   motion_end(&a), motion_end(&b);
-  strut_scene_free(&one), strut_scene_free(&all);
+  strut_setup_free(&one), strut_setup_free(&all);
 }
 
 /* A step above the bound is refused, and the one told in its place is below. */
-static void refuse_above(strut_scene *scene, const strut_model *model, double limit) {
+static void refuse_above(strut_setup *setup, const strut_model *model, double limit) {
   strut_run_options options = {0};
   strut_summary summary;
   strut_error error = {0};
-  scene->experiment.step = 1.001 * limit;
-  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_STEP_TOO_LARGE);
+  setup->experiment.step = 1.001 * limit;
+  assert_int_equal(strut_simulate(model, &setup->experiment, &options, &summary, &error),
+                   STRUT_STEP_TOO_LARGE);
   strut_summary_free(&summary);
   const char *told = strstr(error.message, "solver.step <= ");
   assert_non_null(strstr(error.message, "a bound"));
@@ -179,23 +181,23 @@ static void refuse_above(strut_scene *scene, const strut_model *model, double li
 
 /* Compiled, its step bounded, and a few steps taken by the run itself. */
 static void take_largest(strut_mass_model mass) {
-  strut_scene scene;
+  strut_setup setup;
   strut_run_options options = {0};
   strut_summary summary;
   strut_step_limit limit;
-  falling(&scene, largest_nodes, mass, 0.3);
-  motion_experiment(&scene, STEP, 10 * STEP);
+  falling(&setup, largest_nodes, mass, 0.3);
+  motion_experiment(&setup, STEP, 10 * STEP);
   double start = seconds();
-  strut_model *model = motion_compile(&scene);
+  strut_model *model = motion_compile(&setup.scene);
   double compiled = seconds() - start;
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
   double bounded = seconds() - start - compiled;
-  assert_int_equal(strut_simulate(model, &options, &summary, NULL), STRUT_OK);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, NULL), STRUT_OK);
   print_message(
       "%s mass, %d nodes, %zu members: compiled in %.2f s, largest step in %.2f s (%s "
       "%.4g s), 10 steps in %.2f s, peak memory %.0f MB\n",
-      mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", (int)largest_nodes, scene.member_count,
-      compiled, bounded, limit.bound ? "at least" : "about", limit.limit,
+      mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", (int)largest_nodes,
+      setup.scene.member_count, compiled, bounded, limit.bound ? "at least" : "about", limit.limit,
       seconds() - start - compiled - bounded, (double)resident() * 1024e-6);
   assert_true(limit.bound);
   /* 1.68 ms and 1.11 ms, which smaller grids of the kind are found to have */
@@ -203,9 +205,9 @@ static void take_largest(strut_mass_model mass) {
                 mass == STRUT_MASS_LUMPED ? 1.70e-3 : 1.12e-3);
   assert_true(fabs(summary.energy.residual) < 1e-3 * summary.energy.moved);
   strut_summary_free(&summary);
-  refuse_above(&scene, model, limit.limit);
+  refuse_above(&setup, model, limit.limit);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_the_largest(void **unused) {

@@ -16,12 +16,12 @@
 static int64_t steps = 1000000;
 static const double K = 300, MASS = 0.7;
 
-static void oscillator(strut_scene *scene) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0, MASS);
-  build_member(scene, STRUT_SPRING, 0, 1, K, 0, 0);
-  scene->nodes[1].start[0] = 1.25, scene->nodes[1].velocity[0] = 1.5;
+static void oscillator(strut_setup *setup) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 1, 0, MASS);
+  build_member(&setup->scene, STRUT_SPRING, 0, 1, K, 0, 0);
+  setup->scene.nodes[1].start[0] = 1.25, setup->scene.nodes[1].velocity[0] = 1.5;
 }
 
 static double energy(const motion *m) {
@@ -40,11 +40,11 @@ static void test_energy_of_rk4(void **unused) {
   (void)unused;
   static const double zs[] = {0.01, 0.1};
   for (int k = 0; k < 2; k++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     double z = zs[k];
-    oscillator(&scene);
-    motion_begin(&m, &scene, z / sqrt(K / MASS));
+    oscillator(&setup);
+    motion_begin(&m, &setup.scene, z / sqrt(K / MASS));
     motion_steps(&m, 10);
     double before = energy(&m);
     uint64_t calls = allocations_so_far();
@@ -58,18 +58,18 @@ static void test_energy_of_rk4(void **unused) {
                   ratio, expected);
     assert_relative(ratio, expected, 1e-9);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* Verlet's energy stays within z^2 / 4 of what it was, for ever. */
 static void test_energy_of_verlet(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double z = 0.1, low = HUGE_VAL, high = 0;
-  oscillator(&scene);
-  motion_begin_by(&m, &scene, "verlet-events", z / sqrt(K / MASS));
+  oscillator(&setup);
+  motion_begin_by(&m, &setup, "verlet-events", z / sqrt(K / MASS));
   double before = energy(&m);
   for (int part = 0; part < 2000; part++) {
     motion_steps(&m, part % 20 ? 1 : steps / 100 - 19); /* in every phase of a period */
@@ -82,18 +82,18 @@ static void test_energy_of_verlet(void **unused) {
   assert_within(high, 1 - z * z / 4, 1 + z * z / 4);
   assert_true(high - low > z * z / 8); /* so that the bound means something */
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* The drive tells the time: its phase after so many steps of 1e-4 s, whose sum would drift. */
 static void test_the_clock(void **unused) {
   (void)unused;
   const double frequency = 12.70003, amplitude = 0.01, dt = 1e-4, pi = 3.14159265358979323846;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
-  oscillator(&scene);
-  build_actuator(&scene, 0, build_sine(&scene, amplitude, frequency));
-  motion_begin(&m, &scene, dt);
+  oscillator(&setup);
+  build_actuator(&setup.scene, 0, build_sine(&setup.scene, amplitude, frequency));
+  motion_begin(&m, &setup.scene, dt);
   motion_steps(&m, steps);
   long double turns = (long double)frequency * ((long double)steps / 10000);
   double angle = (double)(2 * acosl(-1) * (turns - floorl(turns)));
@@ -104,7 +104,7 @@ static void test_the_clock(void **unused) {
   print_message("after %.0f s the clock is off by %.1e s\n", (double)steps * dt, late);
   assert_true(fabs(late) < 1e-9);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(int count, char **words) {

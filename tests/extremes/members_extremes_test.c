@@ -16,12 +16,12 @@ static const char *const METHODS[] = {"rk4", "rk4-events", "verlet-events", "ada
 enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 
 /* A mass that swings through a support, missing it by `miss`. */
-static void through(strut_scene *scene, double rest, double miss) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0, MASS);
-  build_sized(scene, STRUT_SPRING, 0, 1, K, 0, 0, rest);
-  scene->nodes[1].velocity[1] = miss * sqrt(K / MASS);
+static void through(strut_setup *setup, double rest, double miss) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 1, 0, MASS);
+  build_sized(&setup->scene, STRUT_SPRING, 0, 1, K, 0, 0, rest);
+  setup->scene.nodes[1].velocity[1] = miss * sqrt(K / MASS);
 }
 
 /* Without a rest length the orbit is an ellipse: cos w t, miss sin w t. */
@@ -30,13 +30,13 @@ static void test_orbits_of_zero_rest_length_close(void **unused) {
   static const double misses[] = {0, 1e-300, 1e-12, 1e-6, 0.5};
   const double omega = sqrt(K / MASS), step = 2 * PI / omega / 2000;
   for (int k = 0; k < METHOD_COUNT * 5; k++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     const char *method = METHODS[k % METHOD_COUNT];
     double miss = misses[k / METHOD_COUNT], late = method[0] == 'v' ? 5e-7 : 1e-11;
-    through(&scene, 0, miss);
-    scene.experiment.tolerance = 1e-13;
-    motion_begin_by(&m, &scene, method, step);
+    through(&setup, 0, miss);
+    setup.experiment.tolerance = 1e-13;
+    motion_begin_by(&m, &setup, method, step);
     motion_steps(&m, 500); /* a quarter: nearest to the support */
     assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
     assert_near(m.state->q[2], 0, 2 * PI * late + 1e-15);
@@ -45,7 +45,7 @@ static void test_orbits_of_zero_rest_length_close(void **unused) {
     assert_near(m.state->q[2], 1, 20 * PI * late);
     assert_near(m.state->q[3], 0, miss * 20 * PI * late + 1e-300);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -58,17 +58,17 @@ static void test_bars_through_no_length_keep_their_balance(void **unused) {
   static const double misses[] = {0, 1e-300, 1e-12, 1e-9};
   const double rest = 0.4, speed = 20;
   for (int k = 0; k < METHOD_COUNT * 4; k++) {
-    strut_scene scene;
+    strut_setup setup;
     double step = 1e-4, worst = 0;
     for (int half = 0; half < 4; half++, step /= 2) {
-      through(&scene, rest, misses[k / METHOD_COUNT]);
-      motion_experiment(&scene, step, 1.05);
-      scene.experiment.integrator = METHODS[k % METHOD_COUNT];
-      strut_model *model = motion_compile(&scene);
+      through(&setup, rest, misses[k / METHOD_COUNT]);
+      motion_experiment(&setup, step, 1.05);
+      setup.experiment.integrator = METHODS[k % METHOD_COUNT];
+      strut_model *model = motion_compile(&setup.scene);
       strut_run_options options = {0};
       strut_summary s;
       strut_error error = {0};
-      strut_status status = strut_simulate(model, &options, &s, &error);
+      strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) { /* a named stop */
         assert_int_equal(status, STRUT_DIVERGED);
         assert_non_null(strstr(error.message, "n2"));
@@ -82,7 +82,7 @@ static void test_bars_through_no_length_keep_their_balance(void **unused) {
       }
       strut_summary_free(&s);
       strut_model_free(model);
-      strut_scene_free(&scene);
+      strut_setup_free(&setup);
     }
     print_message("%s, missed by %g: energy off by %.2g of itself times the step\n",
                   METHODS[k % METHOD_COUNT], misses[k / METHOD_COUNT], worst);
@@ -90,7 +90,7 @@ static void test_bars_through_no_length_keep_their_balance(void **unused) {
 }
 
 /* A frame of springs, so that nothing is discontinuous. */
-static void springs(strut_scene *scene, double damping) {
+static void springs(strut_setup *setup, double damping) {
   const x_frame frame = {.side = 0.2,
                          .cable_stiffness = 800,
                          .bar_stiffness = 2000,
@@ -99,9 +99,10 @@ static void springs(strut_scene *scene, double damping) {
                          .bar_mass = 0.1,
                          .cable_damping = damping,
                          .bar_damping = damping};
-  strut_scene_init(scene);
-  structure_x_frame(scene, &frame);
-  for (size_t j = 0; j < scene->member_count; j++) scene->members[j].kind = STRUT_SPRING;
+  strut_setup_init(setup);
+  structure_x_frame(&setup->scene, &frame);
+  for (size_t j = 0; j < setup->scene.member_count; j++)
+    setup->scene.members[j].kind = STRUT_SPRING;
 }
 
 /* Twice the area, with its sign: negative once the frame is inside out. */
@@ -111,23 +112,24 @@ static double area(const double *q) {
 
 /* The least area on the way, over that of the square, and what the balance leaves open [J]. */
 static double shaken(uint64_t seed, double step, int steps, double *residual) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   uint64_t r = seed;
   double least = 1;
-  springs(&scene, 0.3);
-  for (int i = 0; i < 8; i++) scene.nodes[i / 2].velocity[i % 2] = random_between(&r, -120, 120);
-  motion_experiment(&scene, step, steps * step);
-  motion_begin(&m, &scene, step);
+  springs(&setup, 0.3);
+  for (int i = 0; i < 8; i++)
+    setup.scene.nodes[i / 2].velocity[i % 2] = random_between(&r, -120, 120);
+  motion_experiment(&setup, step, steps * step);
+  motion_begin(&m, &setup.scene, step);
   for (int n = 0; n < steps; n++) {
     motion_steps(&m, 1);
     least = fmin(least, area(m.state->q) / 0.08);
   }
   motion_end(&m);
-  strut_summary s = motion_simulate(&scene);
+  strut_summary s = motion_simulate(&setup);
   *residual = fabs(s.energy.residual) / s.energy.moved;
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return least;
 }
 
@@ -161,21 +163,22 @@ static void test_frames_turned_inside_out_keep_their_balance(void **unused) {
 static void test_a_throw_of_a_million_sizes(void **unused) {
   (void)unused;
   const double g = 9.81, way = 2e5, speed = sqrt(2 * g * way), seconds = 2 * speed / g;
-  strut_scene scene;
-  springs(&scene, 0.3);
-  scene.gravity[1] = -g;
-  structure_throw(&scene, 3, speed, 40);
+  strut_setup setup;
+  springs(&setup, 0.3);
+  setup.scene.gravity[1] = -g;
+  structure_throw(&setup.scene, 3, speed, 40);
   double step = seconds / 1e6;
-  motion_experiment(&scene, step, seconds);
-  scene.nodes[0].velocity[0] += 5; /* and shaken */
-  strut_summary s = motion_simulate(&scene);
-  strut_model *model = motion_compile(&scene);
+  motion_experiment(&setup, step, seconds);
+  setup.scene.nodes[0].velocity[0] += 5; /* and shaken */
+  strut_summary s = motion_simulate(&setup);
+  strut_model *model = motion_compile(&setup.scene);
   double mass = 0, x = 0, y = 0, start = 0, drift = 0, rise = 0;
   for (int32_t i = 0; i < 4; i++) {
     double weight = model->weight[i];
     mass += weight, x += weight * s.positions[2 * i], y += weight * s.positions[2 * i + 1];
-    start += weight * scene.nodes[i].start[1];
-    drift += weight * scene.nodes[i].velocity[0], rise += weight * scene.nodes[i].velocity[1];
+    start += weight * setup.scene.nodes[i].start[1];
+    drift += weight * setup.scene.nodes[i].velocity[0],
+        rise += weight * setup.scene.nodes[i].velocity[1];
   }
   double expected = start / mass + seconds * (rise / mass - 0.5 * g * seconds);
   print_message(
@@ -188,7 +191,7 @@ static void test_a_throw_of_a_million_sizes(void **unused) {
   assert_true(fabs(s.energy.residual) <= 1e-10 * s.energy.initial);
   strut_model_free(model);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

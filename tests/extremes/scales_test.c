@@ -13,7 +13,7 @@
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-static void shaken_frame(strut_scene *scene, double shift) {
+static void shaken_frame(strut_setup *setup, double shift) {
   const x_frame frame = {.side = 1,
                          .cable_stiffness = 800,
                          .bar_stiffness = 2000,
@@ -22,13 +22,14 @@ static void shaken_frame(strut_scene *scene, double shift) {
                          .bar_mass = 0.1,
                          .cable_damping = 0.3,
                          .bar_damping = 0.3};
-  strut_scene_init(scene);
-  structure_x_frame(scene, &frame);
-  for (size_t j = 0; j < scene->member_count; j++) scene->members[j].kind = STRUT_SPRING;
-  structure_throw(scene, 0.5, 0.25, 2);
-  scene->nodes[0].velocity[0] += 5;
-  for (size_t i = 0; i < scene->node_count; i++)
-    scene->nodes[i].position[0] += shift, scene->nodes[i].start[0] += shift;
+  strut_setup_init(setup);
+  structure_x_frame(&setup->scene, &frame);
+  for (size_t j = 0; j < setup->scene.member_count; j++)
+    setup->scene.members[j].kind = STRUT_SPRING;
+  structure_throw(&setup->scene, 0.5, 0.25, 2);
+  setup->scene.nodes[0].velocity[0] += 5;
+  for (size_t i = 0; i < setup->scene.node_count; i++)
+    setup->scene.nodes[i].position[0] += shift, setup->scene.nodes[i].start[0] += shift;
 }
 
 /* Each step rounds a position by half of 1.2e-10 m out there. */
@@ -36,7 +37,7 @@ static void test_a_million_metres_from_the_origin(void **unused) {
   (void)unused;
   static const char *const methods[] = {"rk4", "verlet-events", "adaptive"};
   for (int k = 0; k < 3; k++) {
-    strut_scene near, far;
+    strut_setup near, far;
     motion a, b;
     double worst = 0;
     shaken_frame(&near, 0);
@@ -51,8 +52,8 @@ static void test_a_million_metres_from_the_origin(void **unused) {
     assert_true(worst <= 1e-8);
     motion_end(&a);
     motion_end(&b);
-    strut_scene_free(&near);
-    strut_scene_free(&far);
+    strut_setup_free(&near);
+    strut_setup_free(&far);
   }
 }
 
@@ -63,38 +64,38 @@ static double any(uint64_t *r) {
 
 static double either(uint64_t *r) { return random_once_in(r, 2) ? any(r) : -any(r); }
 
-static void wild_scene(strut_scene *scene, uint64_t seed) {
+static void wild_scene(strut_setup *setup, uint64_t seed) {
   uint64_t state = seed, *r = &state;
   int32_t nodes = 2 + random_below(r, 4);
-  strut_scene_init(scene);
-  scene->mass_model = random_once_in(r, 2) ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+  strut_setup_init(setup);
+  setup->scene.mass_model = random_once_in(r, 2) ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
   for (int32_t i = 0; i < nodes; i++) {
-    build_mass(scene, either(r), either(r), any(r));
+    build_mass(&setup->scene, either(r), either(r), any(r));
     for (int c = 0; c < 2; c++) {
-      scene->nodes[i].fixed[c] = random_once_in(r, 4);
-      if (random_once_in(r, 3)) scene->nodes[i].velocity[c] = either(r);
+      setup->scene.nodes[i].fixed[c] = random_once_in(r, 4);
+      if (random_once_in(r, 3)) setup->scene.nodes[i].velocity[c] = either(r);
     }
   }
   for (int32_t j = 1; j < nodes; j++)
-    build_sized(scene, (strut_member_kind)random_below(r, 3), random_below(r, j), j, any(r), any(r),
-                any(r), any(r));
-  scene->gravity[1] = -any(r);
+    build_sized(&setup->scene, (strut_member_kind)random_below(r, 3), random_below(r, j), j, any(r),
+                any(r), any(r), any(r));
+  setup->scene.gravity[1] = -any(r);
   for (int32_t i = 0; i < nodes && random_once_in(r, 2); i++) {
-    build_rough_contact(scene, i, any(r), any(r), any(r), any(r), any(r));
-    if (random_once_in(r, 2)) scene->contacts[i].friction.law = STRUT_FRICTION_COULOMB;
+    build_rough_contact(&setup->scene, i, any(r), any(r), any(r), any(r), any(r));
+    if (random_once_in(r, 2)) setup->scene.contacts[i].friction.law = STRUT_FRICTION_COULOMB;
   }
-  scene->ground.height = either(r);
-  if (random_once_in(r, 2)) scene->ground.belt_speed = either(r);
+  setup->scene.ground.height = either(r);
+  if (random_once_in(r, 2)) setup->scene.ground.belt_speed = either(r);
   const strut_integrator *method = NULL;
   size_t methods = 0;
   while (strut_integrator_at(methods)) methods++;
   do /* one that chooses its steps takes as many as such numbers need */
     method = strut_integrator_at((size_t)random_below(r, (int32_t)methods));
   while (!strcmp(method->name, "adaptive"));
-  scene->experiment.integrator = method->name;
-  scene->experiment.refine = 1;
-  scene->experiment.step = any(r);
-  scene->experiment.duration = scene->experiment.step * 50;
+  setup->experiment.integrator = method->name;
+  setup->experiment.refine = 1;
+  setup->experiment.step = any(r);
+  setup->experiment.duration = setup->experiment.step * 50;
 }
 
 typedef struct tally {
@@ -102,25 +103,25 @@ typedef struct tally {
 } tally;
 
 static void run_wild(uint64_t seed, tally *t) {
-  strut_scene scene;
+  strut_setup setup;
   strut_findings findings = {0};
   strut_model *model = NULL;
   strut_error error = {0};
-  wild_scene(&scene, seed);
-  strut_status status = strut_scene_check(&scene, STRUT_FOR_RUN, &findings);
+  wild_scene(&setup, seed);
+  strut_status status = strut_setup_check(&setup, STRUT_FOR_RUN, &findings);
   bool valid = !status && !findings.count;
   if (status && findings.count) assert_true(strlen(findings.items[0].message) > 10);
   strut_findings_free(&findings);
   t->invalid += !valid;
   if (valid) {
-    status = strut_model_compile(&scene, &model, &error);
+    status = strut_model_compile(&setup.scene, &model, &error);
     if (status) {
       t->refused++;
       assert_true(strlen(error.message) > 10);
     } else {
       strut_run_options options = {.force = seed % 2};
       strut_summary s = {0};
-      status = strut_simulate(model, &options, &s, &error);
+      status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) assert_true(strlen(error.message) > 10);
       *(!status ? &t->answered : s.steps ? &t->stopped : &t->refused) += 1;
       for (size_t i = 0; !status && i < 2 * s.node_count; i++) {
@@ -130,7 +131,7 @@ static void run_wild(uint64_t seed, tally *t) {
     }
   }
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_parameters_of_any_size(void **unused) {
@@ -149,13 +150,13 @@ static double cpu_seconds(void) {
 }
 
 /* The least of several times that a run of so many steps takes. */
-static double time_of(strut_scene *scene, const char *method, int steps) {
+static double time_of(strut_setup *setup, const char *method, int steps) {
   double least = HUGE_VAL;
-  scene->experiment.integrator = method;
-  motion_experiment(scene, 1e-3, steps * 1e-3);
+  setup->experiment.integrator = method;
+  motion_experiment(setup, 1e-3, steps * 1e-3);
   for (int k = 0; k < 7; k++) {
     double begin = cpu_seconds();
-    strut_summary s = motion_simulate(scene);
+    strut_summary s = motion_simulate(setup);
     least = fmin(least, cpu_seconds() - begin);
     strut_summary_free(&s);
   }
@@ -163,13 +164,13 @@ static double time_of(strut_scene *scene, const char *method, int steps) {
 }
 
 /* A damped row of springs without rest length about its support: it decays to zero itself. */
-static void dying(strut_scene *scene, double amplitude) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
+static void dying(strut_setup *setup, double amplitude) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
   for (int32_t i = 1; i <= 12; i++) {
-    build_mass(scene, 0, 0, 1);
-    scene->nodes[i].start[0] = amplitude * i, scene->nodes[i].start[1] = -amplitude;
-    build_sized(scene, STRUT_SPRING, i - 1, i, 100, 0.01, 0.1, 0);
+    build_mass(&setup->scene, 0, 0, 1);
+    setup->scene.nodes[i].start[0] = amplitude * i, setup->scene.nodes[i].start[1] = -amplitude;
+    build_sized(&setup->scene, STRUT_SPRING, i - 1, i, 100, 0.01, 0.1, 0);
   }
 }
 
@@ -181,11 +182,11 @@ static void test_motion_that_dies_is_not_slow(void **unused) {
   for (int k = 0; k < 3; k++) {
     double alive = 0, slowest = 0;
     for (int i = 0; i < 7; i++) {
-      strut_scene scene;
-      dying(&scene, amplitude[i]);
-      double seconds = time_of(&scene, methods[k], 4000);
+      strut_setup setup;
+      dying(&setup, amplitude[i]);
+      double seconds = time_of(&setup, methods[k], 4000);
       *(i ? &slowest : &alive) = fmax(i ? slowest : 0, seconds);
-      strut_scene_free(&scene);
+      strut_setup_free(&setup);
     }
     print_message("%s: subnormal motion takes %.2f times as long\n", methods[k], slowest / alive);
     assert_true(slowest <= 2 * alive);

@@ -19,11 +19,11 @@ static const char *body(const char *text) {
   return text;
 }
 
-static strut_status read_text(strut_scene *scene, const char *text, size_t length,
+static strut_status read_text(strut_setup *setup, const char *text, size_t length,
                               strut_purpose purpose) {
   strut_diagnostics diagnostics = {0};
   strut_status status =
-      strut_scene_read(scene, "fuzz.yaml", text, length, NULL, 0, purpose, &diagnostics);
+      strut_setup_read(setup, "fuzz.yaml", text, length, NULL, 0, purpose, &diagnostics);
   /* A refusal has a message, and a message can be shown. */
   if (status == STRUT_BAD_SCENE && !diagnostics.count) abort();
   if (status == STRUT_OK && diagnostics.count) abort();
@@ -33,16 +33,16 @@ static strut_status read_text(strut_scene *scene, const char *text, size_t lengt
 }
 
 static void check_purpose(const char *text, size_t length, strut_purpose purpose) {
-  strut_scene first, second;
+  strut_setup first, second;
   if (read_text(&first, text, length, purpose) != STRUT_OK) return;
-  char *written = strut_scene_write(&first);
+  char *written = strut_setup_write(&first);
   if (!written || read_text(&second, written, strlen(written), purpose) != STRUT_OK) abort();
-  char *again = strut_scene_write(&second);
+  char *again = strut_setup_write(&second);
   if (!again || strcmp(body(written), body(again)) != 0) abort();
   strut_release(written);
   strut_release(again);
-  strut_scene_free(&first);
-  strut_scene_free(&second);
+  strut_setup_free(&first);
+  strut_setup_free(&second);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

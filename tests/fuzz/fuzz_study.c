@@ -54,7 +54,7 @@ static void check_point(strut_study_file *file, int64_t point) {
   strut_grid_values(&file->study, point, values);
   for (size_t k = 0; k < columns; k++)
     check_value(strut_grid_column(&file->study, k, NULL), &values[k]);
-  strut_status status = strut_study_scene(file, values, &scene, &error);
+  strut_status status = strut_study_setup(file, values, &scene, &error);
   require(status == STRUT_OK || (status == STRUT_BAD_SCENE && error.message[0]));
   if (status == STRUT_OK) strut_scene_free(&scene);
   require(strut_study_try(file, values) == status);

@@ -36,13 +36,14 @@ const strut_integrator *strut_integrator_for_settling(const strut_model *model) 
   return &strut_integrator_rk4;
 }
 
-static uint64_t hash_run(const strut_model *model, strut_state *state,
-                         const strut_integrator *method, int64_t steps) {
-  void *workspace = method->create(model, state);
+static uint64_t hash_run(const strut_model *model, const strut_experiment *experiment,
+                         strut_state *state, const strut_integrator *method, int64_t steps) {
+  const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
+  void *workspace = method->create(model, state, &settings);
   size_t length = 2 * (size_t)model->node_count * sizeof(double);
   uint64_t hash = 14695981039346656037u;
   for (int64_t n = 0; workspace && n < steps; n += 100) {
-    method->advance(model, state, workspace, model->scene->experiment.step, 100);
+    method->advance(model, state, workspace, experiment->step, 100);
     hash = add(hash, state->q, length);
     hash = add(hash, state->v, length);
     hash = add(hash, state->work, STRUT_POWER_COUNT * sizeof state->work[0]);
@@ -52,16 +53,17 @@ static uint64_t hash_run(const strut_model *model, strut_state *state,
 }
 
 /* From the same rest, a state of its own for each method. */
-static strut_status hash_methods(const strut_model *model, int64_t steps, strut_error *error) {
+static strut_status hash_methods(const strut_model *model, const strut_experiment *experiment,
+                                 int64_t steps, strut_error *error) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < sizeof methods / sizeof methods[0] && !status; i++) {
     strut_state *state = NULL;
     double time = 0;
     if (!(status = strut_state_create(model, &state, error)) &&
-        !(status = strut_settle_state(model, state, NULL, &time, error))) {
+        !(status = strut_settle_state(model, experiment, state, NULL, &time, error))) {
       state->ledger = true;
       printf("%s %016llx\n", methods[i]->name,
-             (unsigned long long)hash_run(model, state, methods[i], steps));
+             (unsigned long long)hash_run(model, experiment, state, methods[i], steps));
     }
     strut_state_free(state);
   }
@@ -71,19 +73,19 @@ static strut_status hash_methods(const strut_model *model, int64_t steps, strut_
 int main(int count, char **argument) {
   strut_error error = {0};
   strut_diagnostics diagnostics = {0};
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   char *text = NULL;
   size_t length = 0;
   if (count != 3 || strut_file_read(argument[1], &text, &length, &error) ||
-      strut_scene_read(&scene, argument[1], text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics) ||
-      strut_model_compile(&scene, &model, &error) ||
-      hash_methods(model, atoll(argument[2]), &error)) {
+      strut_setup_read(&setup, argument[1], text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics) ||
+      strut_model_compile(&setup.scene, &model, &error) ||
+      hash_methods(model, &setup.experiment, atoll(argument[2]), &error)) {
     fprintf(stderr, "golden: %s\n", error.message);
     return 1;
   }
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   strut_diagnostics_free(&diagnostics);
   strut_release(text);
   return 0;

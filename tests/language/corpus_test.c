@@ -107,21 +107,21 @@ static size_t check_file(const char *name) {
   char *text = read_text(path, &length);
   assert_non_null(text);
   announcement a = read_announcement(path, text);
-  strut_scene scene;
+  strut_setup setup;
   strut_diagnostics diagnostics = {0};
   strut_status status =
-      strut_scene_read(&scene, name, text, length, a.set, a.sets, a.purpose, &diagnostics);
+      strut_setup_read(&setup, name, text, length, a.set, a.sets, a.purpose, &diagnostics);
   size_t wrong = compare(name, a.expected, a.count, &diagnostics);
   if (status != STRUT_BAD_SCENE || a.count == 0) {
     print_error("%s: status %d, %zu messages announced\n", name, (int)status, a.count);
     wrong++;
   }
-  if (scene.arena.chunk || scene.node_count || scene.nodes) {
+  if (setup.scene.arena.chunk || setup.scene.node_count || setup.scene.nodes) {
     print_error("%s: the scene is not empty\n", name);
     wrong++;
   }
   strut_diagnostics_render(&diagnostics, 50);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   strut_diagnostics_free(&diagnostics);
   free(a.text);
   free(text);

@@ -21,10 +21,10 @@ static void same_bits(const char *what, const void *a, const void *b, size_t siz
 
 #define SAME(field) same_bits(#field, &a->field, &b->field, sizeof a->field)
 
-static void same_nodes(const strut_scene *first, const strut_scene *second) {
-  assert_int_equal(first->node_count, second->node_count);
-  for (size_t i = 0; i < first->node_count; i++) {
-    const strut_node *a = &first->nodes[i], *b = &second->nodes[i];
+static void same_nodes(const strut_setup *first, const strut_setup *second) {
+  assert_int_equal(first->scene.node_count, second->scene.node_count);
+  for (size_t i = 0; i < first->scene.node_count; i++) {
+    const strut_node *a = &first->scene.nodes[i], *b = &second->scene.nodes[i];
     assert_string_equal(a->name, b->name);
     SAME(position);
     SAME(mass);
@@ -34,10 +34,10 @@ static void same_nodes(const strut_scene *first, const strut_scene *second) {
   }
 }
 
-static void same_members(const strut_scene *first, const strut_scene *second) {
-  assert_int_equal(first->member_count, second->member_count);
-  for (size_t i = 0; i < first->member_count; i++) {
-    const strut_member *a = &first->members[i], *b = &second->members[i];
+static void same_members(const strut_setup *first, const strut_setup *second) {
+  assert_int_equal(first->scene.member_count, second->scene.member_count);
+  for (size_t i = 0; i < first->scene.member_count; i++) {
+    const strut_member *a = &first->scene.members[i], *b = &second->scene.members[i];
     assert_string_equal(a->name, b->name);
     SAME(node);
     SAME(kind);
@@ -50,30 +50,30 @@ static void same_members(const strut_scene *first, const strut_scene *second) {
   }
 }
 
-static void same_ground(const strut_scene *a, const strut_scene *b) {
-  SAME(ground.present);
-  SAME(ground.height);
-  SAME(ground.slope);
-  SAME(ground.belt_speed);
-  SAME(ground.damping_law);
-  assert_int_equal(a->contact_count, b->contact_count);
-  for (size_t i = 0; i < a->contact_count; i++) {
-    SAME(contacts[i].node);
-    SAME(contacts[i].stiffness);
-    SAME(contacts[i].damping);
-    SAME(contacts[i].dissipation);
-    SAME(contacts[i].friction.law);
-    SAME(contacts[i].friction.mu_static);
-    SAME(contacts[i].friction.mu_kinetic);
-    SAME(contacts[i].friction.stick_velocity);
-    SAME(contacts[i].friction.width);
+static void same_ground(const strut_setup *a, const strut_setup *b) {
+  SAME(scene.ground.present);
+  SAME(scene.ground.height);
+  SAME(scene.ground.slope);
+  SAME(scene.ground.belt_speed);
+  SAME(scene.ground.damping_law);
+  assert_int_equal(a->scene.contact_count, b->scene.contact_count);
+  for (size_t i = 0; i < a->scene.contact_count; i++) {
+    SAME(scene.contacts[i].node);
+    SAME(scene.contacts[i].stiffness);
+    SAME(scene.contacts[i].damping);
+    SAME(scene.contacts[i].dissipation);
+    SAME(scene.contacts[i].friction.law);
+    SAME(scene.contacts[i].friction.mu_static);
+    SAME(scene.contacts[i].friction.mu_kinetic);
+    SAME(scene.contacts[i].friction.stick_velocity);
+    SAME(scene.contacts[i].friction.width);
   }
 }
 
-static void same_signals(const strut_scene *first, const strut_scene *second) {
-  assert_int_equal(first->signal_count, second->signal_count);
-  for (size_t i = 0; i < first->signal_count; i++) {
-    const strut_signal *a = &first->signals[i], *b = &second->signals[i];
+static void same_signals(const strut_setup *first, const strut_setup *second) {
+  assert_int_equal(first->scene.signal_count, second->scene.signal_count);
+  for (size_t i = 0; i < first->scene.signal_count; i++) {
+    const strut_signal *a = &first->scene.signals[i], *b = &second->scene.signals[i];
     assert_int_equal(a->name == NULL, b->name == NULL);
     if (a->name) assert_string_equal(a->name, b->name);
     SAME(kind);
@@ -92,19 +92,19 @@ static void same_signals(const strut_scene *first, const strut_scene *second) {
   }
 }
 
-static void same_drives(const strut_scene *a, const strut_scene *b) {
-  assert_int_equal(a->actuator_count, b->actuator_count);
-  assert_int_equal(a->load_count, b->load_count);
-  for (size_t i = 0; i < a->actuator_count; i++) {
-    assert_string_equal(a->actuators[i].name, b->actuators[i].name);
-    SAME(actuators[i].member);
-    SAME(actuators[i].signal);
+static void same_drives(const strut_setup *a, const strut_setup *b) {
+  assert_int_equal(a->scene.actuator_count, b->scene.actuator_count);
+  assert_int_equal(a->scene.load_count, b->scene.load_count);
+  for (size_t i = 0; i < a->scene.actuator_count; i++) {
+    assert_string_equal(a->scene.actuators[i].name, b->scene.actuators[i].name);
+    SAME(scene.actuators[i].member);
+    SAME(scene.actuators[i].signal);
   }
-  for (size_t i = 0; i < a->load_count; i++) {
-    assert_string_equal(a->loads[i].name, b->loads[i].name);
-    SAME(loads[i].node);
-    SAME(loads[i].force);
-    SAME(loads[i].signal);
+  for (size_t i = 0; i < a->scene.load_count; i++) {
+    assert_string_equal(a->scene.loads[i].name, b->scene.loads[i].name);
+    SAME(scene.loads[i].node);
+    SAME(scene.loads[i].force);
+    SAME(scene.loads[i].signal);
   }
 }
 
@@ -115,42 +115,43 @@ static void same_sets(const strut_node_set *a, const strut_node_set *b, size_t c
   }
 }
 
-static void same_shapes(const strut_scene *a, const strut_scene *b) {
-  SAME(configuration_count);
-  for (size_t i = 0; i < a->configuration_count; i++) {
-    const strut_configuration *c = &a->configurations[i], *d = &b->configurations[i];
+static void same_shapes(const strut_setup *a, const strut_setup *b) {
+  SAME(scene.configuration_count);
+  for (size_t i = 0; i < a->scene.configuration_count; i++) {
+    const strut_configuration *c = &a->scene.configurations[i], *d = &b->scene.configurations[i];
     assert_string_equal(c->name, d->name);
-    SAME(configurations[i].shaped);
-    SAME(configurations[i].set_count);
-    same_bits("positions", c->position, d->position, a->node_count * sizeof *c->position);
+    SAME(scene.configurations[i].shaped);
+    SAME(scene.configurations[i].set_count);
+    same_bits("positions", c->position, d->position, a->scene.node_count * sizeof *c->position);
     same_sets(c->sets, d->sets, c->set_count);
   }
-  SAME(start_equilibrium);
-  SAME(search.starts);
-  SAME(search.seed);
-  SAME(search.support_count);
-  same_sets(a->search.supports, b->search.supports, a->search.support_count);
+  SAME(scene.start_equilibrium);
+  SAME(experiment.search.starts);
+  SAME(experiment.search.seed);
+  SAME(experiment.search.support_count);
+  same_sets(a->experiment.search.supports, b->experiment.search.supports,
+            a->experiment.search.support_count);
 }
 
-static void same_scene(const strut_scene *a, const strut_scene *b) {
-  assert_string_equal(a->name, b->name);
-  assert_string_equal(a->description, b->description);
-  assert_string_equal(a->source, b->source);
-  SAME(mass_model);
-  SAME(bar_model);
-  SAME(gravity);
+static void same_scene(const strut_setup *a, const strut_setup *b) {
+  assert_string_equal(a->scene.name, b->scene.name);
+  assert_string_equal(a->scene.description, b->scene.description);
+  assert_string_equal(a->scene.source, b->scene.source);
+  SAME(scene.mass_model);
+  SAME(scene.bar_model);
+  SAME(scene.gravity);
   same_nodes(a, b);
   same_members(a, b);
   same_ground(a, b);
   same_signals(a, b);
   same_drives(a, b);
   same_shapes(a, b);
-  SAME(settle.wanted);
-  if (a->settle.wanted) {
-    SAME(settle.speed);
-    SAME(settle.acceleration);
-    SAME(settle.limit);
-    SAME(settle.friction);
+  SAME(experiment.settle.wanted);
+  if (a->experiment.settle.wanted) {
+    SAME(experiment.settle.speed);
+    SAME(experiment.settle.acceleration);
+    SAME(experiment.settle.limit);
+    SAME(experiment.settle.friction);
   }
   assert_string_equal(a->experiment.integrator, b->experiment.integrator);
   SAME(experiment.step);
@@ -184,21 +185,21 @@ static void written_scenes_read_back_to_the_same_bits(void **state) {
   scene_file *files;
   size_t count = scene_files(&files);
   for (size_t i = 0; i < count; i++) {
-    strut_scene first, second;
+    strut_setup first, second;
     if (read_quietly(files[i].text, files[i].length, &first) != STRUT_OK)
       fail_msg("%s is refused", files[i].path);
-    char *written = strut_scene_write(&first);
+    char *written = strut_setup_write(&first);
     assert_non_null(written);
     if (read_quietly(written, strlen(written), &second) != STRUT_OK)
       fail_msg("%s, written: refused:\n%s", files[i].path, written);
     same_scene(&first, &second);
-    char *again = strut_scene_write(&second);
+    char *again = strut_setup_write(&second);
     assert_non_null(again);
     assert_string_equal(body(written), body(again));
     strut_release(written);
     strut_release(again);
-    strut_scene_free(&first);
-    strut_scene_free(&second);
+    strut_setup_free(&first);
+    strut_setup_free(&second);
   }
   free_scene_files(files, count);
 }
@@ -208,12 +209,12 @@ static void single_numbers_survive(void **state) {
   (void)state;
   uint64_t seed = 12345;
   strut_node nodes[2] = {{.name = "a", .mass = 1}, {.name = "b", .mass = 1}};
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.nodes = nodes;
-  scene.node_count = 2;
-  scene.experiment.step = 1e-3;
-  scene.experiment.duration = 1;
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.scene.nodes = nodes;
+  setup.scene.node_count = 2;
+  setup.experiment.step = 1e-3;
+  setup.experiment.duration = 1;
   static const double corners[] = {0.1,
                                    1.0 / 3,
                                    5e-324,
@@ -233,11 +234,11 @@ static void single_numbers_survive(void **state) {
     if (i < sizeof corners / sizeof corners[0]) value = corners[i];
     if (!(value - value == 0.0)) continue;
     nodes[0].position[0] = nodes[0].start[0] = value;
-    char *text = strut_scene_write(&scene);
-    strut_scene back;
+    char *text = strut_setup_write(&setup);
+    strut_setup back;
     assert_int_equal(read_quietly(text, strlen(text), &back), STRUT_OK);
-    same_bits(text, &back.nodes[0].position[0], &value, sizeof value);
-    strut_scene_free(&back);
+    same_bits(text, &back.scene.nodes[0].position[0], &value, sizeof value);
+    strut_setup_free(&back);
     strut_release(text);
   }
 }
@@ -250,23 +251,23 @@ static void a_nameless_period_gets_a_name(void **state) {
   signal.amplitude = 1;
   signal.frequency = 4;
   signal.phase = 0.25;
-  strut_scene scene, back;
-  strut_scene_init(&scene);
-  scene.nodes = nodes;
-  scene.node_count = 1;
-  scene.signals = &signal;
-  scene.signal_count = 1;
-  scene.experiment.step = 1e-3;
-  scene.experiment.periods = 3;
-  scene.experiment.period_signal = 0;
-  scene.name = "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \x01 bad \xff.";
-  char *text = strut_scene_write(&scene);
+  strut_setup setup, back;
+  strut_setup_init(&setup);
+  setup.scene.nodes = nodes;
+  setup.scene.node_count = 1;
+  setup.scene.signals = &signal;
+  setup.scene.signal_count = 1;
+  setup.experiment.step = 1e-3;
+  setup.experiment.periods = 3;
+  setup.experiment.period_signal = 0;
+  setup.scene.name = "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \x01 bad \xff.";
+  char *text = strut_setup_write(&setup);
   assert_int_equal(read_quietly(text, strlen(text), &back), STRUT_OK);
-  assert_string_equal(back.name,
+  assert_string_equal(back.scene.name,
                       "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \xef\xbf\xbd bad "
                       "\xef\xbf\xbd.");
-  assert_true(back.signals[back.experiment.period_signal].phase == 0.25);
-  strut_scene_free(&back);
+  assert_true(back.scene.signals[back.experiment.period_signal].phase == 0.25);
+  strut_setup_free(&back);
   strut_release(text);
 }
 

@@ -67,19 +67,19 @@ void free_scene_files(scene_file *files, size_t count) {
   free(files);
 }
 
-strut_status read_quietly(const char *text, size_t length, strut_scene *scene) {
+strut_status read_quietly(const char *text, size_t length, strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
   strut_status status =
-      strut_scene_read(scene, "scene", text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
+      strut_setup_read(setup, "scene", text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
   strut_diagnostics_free(&diagnostics);
   return status;
 }
 
 char *read_and_write(const char *text, size_t length) {
-  strut_scene scene;
-  if (read_quietly(text, length, &scene) != STRUT_OK) return NULL;
-  char *written = strut_scene_write(&scene);
+  strut_setup setup;
+  if (read_quietly(text, length, &setup) != STRUT_OK) return NULL;
+  char *written = strut_setup_write(&setup);
   assert_non_null(written);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return written;
 }

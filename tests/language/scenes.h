@@ -20,7 +20,7 @@ size_t scene_files(scene_file **files);
 void free_scene_files(scene_file *files, size_t count);
 
 /** Reads text as a scene for a run, quietly. The caller frees the scene. */
-strut_status read_quietly(const char *text, size_t length, strut_scene *scene);
+strut_status read_quietly(const char *text, size_t length, strut_setup *setup);
 /** The scene in the text, written back; NULL where it is refused. strut_release it. */
 char *read_and_write(const char *text, size_t length);
 

@@ -176,7 +176,7 @@ static void keep_is_one_table(void **state) {
 static void a_study_is_what_it_says(void **state) {
   (void)state;
   strut_study_file file;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
   strut_study_value values[5];
   open_good("every-key.yaml", &file);
@@ -193,28 +193,28 @@ static void a_study_is_what_it_says(void **state) {
                    1 << STRUT_KEEP_VELOCITY | 1 << STRUT_KEEP_WORK | 1 << STRUT_KEEP_POSITIONS);
   strut_grid_values(&file.study, 18 + 2 * 6 + 1 * 3 + 1, values);
   assert_string_equal(values[0].word, "long");
-  assert_int_equal(strut_study_scene(&file, values, &scene, &error), STRUT_OK);
-  assert_true(scene.loads[0].force[0] == 0.25);
-  assert_true(scene.nodes[1].mass == 0.5);
-  assert_true(scene.members[0].stiffness == 200);
-  assert_true(scene.signals[scene.actuators[0].signal].amplitude == 2e-3);
-  double f = scene.signals[scene.actuators[0].signal].frequency;
+  assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+  assert_true(setup.scene.loads[0].force[0] == 0.25);
+  assert_true(setup.scene.nodes[1].mass == 0.5);
+  assert_true(setup.scene.members[0].stiffness == 200);
+  assert_true(setup.scene.signals[setup.scene.actuators[0].signal].amplitude == 2e-3);
+  double f = setup.scene.signals[setup.scene.actuators[0].signal].frequency;
   assert_true(f > 3.16227766 && f < 3.16227767);
-  assert_true(scene.experiment.step == 1 / (500 * f)); /* derived from the axis */
-  assert_string_equal(scene.experiment.integrator, "verlet");
-  assert_true(scene.experiment.duration == 3 && scene.experiment.periods == 0);
-  assert_int_equal(scene.experiment.measure_node, 1); /* kept below the study's own keys */
-  assert_true(scene.nodes[1].start[0] == 1.01);
-  assert_true(scene.experiment.output_every == 0.01 && scene.experiment.output_last == 0);
-  strut_scene_free(&scene);
+  assert_true(setup.experiment.step == 1 / (500 * f)); /* derived from the axis */
+  assert_string_equal(setup.experiment.integrator, "verlet");
+  assert_true(setup.experiment.duration == 3 && setup.experiment.periods == 0);
+  assert_int_equal(setup.experiment.measure_node, 1); /* kept below the study's own keys */
+  assert_true(setup.scene.nodes[1].start[0] == 1.01);
+  assert_true(setup.experiment.output_every == 0.01 && setup.experiment.output_last == 0);
+  strut_setup_free(&setup);
   strut_grid_values(&file.study, 2 * 6 + 1 * 3 + 1, values); /* the same of the other variant */
   assert_string_equal(values[0].word, "coarse");
-  assert_int_equal(strut_study_scene(&file, values, &scene, &error), STRUT_OK);
-  assert_string_equal(scene.experiment.integrator, "euler");
-  assert_true(scene.experiment.step == 1 / (500 * f) && scene.experiment.duration == 2);
-  assert_true(scene.nodes[1].start[0] == 1.02 && scene.experiment.output_last == 0.1);
-  assert_true(scene.loads[0].force[0] == 0.25);
-  strut_scene_free(&scene);
+  assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+  assert_string_equal(setup.experiment.integrator, "euler");
+  assert_true(setup.experiment.step == 1 / (500 * f) && setup.experiment.duration == 2);
+  assert_true(setup.scene.nodes[1].start[0] == 1.02 && setup.experiment.output_last == 0.1);
+  assert_true(setup.scene.loads[0].force[0] == 0.25);
+  strut_setup_free(&setup);
   strut_study_close(&file);
 }
 
@@ -227,12 +227,12 @@ static void former_names_are_noted_once(void **state) {
   open_good("former-names.yaml", &file);
   for (int64_t variant = 0; variant < 2; variant++) {
     strut_study_value values[2];
-    strut_scene scene;
+    strut_setup setup;
     strut_grid_values(&file.study, 2 * variant, values);
-    assert_int_equal(strut_study_scene(&file, values, &scene, &error), STRUT_OK);
-    assert_true(scene.experiment.steady.floor == expected[variant]);
-    assert_int_equal(scene.experiment.steady.successive, 4);
-    strut_scene_free(&scene);
+    assert_int_equal(strut_study_setup(&file, values, &setup, &error), STRUT_OK);
+    assert_true(setup.experiment.steady.floor == expected[variant]);
+    assert_int_equal(setup.experiment.steady.successive, 4);
+    strut_setup_free(&setup);
   }
   const char *notes = strut_study_notes(&file);
   assert_non_null(strstr(notes,

@@ -269,9 +269,9 @@ static void von_mises_truss_at_once(void **unused) {
   for (int i = 0; i < 2; i++) {
     model_run run;
     model_read(&run, "basics/von-mises-truss", set_none);
-    run.scene.settle.wanted = false;
-    run.scene.experiment.duration = 5;
-    run.scene.loads[0].force[1] = -most * (i ? 1.001 : 0.999);
+    run.setup.experiment.settle.wanted = false;
+    run.setup.experiment.duration = 5;
+    run.setup.scene.loads[0].force[1] = -most * (i ? 1.001 : 0.999);
     model_simulate(&run);
     double lowest = 1;
     for (size_t row = 0; row < run.row_count; row++)

@@ -52,7 +52,7 @@ void model_read(model_run *run, const char *name, const char *const *settings) {
   strut_error error = {0};
   if (strut_file_read(path, &text, &length, &error)) fail_msg("%s: %s", path, error.message);
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_scene_read(&run->scene, path, text, length, overrides, count,
+  strut_status status = strut_setup_read(&run->setup, path, text, length, overrides, count,
                                          STRUT_FOR_RUN, &diagnostics);
   if (status) fail_msg("%s is not valid: %s", path, strut_status_text(status));
   strut_diagnostics_free(&diagnostics);
@@ -63,9 +63,10 @@ void model_simulate(model_run *run) {
   strut_error error = {0};
   strut_sink sink = {run, begin, take, end, 0}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
-  strut_status status = strut_model_compile(&run->scene, &run->model, &error);
-  if (!status) status = strut_simulate(run->model, &options, &run->summary, &error);
-  if (status) fail_msg("%s: %s", run->scene.name, error.message);
+  strut_status status = strut_model_compile(&run->setup.scene, &run->model, &error);
+  if (!status)
+    status = strut_simulate(run->model, &run->setup.experiment, &options, &run->summary, &error);
+  if (status) fail_msg("%s: %s", run->setup.scene.name, error.message);
   run->layout.channels = run->channels;
 }
 
@@ -78,7 +79,7 @@ void model_run_free(model_run *run) {
   strut_release(run->rows);
   strut_summary_free(&run->summary);
   strut_model_free(run->model);
-  strut_scene_free(&run->scene);
+  strut_setup_free(&run->setup);
 }
 
 const double *model_position(const model_run *run, const char *node) {
@@ -90,7 +91,7 @@ const double *model_position(const model_run *run, const char *node) {
 
 /* Offset in a row. The item names were the recorder's; the scene's are the same ones in order. */
 static size_t place(const model_run *run, strut_channel id, const char *item, size_t component) {
-  const strut_scene *scene = &run->scene;
+  const strut_scene *scene = &run->setup.scene;
   bool members = id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE;
   size_t count = members ? scene->member_count : scene->node_count;
   for (size_t k = 0; k < run->layout.channel_count; k++) {

@@ -10,7 +10,7 @@
 #include "parser/read/read_scene.h"
 
 typedef struct model_run {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_summary summary;
   /* what was recorded */

@@ -27,23 +27,24 @@ static const struct {
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
-static void make(strut_scene *scene, double frequency, double mu, bool state_two, double periods,
+static void make(strut_setup *setup, double frequency, double mu, bool state_two, double periods,
                  double window) {
-  strut_scene_init(scene);
-  structure_crawler(scene, frequency, STROKE, mu, state_two);
-  scene->settle.wanted = true;
-  scene->experiment.step = STEP;
-  scene->experiment.periods = periods;
-  scene->experiment.period_signal = 0;
-  scene->experiment.measure_last = window;
+  strut_setup_init(setup);
+  structure_crawler(&setup->scene, frequency, STROKE, mu, state_two);
+  setup->experiment.settle.wanted = true;
+  setup->experiment.step = STEP;
+  setup->experiment.periods = periods;
+  setup->experiment.period_signal = 0;
+  setup->experiment.measure_last = window;
 }
 
 /* The independent program's rest, and strut's own. */
-static void settle_both(const strut_scene *scene, motion *m, reference_crawler *it, bool state_two,
+static void settle_both(const strut_setup *setup, motion *m, reference_crawler *it, bool state_two,
                         double *z) {
   double time;
-  motion_begin(m, scene, STEP);
-  assert_int_equal(strut_settle_state(m->model, m->state, NULL, &time, NULL), STRUT_OK);
+  motion_begin(m, &setup->scene, STEP);
+  assert_int_equal(strut_settle_state(m->model, &setup->experiment, m->state, NULL, &time, NULL),
+                   STRUT_OK);
   assert_true(time > 0);
   reference_prepare(it, state_two, z);
   assert_true(reference_settle(it, STEP, z));
@@ -52,29 +53,29 @@ static void settle_both(const strut_scene *scene, motion *m, reference_crawler *
 static void test_it_comes_to_rest_where_the_other_program_does(void **unused) {
   (void)unused;
   for (int two = 0; two < 2; two++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     double z[REFERENCE_STATE];
     reference_crawler it = {.frequency = 10, .mu = 0.1, .amplitude = STROKE};
-    make(&scene, 10, 0.1, two, 10, 1);
-    settle_both(&scene, &m, &it, two, z);
+    make(&setup, 10, 0.1, two, 10, 1);
+    settle_both(&setup, &m, &it, two, z);
     for (int i = 0; i < 10; i++) {
       assert_near(m.state->q[i], z[i], 1e-11);
       assert_true(m.state->v[i] == 0);
     }
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* The first 0.05 s from one and the same rest, coordinate by coordinate. */
 static void follow(double f, double mu, bool two, const double *rest) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double z[REFERENCE_STATE];
   reference_crawler it = {.frequency = f, .mu = mu, .amplitude = STROKE};
-  make(&scene, f, mu, two, 10, 1);
-  motion_begin(&m, &scene, STEP);
+  make(&setup, f, mu, two, 10, 1);
+  motion_begin(&m, &setup.scene, STEP);
   reference_prepare(&it, two, z);
   for (int i = 0; i < REFERENCE_STATE; i++) z[i] = rest[i];
   for (int i = 0; i < 10; i++) m.state->q[i] = z[i], m.state->v[i] = z[10 + i];
@@ -84,7 +85,7 @@ static void follow(double f, double mu, bool two, const double *rest) {
     for (int i = 0; i < 10; i++) assert_near(m.state->q[i], z[i], 1e-9);
   }
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_the_first_trajectories_are_the_same(void **unused) {
@@ -101,14 +102,14 @@ static void test_the_first_trajectories_are_the_same(void **unused) {
 static void test_velocities_agree_in_the_mean(void **unused) {
   (void)unused;
   for (int c = 0; c < 2 * CASES; c++) {
-    strut_scene scene;
+    strut_setup setup;
     reference_figures figures;
     double z[REFERENCE_STATE];
     bool two = c >= CASES;
     double f = cases[c % CASES].frequency, mu = cases[c % CASES].mu;
     reference_crawler it = {.frequency = f, .mu = mu, .amplitude = STROKE};
-    make(&scene, f, mu, two, 150, 50);
-    strut_summary s = motion_simulate(&scene);
+    make(&setup, f, mu, two, 150, 50);
+    strut_summary s = motion_simulate(&setup);
     reference_prepare(&it, two, z);
     assert_true(reference_settle(&it, STEP, z));
     reference_run(&it, STEP, 150, 50, z, &figures);
@@ -123,7 +124,7 @@ static void test_velocities_agree_in_the_mean(void **unused) {
       assert_near(s.contacts[i].max_height, figures.highest[i], deviation > 0 ? 2e-5 : 1e-6);
     }
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -131,9 +132,9 @@ static void test_velocities_agree_in_the_mean(void **unused) {
 static void test_the_papers_velocities(void **unused) {
   (void)unused;
   for (int two = 0; two < 2; two++) {
-    strut_scene scene;
-    make(&scene, 10, 0.1, two, 1100, 100);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    make(&setup, 10, 0.1, two, 1100, 100);
+    strut_summary s = motion_simulate(&setup);
     print_message("start %s: %.4f mm/s, spread %.3f\n", two ? "II" : "I", 1e3 * s.velocity,
                   1e3 * s.velocity_spread);
     assert_near(1e3 * s.velocity, two ? -10.10 : 9.78, 0.05);
@@ -144,22 +145,22 @@ static void test_the_papers_velocities(void **unused) {
     assert_true(s.step_limit > STEP && s.step_limit < 1.5e-4);
     assert_true(fabs(s.energy.residual) < 1e-3 * s.energy.moved);
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 static void test_the_papers_contacts(void **unused) {
   (void)unused;
-  strut_scene scene;
-  make(&scene, 10, 0.2, false, 1100, 100);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  make(&setup, 10, 0.2, false, 1100, 100);
+  strut_summary s = motion_simulate(&setup);
   assert_near(s.contacts[3].duty, 0.73, 0.01);
   assert_near(s.contacts[3].max_height, 1.1e-3, 0.05e-3);
   assert_near(s.contacts[0].duty, 0.90, 0.02);
   assert_within(s.contacts[0].max_height, 5e-6, 25e-6);
   assert_true(s.contacts[1].duty == 0 && s.contacts[2].duty == 0 && s.contacts[4].duty == 0);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

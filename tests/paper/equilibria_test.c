@@ -40,8 +40,10 @@ static int read_and_search(void **unused) {
   strut_error error = {0};
   strut_equilibria_options options = {0};
   model_read(&crawler, "crawler/crawler", set_none);
-  strut_status status = strut_model_compile(&crawler.scene, &crawler.model, &error);
-  if (!status) status = strut_equilibria_find(crawler.model, &options, &all, &error);
+  strut_status status = strut_model_compile(&crawler.setup.scene, &crawler.model, &error);
+  if (!status)
+    status =
+        strut_equilibria_find(crawler.model, &crawler.setup.experiment, &options, &all, &error);
   if (status) fail_msg("%s", error.message);
   return 0;
 }
@@ -347,7 +349,8 @@ static void test_shapes_to_stand_in(void **unused) {
     strut_arena arena = {0};
     strut_rest_state stand;
     strut_error error = {0};
-    if (strut_rest_state_find(crawler.model, names[i], &arena, &stand, &error))
+    if (strut_rest_state_find(crawler.model, &crawler.setup.experiment, names[i], &arena, &stand,
+                              &error))
       fail_msg("%s: %s", names[i], error.message);
     const strut_equilibrium *e = called(names[i]);
     assert_true(stand.at_rest && stand.closed_count == 2);

@@ -23,9 +23,9 @@ static void test_the_count_counts(void **unused) {
   free(block);
 }
 
-static void check_steps(const strut_scene *scene, bool ledger) {
+static void check_steps(const strut_setup *setup, bool ledger) {
   motion m;
-  motion_begin(&m, scene, 1e-5);
+  motion_begin(&m, &setup->scene, 1e-5);
   m.state->ledger = ledger;
   uint64_t before = allocations_so_far(), own = strut_allocation_count();
   motion_steps(&m, 1000);
@@ -37,30 +37,30 @@ static void check_steps(const strut_scene *scene, bool ledger) {
 }
 
 /* Everything at once on top of a chain: contacts, friction, drive, loads. */
-static void busy_chain(strut_scene *scene, size_t frames, strut_mass_model mass_model) {
-  strut_scene_init(scene);
-  structure_chain(scene, frames, mass_model);
-  int32_t sine = build_sine(scene, 1e-3, 12);
-  build_actuator(scene, 1, sine);
-  build_load(scene, 3, 1, 2, sine);
-  build_load(scene, 2, 0, -3, -1);
-  scene->ground.height = -0.001, scene->ground.slope = 0.01;
-  scene->gravity[1] = -9.81;
-  for (int32_t i = 0; i < (int32_t)scene->node_count; i++)
-    build_rough_contact(scene, i, 1e4, 10, 0.5, 0.3, 1e-3);
+static void busy_chain(strut_setup *setup, size_t frames, strut_mass_model mass_model) {
+  strut_setup_init(setup);
+  structure_chain(&setup->scene, frames, mass_model);
+  int32_t sine = build_sine(&setup->scene, 1e-3, 12);
+  build_actuator(&setup->scene, 1, sine);
+  build_load(&setup->scene, 3, 1, 2, sine);
+  build_load(&setup->scene, 2, 0, -3, -1);
+  setup->scene.ground.height = -0.001, setup->scene.ground.slope = 0.01;
+  setup->scene.gravity[1] = -9.81;
+  for (int32_t i = 0; i < (int32_t)setup->scene.node_count; i++)
+    build_rough_contact(&setup->scene, i, 1e4, 10, 0.5, 0.3, 1e-3);
 }
 
 static void check_kind(size_t frames, strut_mass_model mass_model, bool blocks, bool factor) {
-  strut_scene scene;
-  busy_chain(&scene, frames, mass_model);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  busy_chain(&setup, frames, mass_model);
+  strut_model *model = motion_compile(&setup.scene);
   assert_int_equal(model->mass->coordinate[0].block_count > 0, blocks);
   assert_int_equal(model->mass->coordinate[0].factor != NULL, factor);
   assert_int_equal(model->mass->diagonal, !blocks && !factor);
   strut_model_free(model);
-  check_steps(&scene, false);
-  check_steps(&scene, true);
-  strut_scene_free(&scene);
+  check_steps(&setup, false);
+  check_steps(&setup, true);
+  strut_setup_free(&setup);
 }
 
 static void test_steps_with_a_diagonal_mass_allocate_nothing(void **unused) {
@@ -81,10 +81,11 @@ static void test_steps_with_a_sparse_factor_allocate_nothing(void **unused) {
 static void test_steps_of_random_scenes_allocate_nothing(void **unused) {
   (void)unused;
   for (uint64_t seed = 1; seed <= 40; seed++) {
-    strut_scene scene;
-    random_scene(&scene, seed);
-    check_steps(&scene, seed % 2);
-    strut_scene_free(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    random_scene(&setup.scene, seed);
+    check_steps(&setup, seed % 2);
+    strut_setup_free(&setup);
   }
 }
 
@@ -112,24 +113,24 @@ static strut_status take_end(void *context, strut_status status, strut_error *er
 
 /* Allocations of a whole run of so many steps, with measuring and a row every 10 steps. */
 static uint64_t whole_run(int64_t steps) {
-  strut_scene scene;
+  strut_setup setup;
   strut_summary summary;
   size_t rows = 0;
   strut_sink sink = {&rows, take_nothing, take_rows, take_end, 0}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
-  busy_chain(&scene, 10, STRUT_MASS_CONSISTENT);
-  motion_experiment(&scene, 1e-5, 1e-5 * (double)steps);
-  scene.experiment.output_every = 1e-4;
-  scene.experiment.channels = 63;
-  strut_model *model = motion_compile(&scene);
+  busy_chain(&setup, 10, STRUT_MASS_CONSISTENT);
+  motion_experiment(&setup, 1e-5, 1e-5 * (double)steps);
+  setup.experiment.output_every = 1e-4;
+  setup.experiment.channels = 63;
+  strut_model *model = motion_compile(&setup.scene);
   uint64_t before = allocations_so_far();
-  assert_int_equal(strut_simulate(model, &options, &summary, NULL), STRUT_OK);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, NULL), STRUT_OK);
   uint64_t count = allocations_so_far() - before;
   assert_int_equal(summary.steps, steps);
   assert_int_equal(rows, steps / 10 + 1);
   strut_summary_free(&summary);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return count;
 }
 

@@ -23,15 +23,15 @@ static void assert_says(const strut_summary *s, const char *words) {
 
 /* A mass that bounces on hard ground: 1 J comes down. */
 static strut_summary bounce(const char *method, double step) {
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.gravity[1] = -10;
-  build_mass(&scene, 0, 0.1, 1);
-  build_contact(&scene, 0, 1e5, 0);
-  motion_experiment(&scene, step, 1);
-  scene.experiment.integrator = method;
-  strut_summary s = motion_simulate(&scene);
-  strut_scene_free(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.scene.gravity[1] = -10;
+  build_mass(&setup.scene, 0, 0.1, 1);
+  build_contact(&setup.scene, 0, 1e5, 0);
+  motion_experiment(&setup, step, 1);
+  setup.experiment.integrator = method;
+  strut_summary s = motion_simulate(&setup);
+  strut_setup_free(&setup);
   return s;
 }
 
@@ -54,20 +54,21 @@ static void test_steps_over_touchdowns(void **unused) {
 
 /* A cable that lets go at 0.2 s: within one step, or in 0.1 s. */
 static strut_summary let_go(double takes) {
-  strut_scene scene;
+  strut_setup setup;
   double time[] = {0, 0.2, 0.2 + takes}, value[] = {0, 0, 0.3};
   strut_signal signal = strut_signal_default(STRUT_TABLE);
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 0.2, 0, 0.1);
-  build_sized(&scene, STRUT_SPRING, 0, 1, 200, 0.01, 0, 0.4);
-  build_sized(&scene, STRUT_CABLE, 0, 1, 1e4, 5, 0, 0.196);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 0.2, 0, 0.1);
+  build_sized(&setup.scene, STRUT_SPRING, 0, 1, 200, 0.01, 0, 0.4);
+  build_sized(&setup.scene, STRUT_CABLE, 0, 1, 1e4, 5, 0, 0.196);
   signal.point_count = 3;
-  signal.time = build_numbers(&scene, time, 3), signal.value = build_numbers(&scene, value, 3);
-  build_actuator(&scene, 1, build_signal(&scene, signal));
-  motion_experiment(&scene, 1e-4, 1);
-  strut_summary s = motion_simulate(&scene);
-  strut_scene_free(&scene);
+  signal.time = build_numbers(&setup.scene, time, 3),
+  signal.value = build_numbers(&setup.scene, value, 3);
+  build_actuator(&setup.scene, 1, build_signal(&setup.scene, signal));
+  motion_experiment(&setup, 1e-4, 1);
+  strut_summary s = motion_simulate(&setup);
+  strut_setup_free(&setup);
   return s;
 }
 
@@ -88,20 +89,20 @@ static void test_a_drive_that_jumps(void **unused) {
 /* A free swing that ends where it began: nothing seems to have moved, and the error is small. */
 static void test_a_swing_that_ends_as_it_began(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1.1, 0, 1);
-  build_sized(&scene, STRUT_SPRING, 0, 1, 100, 0, 0, 1);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1.1, 0, 1);
+  build_sized(&setup.scene, STRUT_SPRING, 0, 1, 100, 0, 0, 1);
   double period = 2 * acos(-1) / 10;
-  motion_experiment(&scene, period / 40, 10 * period);
-  strut_summary s = motion_simulate(&scene);
+  motion_experiment(&setup, period / 40, 10 * period);
+  strut_summary s = motion_simulate(&setup);
   assert_within(fabs(s.energy.residual), 1e-5 * 0.5, 1e-3 * 0.5);
   assert_within(s.energy.moved, 0.45, 0.51); /* half of 100 N/m times 0.1 m squared */
   assert_int_equal(s.balance, STRUT_BALANCE_CLOSED);
   assert_int_equal(s.warning_count, 0);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* What stands still loses or gains what rounding does, which is all that moves. */
@@ -119,21 +120,21 @@ static void test_rest_is_no_open_balance(void **unused) {
 
 static void test_without_a_ledger_nothing_is_said(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.gravity[1] = -10;
-  build_mass(&scene, 0, 0.1, 1);
-  build_contact(&scene, 0, 1e5, 0);
-  motion_experiment(&scene, 2e-3, 1);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.scene.gravity[1] = -10;
+  build_mass(&setup.scene, 0, 0.1, 1);
+  build_contact(&setup.scene, 0, 1e5, 0);
+  motion_experiment(&setup, 2e-3, 1);
+  strut_model *model = motion_compile(&setup.scene);
   const strut_run_options options = {.without_ledger = true};
   strut_summary s;
-  assert_int_equal(strut_simulate(model, &options, &s, NULL), STRUT_OK);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   assert_int_equal(s.balance, STRUT_BALANCE_NOT_KEPT);
   assert_int_equal(s.warning_count, 0);
   strut_summary_free(&s);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

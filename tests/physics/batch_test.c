@@ -15,44 +15,45 @@
 
 /* A point: a scene of its own, run alone for the reference and in a lane. */
 typedef struct point {
-  strut_scene scene;
+  strut_setup setup;
   motion alone, lane; /* the lane's state is where it is put from and taken to */
   int64_t steps;
 } point;
 
 /* Other numbers, the same topology. */
-static void vary(strut_scene *scene, uint64_t *r) {
-  for (size_t i = 0; i < scene->node_count; i++) {
-    strut_node *node = &scene->nodes[i];
+static void vary(strut_setup *setup, uint64_t *r) {
+  for (size_t i = 0; i < setup->scene.node_count; i++) {
+    strut_node *node = &setup->scene.nodes[i];
     for (int c = 0; c < 2; c++) {
       node->start[c] += random_between(r, -0.05, 0.05);
       node->velocity[c] += node->fixed[c] ? 0.0 : random_between(r, -1, 1);
     }
     node->mass *= random_between(r, 0.8, 1.2);
   }
-  for (size_t j = 0; j < scene->member_count; j++) {
-    scene->members[j].stiffness *= random_between(r, 0.8, 1.2);
-    scene->members[j].damping *= random_between(r, 0.8, 1.2);
-    scene->members[j].mass *= random_between(r, 0.8, 1.2);
+  for (size_t j = 0; j < setup->scene.member_count; j++) {
+    setup->scene.members[j].stiffness *= random_between(r, 0.8, 1.2);
+    setup->scene.members[j].damping *= random_between(r, 0.8, 1.2);
+    setup->scene.members[j].mass *= random_between(r, 0.8, 1.2);
   }
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    scene->signals[i].amplitude *= random_between(r, 0.5, 1.5);
-    if (scene->signals[i].frequency > 0.0) scene->signals[i].frequency = random_scale(r, 0.1, 10);
+  for (size_t i = 0; i < setup->scene.signal_count; i++) {
+    setup->scene.signals[i].amplitude *= random_between(r, 0.5, 1.5);
+    if (setup->scene.signals[i].frequency > 0.0)
+      setup->scene.signals[i].frequency = random_scale(r, 0.1, 10);
   }
-  for (size_t i = 0; i < scene->load_count; i++) scene->loads[i].force[0] += 0.1;
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    strut_contact *c = &scene->contacts[i];
+  for (size_t i = 0; i < setup->scene.load_count; i++) setup->scene.loads[i].force[0] += 0.1;
+  for (size_t i = 0; i < setup->scene.contact_count; i++) {
+    strut_contact *c = &setup->scene.contacts[i];
     c->stiffness *= random_between(r, 0.8, 1.2), c->damping *= random_between(r, 0.8, 1.2);
     c->friction.mu_kinetic *= random_between(r, 0.5, 1.0);
     c->friction.stick_velocity *= random_between(r, 0.5, 2.0);
   }
-  scene->ground.height += random_between(r, -0.1, 0.1);
-  scene->ground.belt_speed *= random_between(r, 0.5, 1.5);
+  setup->scene.ground.height += random_between(r, -0.1, 0.1);
+  setup->scene.ground.belt_speed *= random_between(r, 0.5, 1.5);
 }
 
 static void begin_point(point *p, const char *method, double step, int64_t steps, bool ledger) {
-  motion_begin_by(&p->alone, &p->scene, method, step);
-  motion_begin_by(&p->lane, &p->scene, method, step);
+  motion_begin_by(&p->alone, &p->setup, method, step);
+  motion_begin_by(&p->lane, &p->setup, method, step);
   p->alone.state->ledger = p->lane.state->ledger = ledger;
   p->steps = steps;
 }
@@ -60,7 +61,7 @@ static void begin_point(point *p, const char *method, double step, int64_t steps
 static void end_point(point *p) {
   motion_end(&p->alone);
   motion_end(&p->lane);
-  strut_scene_free(&p->scene);
+  strut_setup_free(&p->setup);
 }
 
 /* Some of the motions are violent and end nowhere; of that only the sign may differ. */
@@ -131,10 +132,10 @@ static void run_in_lanes(point *points, int count, way how, bool ledger) {
 }
 
 /* What lanes with events do not take. */
-static void simplify(strut_scene *scene) {
-  scene->ground.slope = 0.0;
-  for (size_t j = 0; j < scene->member_count; j++)
-    if (scene->members[j].kind == STRUT_CABLE) scene->members[j].kind = STRUT_SPRING;
+static void simplify(strut_setup *setup) {
+  setup->scene.ground.slope = 0.0;
+  for (size_t j = 0; j < setup->scene.member_count; j++)
+    if (setup->scene.members[j].kind == STRUT_CABLE) setup->scene.members[j].kind = STRUT_SPRING;
 }
 
 static void compare_random(uint64_t seed, const char *method, way how, bool ledger, int *done,
@@ -145,9 +146,10 @@ static void compare_random(uint64_t seed, const char *method, way how, bool ledg
   int count = 0;
   bool possible = true;
   for (; count < POINTS && possible; count++) {
-    random_scene(&points[count].scene, seed);
-    if (count) vary(&points[count].scene, &r);
-    if (strcmp(method, "rk4") != 0) simplify(&points[count].scene);
+    strut_setup_init(&points[count].setup);
+    random_scene(&points[count].setup.scene, seed);
+    if (count) vary(&points[count].setup, &r);
+    if (strcmp(method, "rk4") != 0) simplify(&points[count].setup);
     begin_point(&points[count], method, random_scale(&r, 1e-4, 1e-3), 3 + random_below(&r, 200),
                 ledger);
     possible = strut_batch_possible(points[0].lane.model, points[0].lane.method) &&
@@ -185,11 +187,11 @@ static void run_crawlers(const char *method, way how, bool ledger) {
   static point points[POINTS];
   uint64_t r = 7;
   for (int i = 0; i < POINTS; i++) {
-    strut_scene_init(&points[i].scene);
-    structure_crawler(&points[i].scene, random_between(&r, 1, 20), random_between(&r, 1e-5, 1e-3),
-                      random_between(&r, 0.05, 0.6), i % 2);
-    if (i % 5 == 3) points[i].scene.signals[0].kind = STRUT_HALF_SINE;
-    points[i].scene.experiment.refine = i % 4;
+    strut_setup_init(&points[i].setup);
+    structure_crawler(&points[i].setup.scene, random_between(&r, 1, 20),
+                      random_between(&r, 1e-5, 1e-3), random_between(&r, 0.05, 0.6), i % 2);
+    if (i % 5 == 3) points[i].setup.scene.signals[0].kind = STRUT_HALF_SINE;
+    points[i].setup.experiment.refine = i % 4;
     begin_point(&points[i], method, random_between(&r, 5e-5, 1e-4), 200 + random_below(&r, 6000),
                 ledger);
     assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
@@ -214,11 +216,12 @@ static void run_at_edges(const char *method, way how) {
   static point points[POINTS];
   const double band = 0.125, depth = 1.0 / 64, k = 1024; /* N = 16, exactly */
   for (int i = 0; i < POINTS; i++) {
-    strut_scene *scene = &points[i].scene;
-    strut_scene_init(scene);
-    build_rough_contact(scene, build_mass(scene, 0, -depth, 1), k, 0, 0.5, 0.25, band);
-    build_load(scene, 0, pushes[i], -16, -1);
-    scene->ground.belt_speed = belts[i] * band;
+    strut_setup *setup = &points[i].setup;
+    strut_setup_init(setup);
+    build_rough_contact(&setup->scene, build_mass(&setup->scene, 0, -depth, 1), k, 0, 0.5, 0.25,
+                        band);
+    build_load(&setup->scene, 0, pushes[i], -16, -1);
+    setup->scene.ground.belt_speed = belts[i] * band;
     begin_point(&points[i], method, 1.0 / 1024, 3, true);
     assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
   }
@@ -237,14 +240,14 @@ static void test_edges_of_friction(void **unused) {
 /* What has no kernel, or another topology, is refused. */
 static void test_refusals(void **unused) {
   (void)unused;
-  strut_scene chain, crawler, other;
-  strut_scene_init(&chain), strut_scene_init(&crawler), strut_scene_init(&other);
-  structure_chain(&chain, 20, STRUT_MASS_CONSISTENT);
-  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
-  structure_crawler(&other, 10, 1e-4, 0.1, false);
-  other.members[3].node[0] = 4;
-  strut_model *a = motion_compile(&chain), *b = motion_compile(&crawler),
-              *c = motion_compile(&other);
+  strut_setup chain, crawler, other;
+  strut_setup_init(&chain), strut_setup_init(&crawler), strut_setup_init(&other);
+  structure_chain(&chain.scene, 20, STRUT_MASS_CONSISTENT);
+  structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
+  structure_crawler(&other.scene, 10, 1e-4, 0.1, false);
+  other.scene.members[3].node[0] = 4;
+  strut_model *a = motion_compile(&chain.scene), *b = motion_compile(&crawler.scene),
+              *c = motion_compile(&other.scene);
   const strut_integrator *rk4 = strut_integrator_find("rk4");
   assert_false(strut_batch_possible(a, rk4));
   assert_true(strut_batch_possible(b, rk4));
@@ -253,44 +256,44 @@ static void test_refusals(void **unused) {
   assert_false(strut_lanes_alike(b, c));
   assert_false(strut_lanes_alike(a, b));
   strut_model_free(a), strut_model_free(b), strut_model_free(c);
-  strut_scene_free(&chain), strut_scene_free(&crawler), strut_scene_free(&other);
+  strut_setup_free(&chain), strut_setup_free(&crawler), strut_setup_free(&other);
 }
 
 /* The batch asks for memory a handful of times, and says so when there is none. */
 /* A triangle on four nodes; each variant joins, drives, loads or touches something else. */
-static strut_model *variant(strut_scene *scene, int which) {
-  strut_scene_init(scene);
-  scene->mass_model = STRUT_MASS_LUMPED;
-  for (int i = 0; i < 4; i++) build_mass(scene, i, i * i, 1);
-  build_member(scene, STRUT_SPRING, which == 1 ? 3 : 0, 1, 10, 1, 0);
-  build_member(scene, STRUT_SPRING, 1, which == 2 ? 3 : 2, 10, 1, 0);
-  build_actuator(scene, which == 3, build_sine(scene, 0.1, 1));
-  build_load(scene, which == 4 ? 2 : 1, 1, 0, 0);
-  build_contact(scene, which == 5 ? 2 : 1, 100, 1);
-  return motion_compile(scene);
+static strut_model *variant(strut_setup *setup, int which) {
+  strut_setup_init(setup);
+  setup->scene.mass_model = STRUT_MASS_LUMPED;
+  for (int i = 0; i < 4; i++) build_mass(&setup->scene, i, i * i, 1);
+  build_member(&setup->scene, STRUT_SPRING, which == 1 ? 3 : 0, 1, 10, 1, 0);
+  build_member(&setup->scene, STRUT_SPRING, 1, which == 2 ? 3 : 2, 10, 1, 0);
+  build_actuator(&setup->scene, which == 3, build_sine(&setup->scene, 0.1, 1));
+  build_load(&setup->scene, which == 4 ? 2 : 1, 1, 0, 0);
+  build_contact(&setup->scene, which == 5 ? 2 : 1, 100, 1);
+  return motion_compile(&setup->scene);
 }
 
 static void test_only_one_topology_shares_a_batch(void **unused) {
   (void)unused;
-  strut_scene scene, other;
-  strut_model *first = variant(&scene, 0);
+  strut_setup setup, other;
+  strut_model *first = variant(&setup, 0);
   for (int which = 0; which <= 5; which++) {
     strut_model *model = variant(&other, which);
     assert_int_equal(strut_lanes_alike(first, model), which == 0);
     assert_int_equal(strut_lanes_alike(model, first), which == 0);
     strut_model_free(model);
-    strut_scene_free(&other);
+    strut_setup_free(&other);
   }
   strut_model_free(first);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_no_memory(void **unused) {
   (void)unused;
-  strut_scene crawler;
-  strut_scene_init(&crawler);
-  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
-  strut_model *model = motion_compile(&crawler);
+  strut_setup crawler;
+  strut_setup_init(&crawler);
+  structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
+  strut_model *model = motion_compile(&crawler.scene);
   strut_batch *batch = NULL;
   int refused = 0;
   for (; !batch && refused < 100; refused++) {
@@ -301,7 +304,7 @@ static void test_no_memory(void **unused) {
   assert_true(refused > 1 && batch);
   strut_batch_free(batch);
   strut_model_free(model);
-  strut_scene_free(&crawler);
+  strut_setup_free(&crawler);
 }
 
 int main(void) {

@@ -28,16 +28,16 @@ static void test_hunt_crossley_restitution_and_depth(void **unused) {
   (void)unused;
   static const double chis[] = {0.05, 0.5, 3};
   for (int k = 0; k < 3; k++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     double chi = chis[k], speed = 1.5, deepest = 0, before;
-    strut_scene_init(&scene);
-    int32_t node = build_mass(&scene, 0, 1e-3, MASS);
-    scene.nodes[node].velocity[1] = -speed;
-    int32_t c = build_contact(&scene, node, K, 7); /* not used by this law */
-    scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
-    scene.contacts[c].dissipation = chi;
-    motion_begin(&m, &scene, 1e-6);
+    strut_setup_init(&setup);
+    int32_t node = build_mass(&setup.scene, 0, 1e-3, MASS);
+    setup.scene.nodes[node].velocity[1] = -speed;
+    int32_t c = build_contact(&setup.scene, node, K, 7); /* not used by this law */
+    setup.scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
+    setup.scene.contacts[c].dissipation = chi;
+    motion_begin(&m, &setup.scene, 1e-6);
     m.state->ledger = true;
     before = 0.5 * MASS * speed * speed;
     do {
@@ -49,7 +49,7 @@ static void test_hunt_crossley_restitution_and_depth(void **unused) {
     double after = 0.5 * MASS * m.state->v[1] * m.state->v[1];
     assert_near(m.state->work[STRUT_POWER_CONTACT], before - after, 1e-5 * before);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -59,35 +59,36 @@ static void test_hunt_crossley_never_pulls(void **unused) {
   const double chi = 3, speed = 2, depth = 0.01, step = 1e-4;
   const strut_integrator *method;
   for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     if (method->no_ground) continue;
-    strut_scene_init(&scene);
-    build_contact(&scene, build_mass(&scene, 0, -depth, MASS), K, 0);
-    scene.nodes[0].velocity[1] = speed;
-    scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
-    scene.contacts[0].dissipation = chi;
-    motion_experiment(&scene, step, 1);
-    motion_begin_by(&m, &scene, method->name, step);
+    strut_setup_init(&setup);
+    build_contact(&setup.scene, build_mass(&setup.scene, 0, -depth, MASS), K, 0);
+    setup.scene.nodes[0].velocity[1] = speed;
+    setup.scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
+    setup.scene.contacts[0].dissipation = chi;
+    motion_experiment(&setup, step, 1);
+    motion_begin_by(&m, &setup, method->name, step);
     for (int k = 0; k < 10; k++) {
       motion_steps(&m, 10); /* out after 50 */
       assert_near(m.state->v[1], speed, 1e-12);
     }
     assert_near(m.state->q[1], speed * 100 * step - depth, 1e-12);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* A block on its static depth, so that N = m g. */
-static void block(strut_scene *scene, double slope, double mu, double width) {
-  strut_scene_init(scene);
-  scene->ground.slope = slope;
-  scene->gravity[0] = G * sin(slope), scene->gravity[1] = -G * cos(slope); /* N along the normal */
+static void block(strut_setup *setup, double slope, double mu, double width) {
+  strut_setup_init(setup);
+  setup->scene.ground.slope = slope;
+  setup->scene.gravity[0] = G * sin(slope),
+  setup->scene.gravity[1] = -G * cos(slope); /* N along the normal */
   double depth = MASS * G / K;
-  int32_t node = build_mass(scene, depth * sin(slope), -depth * cos(slope), MASS);
-  int32_t c = build_contact(scene, node, K, 0);
-  scene->contacts[c].friction =
+  int32_t node = build_mass(&setup->scene, depth * sin(slope), -depth * cos(slope), MASS);
+  int32_t c = build_contact(&setup->scene, node, K, 0);
+  setup->scene.contacts[c].friction =
       (strut_friction){.law = STRUT_FRICTION_SMOOTH, .mu_kinetic = mu, .width = width};
 }
 
@@ -98,13 +99,13 @@ static void test_smooth_friction_slows_a_block_by_its_closed_form(void **unused)
   (void)unused;
   static const double slopes[] = {0, 0.3};
   for (int k = 0; k < 2; k++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     const double mu = 0.3, width = 0.2, start = 1.0, time = 0.4;
-    block(&scene, slopes[k], mu, width);
-    scene.nodes[0].velocity[0] = start * cos(slopes[k]);
-    scene.nodes[0].velocity[1] = start * sin(slopes[k]);
-    motion_begin(&m, &scene, 1e-4);
+    block(&setup, slopes[k], mu, width);
+    setup.scene.nodes[0].velocity[0] = start * cos(slopes[k]);
+    setup.scene.nodes[0].velocity[1] = start * sin(slopes[k]);
+    motion_begin(&m, &setup.scene, 1e-4);
     m.state->ledger = true;
     motion_steps(&m, 4000);
     double u = hypot(m.state->v[0], m.state->v[1]);
@@ -112,56 +113,57 @@ static void test_smooth_friction_slows_a_block_by_its_closed_form(void **unused)
     assert_relative(m.state->work[STRUT_POWER_FRICTION], 0.5 * MASS * (start * start - u * u),
                     1e-8);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* Under a load below mu N it creeps at w F / sqrt((mu N)^2 - F^2). */
 static void test_smooth_friction_creeps(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   const double mu = 0.4, width = 0.01, full = mu * MASS * G, push = 0.6 * full;
-  block(&scene, 0, mu, width);
-  build_load(&scene, 0, push, 0, -1);
-  motion_begin(&m, &scene, 1e-4);
+  block(&setup, 0, mu, width);
+  build_load(&setup.scene, 0, push, 0, -1);
+  motion_begin(&m, &setup.scene, 1e-4);
   motion_steps(&m, 10000);
   assert_relative(m.state->v[0], width * push / sqrt(full * full - push * push), 1e-9);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Friction's slope at rest, mu N / width, is a rate of decay that the step must follow. */
 static void test_the_step_limit_counts_smooth_friction(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   const double mu = 0.4, width = 1e-4;
-  block(&scene, 0, mu, width);
-  motion_experiment(&scene, 1e-6, 1e-4);
-  strut_summary s = motion_simulate(&scene);
+  block(&setup, 0, mu, width);
+  motion_experiment(&setup, 1e-6, 1e-4);
+  strut_summary s = motion_simulate(&setup);
   assert_relative(s.step_limit, 2.785293563405 / (mu * G / width), 1e-6);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_exact_friction_needs_a_method_with_events(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
   strut_summary summary;
   strut_run_options options = {0};
-  block(&scene, 0, 0.4, 0);
-  scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
-  motion_experiment(&scene, 1e-4, 1e-2);
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_USAGE);
+  block(&setup, 0, 0.4, 0);
+  setup.scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+  motion_experiment(&setup, 1e-4, 1e-2);
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, &error),
+                   STRUT_USAGE);
   assert_non_null(strstr(error.message, "rk4-events"));
   strut_summary_free(&summary);
-  scene.experiment.integrator = "rk4-events";
-  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_OK);
+  setup.experiment.integrator = "rk4-events";
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, &error), STRUT_OK);
   strut_summary_free(&summary);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

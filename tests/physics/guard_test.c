@@ -17,18 +17,19 @@ static const double PI = 3.14159265358979323846;
  * tension t. Actuators shorten the springs' rest lengths slowly, so that w grows from 20 to 26.5
  * rad/s within a quarter of their period.
  */
-static void tightening(strut_scene *scene, const char *method, double step) {
-  strut_scene_init(scene);
-  build_support(scene, -1, 0);
-  build_support(scene, 1, 0);
-  build_mass(scene, 0, 0, MASS);
-  scene->nodes[2].fixed[0] = true;
-  scene->nodes[2].velocity[1] = 1e-3;
-  int32_t signal = build_sine(scene, -STROKE, FREQUENCY);
+static void tightening(strut_setup *setup, const char *method, double step) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, -1, 0);
+  build_support(&setup->scene, 1, 0);
+  build_mass(&setup->scene, 0, 0, MASS);
+  setup->scene.nodes[2].fixed[0] = true;
+  setup->scene.nodes[2].velocity[1] = 1e-3;
+  int32_t signal = build_sine(&setup->scene, -STROKE, FREQUENCY);
   for (int32_t i = 0; i < 2; i++)
-    build_actuator(scene, build_sized(scene, STRUT_SPRING, i, 2, STIFFNESS, 0, 0, REST), signal);
-  scene->experiment.integrator = method;
-  motion_experiment(scene, step, 0.5 / FREQUENCY);
+    build_actuator(&setup->scene,
+                   build_sized(&setup->scene, STRUT_SPRING, i, 2, STIFFNESS, 0, 0, REST), signal);
+  setup->experiment.integrator = method;
+  motion_experiment(setup, step, 0.5 / FREQUENCY);
 }
 
 /* When w has reached so much [s]. */
@@ -37,11 +38,11 @@ static double when(double omega) {
   return asin(stroke / STROKE) / (2 * PI * FREQUENCY);
 }
 
-static strut_status run(const strut_scene *scene, bool force, strut_summary *s, strut_error *e) {
+static strut_status run(const strut_setup *setup, bool force, strut_summary *s, strut_error *e) {
   strut_run_options options = {.force = force};
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   *e = (strut_error){0};
-  strut_status status = strut_simulate(model, &options, s, e);
+  strut_status status = strut_simulate(model, &setup->experiment, &options, s, e);
   strut_model_free(model);
   return status;
 }
@@ -53,11 +54,11 @@ static void check(const char *name) {
   const strut_integrator *method = strut_integrator_find(name);
   double reach = method->region == STRUT_REGION_RK4 ? 2 * sqrt(2) : 2, step = reach / 23.5;
   double looks = 2 * 256 / method->evaluations * step, crossing = when(23.5);
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
-  tightening(&scene, name, step);
-  assert_int_equal(run(&scene, false, &s, &error), STRUT_DIVERGED);
+  tightening(&setup, name, step);
+  assert_int_equal(run(&setup, false, &s, &error), STRUT_DIVERGED);
   print_message("%s: %s\n", name, error.message);
   assert_non_null(strstr(error.message, "t = "));
   assert_relative(s.step_limit, reach / 20, 1e-6);
@@ -74,15 +75,15 @@ static void check(const char *name) {
   assert_true(s.duration < 0.5 / FREQUENCY);
   double stopped = s.duration;
   strut_summary_free(&s);
-  strut_status status = run(&scene, true, &s, &error); /* --force: to the end, or out of bounds */
+  strut_status status = run(&setup, true, &s, &error); /* --force: to the end, or out of bounds */
   assert_true(status == STRUT_OK || strstr(error.message, "node 'n3'"));
   assert_true(s.duration >= stopped);
   strut_summary_free(&s);
-  scene.experiment.step = 0.99 * reach / 26.46;
-  assert_int_equal(run(&scene, false, &s, &error), STRUT_OK);
+  setup.experiment.step = 0.99 * reach / 26.46;
+  assert_int_equal(run(&setup, false, &s, &error), STRUT_OK);
   assert_true(s.limit_fell.limit == 0);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_structure_that_tightens(void **unused) {

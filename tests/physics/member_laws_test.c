@@ -13,15 +13,15 @@ static const double STEP = 1e-3;
 static void orbit(double x, double y, double vx, double vy) {
   const double k = 50, mass = 2, omega = sqrt(k / mass);
   const int64_t count = 10000;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double re, im, size = hypot(x, y) + hypot(vx, vy) / omega;
-  strut_scene_init(&scene);
-  int32_t pivot = build_support(&scene, 0.3, -0.2);
-  int32_t body = build_mass(&scene, 0.3 + x, -0.2 + y, mass);
-  build_sized(&scene, STRUT_SPRING, pivot, body, k, 0, 0, 0);
-  scene.nodes[body].velocity[0] = vx, scene.nodes[body].velocity[1] = vy;
-  motion_begin(&m, &scene, STEP);
+  strut_setup_init(&setup);
+  int32_t pivot = build_support(&setup.scene, 0.3, -0.2);
+  int32_t body = build_mass(&setup.scene, 0.3 + x, -0.2 + y, mass);
+  build_sized(&setup.scene, STRUT_SPRING, pivot, body, k, 0, 0, 0);
+  setup.scene.nodes[body].velocity[0] = vx, setup.scene.nodes[body].velocity[1] = vy;
+  motion_begin(&m, &setup.scene, STEP);
   motion_steps(&m, count);
   rk4_oscillation(omega * STEP, count, &re, &im);
   assert_near(m.state->q[2], 0.3 + re * x + im * vx / omega, 1e-12 * size);
@@ -29,7 +29,7 @@ static void orbit(double x, double y, double vx, double vy) {
   assert_near(m.state->v[2], re * vx - im * omega * x, 1e-12 * size * omega);
   assert_near(m.state->v[3], re * vy - im * omega * y, 1e-12 * size * omega);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_spring_of_no_rest_length_makes_an_ellipse(void **unused) {
@@ -48,23 +48,23 @@ static void test_the_ellipse_may_be_as_narrow_as_one_likes(void **unused) {
 
 /* Forces on the free end at stretch [m] and speed of lengthening [m/s]. */
 static double pull(strut_member_kind kind, double stretch, double rate) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double length, tension;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1, 0, 1);
-  build_member(&scene, kind, 0, 1, 100, 5, 0);
-  scene.nodes[1].start[0] = 1 + stretch;
-  scene.nodes[1].velocity[0] = rate;
-  motion_begin(&m, &scene, STEP);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, 1);
+  build_member(&setup.scene, kind, 0, 1, 100, 5, 0);
+  setup.scene.nodes[1].start[0] = 1 + stretch;
+  setup.scene.nodes[1].velocity[0] = rate;
+  motion_begin(&m, &setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
   strut_members_measure(m.model, m.state, &length, &tension);
   double force = -m.state->force[2];
   assert_near(tension, force, 1e-14 * fabs(force)); /* so slack: exactly 0 */
   assert_true(length == 1 + stretch);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return force;
 }
 
@@ -88,15 +88,15 @@ static void test_a_slack_cable_carries_nothing(void **unused) {
 static void test_a_ball_flies_freely_until_its_cable_is_taut(void **unused) {
   (void)unused;
   const double k = 400, mass = 0.5, speed = 2, omega = sqrt(k / mass);
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double re, im;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1, 0, mass);
-  build_sized(&scene, STRUT_CABLE, 0, 1, k, 0, 0, 1);
-  scene.nodes[1].velocity[0] = -speed;
-  motion_begin(&m, &scene, STEP);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, mass);
+  build_sized(&setup.scene, STRUT_CABLE, 0, 1, k, 0, 0, 1);
+  setup.scene.nodes[1].velocity[0] = -speed;
+  motion_begin(&m, &setup.scene, STEP);
   motion_steps(&m, 999);
   assert_true(m.state->v[2] == -speed);
   assert_near(m.state->q[2], 1 - speed * 0.999, 1e-13);
@@ -107,7 +107,7 @@ static void test_a_ball_flies_freely_until_its_cable_is_taut(void **unused) {
   assert_near(stretch, 0, 1e-13);
   assert_near(m.state->q[2], -1 - im * speed / omega, 1e-10);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Every method: a cable that lengthens but is slack lets a ball fly on, whatever its damper. */
@@ -115,21 +115,21 @@ static void test_a_slack_cable_holds_nothing_back_by_any_method(void **unused) {
   (void)unused;
   const strut_integrator *method;
   for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
-    strut_scene_init(&scene);
-    build_support(&scene, 0, 0);
-    build_mass(&scene, 0.5, 0.1, 0.5);
-    build_sized(&scene, STRUT_CABLE, 0, 1, 400, 30, 0, 1);
-    scene.nodes[1].velocity[0] = 2;
-    motion_experiment(&scene, STEP, 1);
-    motion_begin_by(&m, &scene, method->name, STEP);
+    strut_setup_init(&setup);
+    build_support(&setup.scene, 0, 0);
+    build_mass(&setup.scene, 0.5, 0.1, 0.5);
+    build_sized(&setup.scene, STRUT_CABLE, 0, 1, 400, 30, 0, 1);
+    setup.scene.nodes[1].velocity[0] = 2;
+    motion_experiment(&setup, STEP, 1);
+    motion_begin_by(&m, &setup, method->name, STEP);
     motion_steps(&m, 200);
     assert_near(m.state->v[2], 2, 1e-14);
     assert_near(m.state->v[3], 0, 1e-14);
     assert_near(m.state->q[2], 0.9, 1e-13);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -147,22 +147,22 @@ static void test_a_cable_lets_go_where_its_damper_would_push(void **unused) {
   const double k = 400, mass = 0.5, out = 0.1, omega = sqrt(k / mass), zeta = 0.2;
   double speed = out * omega * exp(-zeta * acos(zeta) / sqrt(1 - zeta * zeta));
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
-    strut_scene_init(&scene);
-    build_support(&scene, 0, 0);
-    build_mass(&scene, 1, 0, mass);
-    build_sized(&scene, STRUT_CABLE, 0, 1, k, 2 * zeta * sqrt(k * mass), 0, 1);
-    scene.nodes[1].start[0] = 1 + out;
-    motion_experiment(&scene, 1e-4, 1);
-    motion_begin_by(&m, &scene, known[i].method, 1e-4);
+    strut_setup_init(&setup);
+    build_support(&setup.scene, 0, 0);
+    build_mass(&setup.scene, 1, 0, mass);
+    build_sized(&setup.scene, STRUT_CABLE, 0, 1, k, 2 * zeta * sqrt(k * mass), 0, 1);
+    setup.scene.nodes[1].start[0] = 1 + out;
+    motion_experiment(&setup, 1e-4, 1);
+    motion_begin_by(&m, &setup, known[i].method, 1e-4);
     motion_steps(&m, 1000); /* a quarter of a period is 56 ms */
     double first = m.state->v[2];
     assert_relative(-first, speed, known[i].tolerance);
     motion_steps(&m, 1000);
     assert_near(m.state->v[2], first, 1e-14);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -170,22 +170,22 @@ static void test_a_cable_lets_go_where_its_damper_would_push(void **unused) {
    while it is taut. */
 static void test_a_driven_cable_goes_slack(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1, 0, 1);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, 1);
   strut_signal ramp = strut_signal_default(STRUT_RAMP);
   ramp.amplitude = 0.5, ramp.start = -1, ramp.stop = 1; /* 0.25 m/s, 0.25 m at t = 0 */
-  int32_t cable = build_sized(&scene, STRUT_CABLE, 0, 1, 100, 8, 0, 0.5);
-  build_actuator(&scene, cable, build_signal(&scene, ramp));
-  motion_begin(&m, &scene, STEP);
+  int32_t cable = build_sized(&setup.scene, STRUT_CABLE, 0, 1, 100, 8, 0, 0.5);
+  build_actuator(&setup.scene, cable, build_signal(&setup.scene, ramp));
+  motion_begin(&m, &setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
   assert_true(m.state->force[2] == -(100 * 0.25 - 8 * 0.25));
   strut_forces_evaluate(m.model, m.state, 1, m.state->q, m.state->v);
   assert_true(m.state->force[2] == 0);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

@@ -14,18 +14,18 @@
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
-static double explicit_limit(const strut_scene *scene) {
+static double explicit_limit(const strut_setup *setup) {
   strut_step_limit limit;
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
   strut_model_free(model);
   return limit.of[STRUT_REGION_RK4];
 }
 
-static strut_summary run_by(strut_scene *scene, const char *method, double step, double duration) {
-  scene->experiment.integrator = method;
-  motion_experiment(scene, step, duration);
-  return motion_simulate(scene);
+static strut_summary run_by(strut_setup *setup, const char *method, double step, double duration) {
+  setup->experiment.integrator = method;
+  motion_experiment(setup, step, duration);
+  return motion_simulate(setup);
 }
 
 static double farthest(const strut_summary *a, const strut_summary *b) {
@@ -36,11 +36,11 @@ static double farthest(const strut_summary *a, const strut_summary *b) {
 }
 
 /* A uniform rod let go horizontally, T = 4 sqrt(2 L / 3 g) K(sin 45 deg) where it is rigid. */
-static void pendulum(strut_scene *scene, double stiffness) {
-  strut_scene_init(scene);
-  scene->gravity[1] = -9.81;
-  int32_t pin = build_support(scene, 0, 0), tip = build_node(scene, 1, 0);
-  build_member(scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
+static void pendulum(strut_setup *setup, double stiffness) {
+  strut_setup_init(setup);
+  setup->scene.gravity[1] = -9.81;
+  int32_t pin = build_support(&setup->scene, 0, 0), tip = build_node(&setup->scene, 1, 0);
+  build_member(&setup->scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
 }
 
 static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
@@ -49,16 +49,16 @@ static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
   for (double stiffness = 1e8; stiffness < 2e12; stiffness *= 100) {
     double error[3];
     for (int k = 0; k < 3; k++) {
-      strut_scene scene;
-      pendulum(&scene, stiffness);
-      strut_summary s = run_by(&scene, "midpoint", period / (100 << k), 10.25 * period);
+      strut_setup setup;
+      pendulum(&setup, stiffness);
+      strut_summary s = run_by(&setup, "midpoint", period / (100 << k), 10.25 * period);
       error[k] = hypot(s.positions[2], s.positions[3] + 1.0);
       assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved + 1e-9);
       print_message(
           "stiffness %g, %d steps a period, %.0f times RK4's limit: %.2g m off after ten\n",
-          stiffness, 100 << k, s.step / explicit_limit(&scene), error[k]);
+          stiffness, 100 << k, s.step / explicit_limit(&setup), error[k]);
       strut_summary_free(&s);
-      strut_scene_free(&scene);
+      strut_setup_free(&setup);
     }
     assert_within(observed_order(error, 3), 1.9, 2.1);
   }
@@ -67,20 +67,20 @@ static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
 /* A closed frame, spinning and vibrating, at 100 times the largest step of RK4. */
 static void test_energy_of_a_stiff_frame(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   const x_frame frame = {.side = 1,
                          .cable_stiffness = 1e7,
                          .bar_stiffness = 1e9,
                          .force_density = 200,
                          .cable_mass = 0.1,
                          .bar_mass = 1};
-  strut_scene_init(&scene);
-  structure_x_frame(&scene, &frame);
-  structure_throw(&scene, 1.0, -2.0, 0.5);
-  scene.nodes[0].velocity[0] += 0.1;
-  double step = 100.0 * explicit_limit(&scene), most = 0.0;
+  strut_setup_init(&setup);
+  structure_x_frame(&setup.scene, &frame);
+  structure_throw(&setup.scene, 1.0, -2.0, 0.5);
+  setup.scene.nodes[0].velocity[0] += 0.1;
+  double step = 100.0 * explicit_limit(&setup), most = 0.0;
   motion m;
-  motion_begin_by(&m, &scene, "midpoint", step);
+  motion_begin_by(&m, &setup, "midpoint", step);
   strut_energies start = strut_energy_evaluate(m.model, m.state, 0.0);
   double whole = start.kinetic + start.elastic;
   for (int k = 0; k < 1000; k++) {
@@ -97,32 +97,32 @@ static void test_energy_of_a_stiff_frame(void **unused) {
   double rounding = 1e9 * 1.4 * 0x1p-52 * step * 2.3 * sqrt(1e5);
   assert_near(most, 0.0, rounding);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Masses in a row on soft springs and, every other one, on bars a million times as stiff. */
-static void chain(strut_scene *scene, double ratio) {
-  strut_scene_init(scene);
-  scene->gravity[1] = -9.81;
-  int32_t last = build_support(scene, 0, 0);
+static void chain(strut_setup *setup, double ratio) {
+  strut_setup_init(setup);
+  setup->scene.gravity[1] = -9.81;
+  int32_t last = build_support(&setup->scene, 0, 0);
   for (int i = 1; i <= 20; i++) {
-    int32_t next = build_mass(scene, 0.1 * i, 0.02 * (i % 2), 0.1);
-    build_member(scene, i % 2 ? STRUT_SPRING : STRUT_BAR, last, next, i % 2 ? 100.0 : 100.0 * ratio,
-                 0, 0);
+    int32_t next = build_mass(&setup->scene, 0.1 * i, 0.02 * (i % 2), 0.1);
+    build_member(&setup->scene, i % 2 ? STRUT_SPRING : STRUT_BAR, last, next,
+                 i % 2 ? 100.0 : 100.0 * ratio, 0, 0);
     last = next;
   }
 }
 
 static void test_stiff_chain_against_rk4(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   const double duration = 0.5;
-  chain(&scene, 1e6);
-  double limit = explicit_limit(&scene), error[3];
-  strut_summary exact = run_by(&scene, "rk4", 0.25 * limit, duration);
-  strut_summary usual = run_by(&scene, "rk4", 0.95 * limit, duration);
+  chain(&setup, 1e6);
+  double limit = explicit_limit(&setup), error[3];
+  strut_summary exact = run_by(&setup, "rk4", 0.25 * limit, duration);
+  strut_summary usual = run_by(&setup, "rk4", 0.95 * limit, duration);
   for (int k = 0; k < 3; k++) {
-    strut_summary s = run_by(&scene, "midpoint", ldexp(100.0 * limit, -k), duration);
+    strut_summary s = run_by(&setup, "midpoint", ldexp(100.0 * limit, -k), duration);
     error[k] = farthest(&s, &exact);
     double saving = (double)usual.force_evaluations / (double)s.force_evaluations;
     print_message("stiffness ratio 1e6, %d times RK4's limit: %.2g m off, a %.0fth of its forces\n",
@@ -133,7 +133,7 @@ static void test_stiff_chain_against_rk4(void **unused) {
   assert_true(error[0] < 0.04 && error[1] < 0.6 * error[0] && error[2] < 0.6 * error[1]);
   strut_summary_free(&exact);
   strut_summary_free(&usual);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /*
@@ -149,18 +149,19 @@ static void test_random_scenes(void **unused) {
   int better = 0;
   int64_t evaluations = 0, steps = 0;
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
-    strut_scene scene;
-    random_scene(&scene, seed);
-    scene.contact_count = 0;
-    scene.ground.present = false;
-    for (size_t i = 0; i < scene.member_count;
+    strut_setup setup;
+    strut_setup_init(&setup);
+    random_scene(&setup.scene, seed);
+    setup.scene.contact_count = 0;
+    setup.scene.ground.present = false;
+    for (size_t i = 0; i < setup.scene.member_count;
          i++) /* a damper turns round where it has no length */
-      if (scene.members[i].stiffness > 0.0 && scene.members[i].rest_value == 0.0)
-        scene.members[i].damping = 0.0;
-    double fine = fmin(5e-6, 0.2 * explicit_limit(&scene));
-    strut_summary exact = run_by(&scene, "rk4", fine, duration);
-    strut_summary coarse = run_by(&scene, "midpoint", 1.6e-3, duration);
-    strut_summary s = run_by(&scene, "midpoint", 1e-4, duration);
+      if (setup.scene.members[i].stiffness > 0.0 && setup.scene.members[i].rest_value == 0.0)
+        setup.scene.members[i].damping = 0.0;
+    double fine = fmin(5e-6, 0.2 * explicit_limit(&setup));
+    strut_summary exact = run_by(&setup, "rk4", fine, duration);
+    strut_summary coarse = run_by(&setup, "midpoint", 1.6e-3, duration);
+    strut_summary s = run_by(&setup, "midpoint", 1e-4, duration);
     double before = farthest(&coarse, &exact), error = farthest(&s, &exact);
     balance = fmax(balance, fabs(coarse.energy.residual) / (coarse.energy.moved + 1.0));
     balance = fmax(balance, fabs(s.energy.residual) / (s.energy.moved + 1.0));
@@ -169,7 +170,7 @@ static void test_random_scenes(void **unused) {
     strut_summary_free(&exact);
     strut_summary_free(&coarse);
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   print_message(
       "%d scenes: %d better by 4 with 0.1 ms than with 1.6 ms; balance of all within %.2g; "
@@ -180,16 +181,16 @@ static void test_random_scenes(void **unused) {
 }
 
 /* The same without jumps: what a cable loses with its tension, and signals that begin, end or turn. */
-static void take_jumps_out(strut_scene *scene) {
-  scene->contact_count = 0;
-  scene->ground.present = false;
-  for (size_t i = 0; i < scene->member_count; i++) {
-    strut_member *m = &scene->members[i];
+static void take_jumps_out(strut_setup *setup) {
+  setup->scene.contact_count = 0;
+  setup->scene.ground.present = false;
+  for (size_t i = 0; i < setup->scene.member_count; i++) {
+    strut_member *m = &setup->scene.members[i];
     if (m->stiffness > 0.0 && (m->rest_value == 0.0 || m->kind == STRUT_CABLE)) m->damping = 0.0;
     if (m->kind == STRUT_CABLE && !(m->stiffness > 0.0)) m->kind = STRUT_SPRING;
   }
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    strut_signal *s = &scene->signals[i];
+  for (size_t i = 0; i < setup->scene.signal_count; i++) {
+    strut_signal *s = &setup->scene.signals[i];
     s->start = 0.0, s->stop = HUGE_VAL;
     if (s->kind == STRUT_CONSTANT || s->kind == STRUT_SUM) continue;
     s->kind = STRUT_SINE;
@@ -204,13 +205,14 @@ static void test_order_on_random_scenes(void **unused) {
   const double duration = 0.016;
   double least = HUGE_VAL, most = 0.0;
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
-    strut_scene scene;
-    random_scene(&scene, seed);
-    take_jumps_out(&scene);
-    strut_summary exact = run_by(&scene, "rk4", 1e-6, duration);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    random_scene(&setup.scene, seed);
+    take_jumps_out(&setup);
+    strut_summary exact = run_by(&setup, "rk4", 1e-6, duration);
     double error[3];
     for (int k = 0; k < 3; k++) {
-      strut_summary s = run_by(&scene, "midpoint", ldexp(8e-5, -k), duration);
+      strut_summary s = run_by(&setup, "midpoint", ldexp(8e-5, -k), duration);
       error[k] = farthest(&s, &exact);
       strut_summary_free(&s);
     }
@@ -219,7 +221,7 @@ static void test_order_on_random_scenes(void **unused) {
       least = fmin(least, factor), most = fmax(most, factor);
     }
     strut_summary_free(&exact);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   print_message("%d scenes without jumps: errors fall by %.3f to %.3f\n", SCENES, least, most);
   assert_within(least, 3.9, 4.0);
@@ -229,77 +231,77 @@ static void test_order_on_random_scenes(void **unused) {
 /* A mass on a cable with a damper, thrown through its slack length again and again: 1000 steps. */
 static void test_cable_in_large_steps(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.gravity[1] = -9.81;
-  int32_t hook = build_support(&scene, 0, 0), mass = build_mass(&scene, 0.4, -0.2, 1);
-  build_sized(&scene, STRUT_CABLE, hook, mass, 1e8, 100, 0, 1.0);
-  strut_summary s = run_by(&scene, "midpoint", 100 * sqrt(8.0 / 1e8), 30.0);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.scene.gravity[1] = -9.81;
+  int32_t hook = build_support(&setup.scene, 0, 0), mass = build_mass(&setup.scene, 0.4, -0.2, 1);
+  build_sized(&setup.scene, STRUT_CABLE, hook, mass, 1e8, 100, 0, 1.0);
+  strut_summary s = run_by(&setup, "midpoint", 100 * sqrt(8.0 / 1e8), 30.0);
   print_message("cable: energy off by %.2g of %.2g J moved; %.2f J lost\n", s.energy.residual,
                 s.energy.moved, s.energy.dissipated_members);
   assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved);
   assert_true(hypot(s.positions[2], s.positions[3]) < 1.01);
   assert_true(s.energy.dissipated_members > 0.0);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A swing of small amplitude: midpoint turns by 2 atan(omega h / 2) in a step. */
 static void test_frequency_is_that_of_midpoint(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t wall = build_support(&scene, 0, 0), mass = build_mass(&scene, 1, 0, 2);
-  build_sized(&scene, STRUT_SPRING, wall, mass, 50, 0, 0, 0.9);
-  scene.nodes[mass].fixed[1] = true;
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t wall = build_support(&setup.scene, 0, 0), mass = build_mass(&setup.scene, 1, 0, 2);
+  build_sized(&setup.scene, STRUT_SPRING, wall, mass, 50, 0, 0, 0.9);
+  setup.scene.nodes[mass].fixed[1] = true;
   double turn = 2.0 * atan(0.5 * 5.0 * 0.3);
   motion m;
-  motion_begin_by(&m, &scene, "midpoint", 0.3);
+  motion_begin_by(&m, &setup, "midpoint", 0.3);
   for (int n = 1; n <= 1000; n++) {
     motion_steps(&m, 1);
     assert_near(m.state->q[2 * mass], 0.9 + 0.1 * cos(n * turn), 1e-12);
     assert_near(m.state->v[2 * mass], -0.5 * sin(n * turn), 1e-11);
   }
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
-static void expect_refusal(strut_scene *scene, const char *word) {
+static void expect_refusal(strut_setup *setup, const char *word) {
   strut_error error = {0};
-  strut_model *model = motion_compile(scene);
-  scene->experiment.integrator = "midpoint";
-  assert_int_equal(strut_integrator_check(model, &error), STRUT_USAGE);
+  strut_model *model = motion_compile(&setup->scene);
+  setup->experiment.integrator = "midpoint";
+  assert_int_equal(strut_integrator_check(model, &setup->experiment, &error), STRUT_USAGE);
   assert_non_null(strstr(error.message, word));
   strut_model_free(model);
 }
 
 static void test_refusals(void **unused) {
   (void)unused;
-  strut_scene scene;
-  pendulum(&scene, 1e6);
-  scene.bar_model = STRUT_BARS_RIGID;
-  expect_refusal(&scene, "rigid");
-  scene.bar_model = STRUT_BARS_ELASTIC;
-  build_contact(&scene, 1, 1e4, 0);
-  expect_refusal(&scene, "'n2' may touch the ground");
-  strut_scene_free(&scene);
+  strut_setup setup;
+  pendulum(&setup, 1e6);
+  setup.scene.bar_model = STRUT_BARS_RIGID;
+  expect_refusal(&setup, "rigid");
+  setup.scene.bar_model = STRUT_BARS_ELASTIC;
+  build_contact(&setup.scene, 1, 1e4, 0);
+  expect_refusal(&setup, "'n2' may touch the ground");
+  strut_setup_free(&setup);
 }
 
 /* A force that no number of metres a second goes with. */
 static void test_no_solution_is_named(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error = {0};
   strut_run_options options = {0};
-  pendulum(&scene, 1e6);
+  pendulum(&setup, 1e6);
   strut_signal late = strut_signal_default(STRUT_CONSTANT);
   late.amplitude = 1e300, late.start = 0.5;
-  build_load(&scene, 1, 1e9, 0, build_signal(&scene, late));
-  scene.experiment.integrator = "midpoint";
-  motion_experiment(&scene, 0.01, 1.0);
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_simulate(model, &options, &s, &error), STRUT_DIVERGED);
+  build_load(&setup.scene, 1, 1e9, 0, build_signal(&setup.scene, late));
+  setup.experiment.integrator = "midpoint";
+  motion_experiment(&setup, 0.01, 1.0);
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error), STRUT_DIVERGED);
   print_message("%s\n", error.message);
   assert_non_null(strstr(error.message, "no solution of its step at t = 0.5 s"));
   assert_non_null(strstr(error.message, "node 'n2'"));
@@ -307,7 +309,7 @@ static void test_no_solution_is_named(void **unused) {
   assert_int_equal(s.steps, 50);
   strut_summary_free(&s);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

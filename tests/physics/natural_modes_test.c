@@ -17,19 +17,19 @@ static strut_model *model;
 static strut_modes modes;
 
 /* Modes of a scene; free_modes frees them, and the model. */
-static void find_with(const strut_scene *scene, strut_modes_options options) {
+static void find_with(const strut_setup *setup, strut_modes_options options) {
   strut_error error = {0};
-  model = motion_compile(scene);
-  strut_status status = strut_modes_find(model, &options, &modes, &error);
+  model = motion_compile(&setup->scene);
+  strut_status status = strut_modes_find(model, &setup->experiment, &options, &modes, &error);
   if (status != STRUT_OK) fail_msg("%s", error.message);
 }
 
-static void find(const strut_scene *scene) { find_with(scene, (strut_modes_options){.count = 0}); }
+static void find(const strut_setup *setup) { find_with(setup, (strut_modes_options){.count = 0}); }
 
-static void free_modes(strut_scene *scene) {
+static void free_modes(strut_setup *setup) {
   strut_modes_free(&modes);
   strut_model_free(model);
-  strut_scene_free(scene);
+  strut_setup_free(setup);
 }
 
 static size_t count_kind(strut_mode_kind kind) {
@@ -47,15 +47,15 @@ static const x_frame FRAME = {.side = 1,
 
 static void test_x_frame(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   double kc = 1000, kb = 5e4, q = 120, mc = 0.02, mb = 0.3;
   double expected[5] = {8 * (kc + q) / (4 * mc / 3 + 2 * mb), 8 * (kc + q) / (4 * mc / 3 + 2 * mb),
                         16 * (kc - q) / (16 * mc / 3 + 4 * mb / 3),
                         8 * (kb + q) / (8 * mc / 3 + 2 * mb / 3),
                         8 * (kc + kb) / (8 * mc / 3 + 2 * mb / 3)};
-  strut_scene_init(&scene);
-  structure_x_frame(&scene, &FRAME);
-  find(&scene);
+  strut_setup_init(&setup);
+  structure_x_frame(&setup.scene, &FRAME);
+  find(&setup);
   assert_int_equal(modes.count, 8);
   for (size_t i = 0; i < 3; i++) {
     assert_int_equal(modes.list[i].kind, STRUT_MODE_RIGID);
@@ -69,16 +69,16 @@ static void test_x_frame(void **unused) {
   }
   assert_string_equal(modes.list[0].description, "the whole moves along x");
   assert_string_equal(modes.list[2].description, "the whole turns freely");
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* K and M of a free structure as the book has it, in doubles. */
-static void assemble(const strut_scene *scene, gsl_matrix *k, gsl_matrix *m) {
-  for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *member = &scene->members[j];
+static void assemble(const strut_setup *setup, gsl_matrix *k, gsl_matrix *m) {
+  for (size_t j = 0; j < setup->scene.member_count; j++) {
+    const strut_member *member = &setup->scene.members[j];
     size_t a = 2 * (size_t)member->node[0], b = 2 * (size_t)member->node[1];
-    const double *p = scene->nodes[member->node[0]].position;
-    const double *r = scene->nodes[member->node[1]].position;
+    const double *p = setup->scene.nodes[member->node[0]].position;
+    const double *r = setup->scene.nodes[member->node[1]].position;
     double d[2] = {r[0] - p[0], r[1] - p[1]}, length = hypot(d[0], d[1]);
     double density = member->rest_value;
     for (size_t x = 0; x < 2; x++)
@@ -100,19 +100,19 @@ static void assemble(const strut_scene *scene, gsl_matrix *k, gsl_matrix *m) {
 
 static void test_x_frame_with_unequal_members(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  structure_x_frame(&scene, &FRAME);
-  for (size_t j = 0; j < scene.member_count; j++) {
-    scene.members[j].stiffness *= 1 + 0.37 * (double)(j + 1);
-    scene.members[j].mass *= 1 + 0.61 * (double)(6 - j);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  structure_x_frame(&setup.scene, &FRAME);
+  for (size_t j = 0; j < setup.scene.member_count; j++) {
+    setup.scene.members[j].stiffness *= 1 + 0.37 * (double)(j + 1);
+    setup.scene.members[j].mass *= 1 + 0.61 * (double)(6 - j);
   }
   gsl_matrix *k = gsl_matrix_calloc(8, 8), *m = gsl_matrix_calloc(8, 8);
   gsl_vector *value = gsl_vector_alloc(8);
   gsl_eigen_gensymm_workspace *w = gsl_eigen_gensymm_alloc(8);
-  assemble(&scene, k, m);
+  assemble(&setup, k, m);
   assert_int_equal(gsl_eigen_gensymm(k, m, value, w), 0);
-  find(&scene);
+  find(&setup);
   for (size_t i = 0; i < 8; i++) {
     size_t below = 0;
     for (size_t n = 0; n < 8; n++) below += gsl_vector_get(value, n) < gsl_vector_get(value, i);
@@ -125,20 +125,20 @@ static void test_x_frame_with_unequal_members(void **unused) {
   gsl_vector_free(value);
   gsl_matrix_free(m);
   gsl_matrix_free(k);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 static void check_chain(strut_mass_model mass_model, bool sparse) {
   enum { N = 20 };
   const double k = 700, m = 0.03;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.mass_model = mass_model;
-  for (int i = 0; i <= N; i++) build_node(&scene, 0.1 * i, 0);
-  for (int i = 0; i <= N; i++) scene.nodes[i].fixed[1] = true;
-  scene.nodes[0].fixed[0] = scene.nodes[N].fixed[0] = true;
-  for (int i = 0; i < N; i++) build_member(&scene, STRUT_BAR, i, i + 1, k, 0, m);
-  find_with(&scene, (strut_modes_options){.count = sparse ? 6 : 0, .sparse = sparse});
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.scene.mass_model = mass_model;
+  for (int i = 0; i <= N; i++) build_node(&setup.scene, 0.1 * i, 0);
+  for (int i = 0; i <= N; i++) setup.scene.nodes[i].fixed[1] = true;
+  setup.scene.nodes[0].fixed[0] = setup.scene.nodes[N].fixed[0] = true;
+  for (int i = 0; i < N; i++) build_member(&setup.scene, STRUT_BAR, i, i + 1, k, 0, m);
+  find_with(&setup, (strut_modes_options){.count = sparse ? 6 : 0, .sparse = sparse});
   assert_int_equal(modes.count, sparse ? 6 : N - 1);
   for (size_t j = 1; j <= modes.count; j++) {
     double half = sin((double)j * PI / (2 * N)), fall = 2 * half * half; /* 1 - cos */
@@ -147,7 +147,7 @@ static void check_chain(strut_mass_model mass_model, bool sparse) {
     assert_relative(modes.list[j - 1].angular_frequency, sqrt(expected), 1e-12);
     assert_relative(modes.list[j - 1].eigenvalue, expected, 1e-12);
   }
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 static void test_chain_of_twenty(void **unused) {
@@ -161,16 +161,16 @@ static void test_chain_of_twenty(void **unused) {
 static void test_free_bar(void **unused) {
   (void)unused;
   for (int lumped = 0; lumped < 2; lumped++) {
-    strut_scene scene;
-    strut_scene_init(&scene);
-    scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
-    build_node(&scene, 0.3, -2), build_node(&scene, 1.7, 0.4);
-    build_member(&scene, STRUT_BAR, 0, 1, 3e4, 0, 0.7);
-    find(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    setup.scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+    build_node(&setup.scene, 0.3, -2), build_node(&setup.scene, 1.7, 0.4);
+    build_member(&setup.scene, STRUT_BAR, 0, 1, 3e4, 0, 0.7);
+    find(&setup);
     assert_int_equal(modes.count, 4);
     assert_int_equal(count_kind(STRUT_MODE_RIGID), 3);
     assert_relative(modes.list[3].eigenvalue, (lumped ? 4 : 12) * 3e4 / 0.7, 1e-13);
-    free_modes(&scene);
+    free_modes(&setup);
   }
 }
 
@@ -180,16 +180,16 @@ static void test_double_pendulum_goes_to_the_rigid_limit(void **unused) {
   double limit[2] = {9.81 * (3 - 6 / sqrt(7)), 9.81 * (3 + 6 / sqrt(7))}, error[2][6];
   size_t count = 0;
   for (double k = 1e5; k < 2e10; k *= 10, count++) {
-    strut_scene scene;
-    strut_scene_init(&scene);
-    structure_pendulum(&scene, k, 0, true, 0);
-    scene.gravity[0] = 0, scene.gravity[1] = -9.81;
-    find(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    structure_pendulum(&setup.scene, k, 0, true, 0);
+    setup.scene.gravity[0] = 0, setup.scene.gravity[1] = -9.81;
+    find(&setup);
     for (size_t i = 0; i < 2; i++) {
       error[i][count] = fabs(modes.list[i].eigenvalue / limit[i] - 1);
       assert_true(modes.list[i].error < 1e-9);
     }
-    free_modes(&scene);
+    free_modes(&setup);
   }
   assert_int_equal(count, 6);
   for (size_t i = 0; i < 2; i++) {
@@ -205,12 +205,12 @@ static void test_damped_oscillator(void **unused) {
   const double k = 90, m = 2.5;
   for (int i = 0; i < 3; i++) {
     double zeta = (double[]){0.03, 0.6, 1.7}[i], omega = sqrt(k / m);
-    strut_scene scene;
-    strut_scene_init(&scene);
-    build_support(&scene, 0, 0), build_mass(&scene, 1, 0, m);
-    scene.nodes[1].fixed[1] = true;
-    build_member(&scene, STRUT_SPRING, 0, 1, k, 2 * zeta * m * omega, 0);
-    find(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 1, 0, m);
+    setup.scene.nodes[1].fixed[1] = true;
+    build_member(&setup.scene, STRUT_SPRING, 0, 1, k, 2 * zeta * m * omega, 0);
+    find(&setup);
     assert_int_equal(modes.count, 1);
     assert_true(modes.damped_exactly);
     assert_relative(modes.list[0].damping_ratio, zeta, 1e-13);
@@ -218,7 +218,7 @@ static void test_damped_oscillator(void **unused) {
     assert_near(modes.list[0].damped_frequency, zeta < 1 ? omega * root : 0, 1e-12 * omega);
     assert_relative(modes.list[0].decay_rate, zeta < 1 ? zeta * omega : omega * (zeta - root),
                     1e-12);
-    free_modes(&scene);
+    free_modes(&setup);
   }
 }
 
@@ -226,13 +226,15 @@ static void test_damped_oscillator(void **unused) {
 static void test_damping_that_couples_modes(void **unused) {
   (void)unused;
   const double k[3] = {50, 80, 20}, m[2] = {1, 3}, d = 4;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0), build_mass(&scene, 1, 0, m[0]), build_mass(&scene, 2, 0, m[1]);
-  build_support(&scene, 3, 0);
-  for (int i = 1; i < 3; i++) scene.nodes[i].fixed[1] = true;
-  for (int i = 0; i < 3; i++) build_member(&scene, STRUT_SPRING, i, i + 1, k[i], i == 0 ? d : 0, 0);
-  find(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 1, 0, m[0]),
+      build_mass(&setup.scene, 2, 0, m[1]);
+  build_support(&setup.scene, 3, 0);
+  for (int i = 1; i < 3; i++) setup.scene.nodes[i].fixed[1] = true;
+  for (int i = 0; i < 3; i++)
+    build_member(&setup.scene, STRUT_SPRING, i, i + 1, k[i], i == 0 ? d : 0, 0);
+  find(&setup);
   for (size_t i = 0; i < 2; i++) {
     double x = -modes.list[i].decay_rate, y = modes.list[i].damped_frequency;
     double z2[2] = {x * x - y * y, 2 * x * y};
@@ -243,18 +245,18 @@ static void test_damping_that_couples_modes(void **unused) {
     assert_relative(modes.list[i].damping_ratio, -x / hypot(x, y), 1e-12);
   }
   assert_true(modes.list[0].damped_frequency < modes.list[1].damped_frequency);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* Four bars in a square: it may move, turn, and shear. */
 static void test_mechanism_beside_rigid_motions(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
   for (int i = 0; i < 4; i++)
-    build_node(&scene, 5 + (i == 1 || i == 2), i >= 2), scene.nodes[i].mass = 0.2;
-  for (int i = 0; i < 4; i++) build_member(&scene, STRUT_BAR, i, (i + 1) % 4, 1e6, 0, 0.1);
-  find(&scene);
+    build_node(&setup.scene, 5 + (i == 1 || i == 2), i >= 2), setup.scene.nodes[i].mass = 0.2;
+  for (int i = 0; i < 4; i++) build_member(&setup.scene, STRUT_BAR, i, (i + 1) % 4, 1e6, 0, 0.1);
+  find(&setup);
   assert_int_equal(count_kind(STRUT_MODE_RIGID), 3);
   assert_int_equal(count_kind(STRUT_MODE_MECHANISM), 1);
   assert_int_equal(count_kind(STRUT_MODE_ELASTIC), 4);
@@ -265,39 +267,39 @@ static void test_mechanism_beside_rigid_motions(void **unused) {
   assert_near(x[3], x[5], 1e-12);
   assert_near(x[4], x[6], 1e-12);
   assert_near(x[7], x[1], 1e-12);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* A weight on top of a rod falls over: one unstable motion, of the pendulum turned round. */
 static void test_unstable(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0), build_mass(&scene, 0, 2, 3);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 0, 2, 3);
   double k = 1e6, down = 3 * 9.81 / k;
-  build_sized(&scene, STRUT_BAR, 0, 1, k, 0, 0, 2 + down);
-  scene.gravity[1] = -9.81;
-  find_with(&scene, (strut_modes_options){.at = "drawn"});
+  build_sized(&setup.scene, STRUT_BAR, 0, 1, k, 0, 0, 2 + down);
+  setup.scene.gravity[1] = -9.81;
+  find_with(&setup, (strut_modes_options){.at = "drawn"});
   assert_int_equal(modes.list[0].kind, STRUT_MODE_UNSTABLE);
   assert_relative(modes.list[0].eigenvalue, -9.81 / 2, 1e-9);
   assert_true(modes.list[0].angular_frequency == 0);
   assert_relative(modes.list[1].eigenvalue, k / 3, 1e-12);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* Frames in a row: 240 coordinates by both ways. */
 static void test_sparse_is_dense(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  structure_chain(&scene, 60, STRUT_MASS_CONSISTENT);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  structure_chain(&setup.scene, 60, STRUT_MASS_CONSISTENT);
   strut_model *kept_model;
   strut_modes kept;
-  find_with(&scene, (strut_modes_options){.at = "drawn", .count = 12});
+  find_with(&setup, (strut_modes_options){.at = "drawn", .count = 12});
   assert_int_equal(modes.coordinates, 240);
   assert_true(modes.dense);
   kept_model = model, kept = modes;
-  find_with(&scene, (strut_modes_options){.at = "drawn", .count = 12, .sparse = true});
+  find_with(&setup, (strut_modes_options){.at = "drawn", .count = 12, .sparse = true});
   assert_false(modes.dense);
   assert_int_equal(modes.count, 12);
   for (size_t i = 0; i < 12; i++) {
@@ -311,22 +313,23 @@ static void test_sparse_is_dense(void **unused) {
   }
   strut_modes_free(&kept);
   strut_model_free(kept_model);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* The sparse way without supports, where K has zeros: rigid motions are named there too. */
 static void test_sparse_with_rigid_motions(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  structure_chain(&scene, 30, STRUT_MASS_CONSISTENT);
-  for (size_t i = 0; i < scene.node_count; i++)
-    scene.nodes[i].fixed[0] = scene.nodes[i].fixed[1] = false, scene.nodes[i].mass = 0.1;
-  find_with(&scene, (strut_modes_options){.at = "drawn", .count = 8, .sparse = true});
+  strut_setup setup;
+  strut_setup_init(&setup);
+  structure_chain(&setup.scene, 30, STRUT_MASS_CONSISTENT);
+  for (size_t i = 0; i < setup.scene.node_count; i++)
+    setup.scene.nodes[i].fixed[0] = setup.scene.nodes[i].fixed[1] = false,
+    setup.scene.nodes[i].mass = 0.1;
+  find_with(&setup, (strut_modes_options){.at = "drawn", .count = 8, .sparse = true});
   assert_int_equal(modes.count, 8);
   if (modes.at_rest) assert_int_equal(count_kind(STRUT_MODE_RIGID), 3);
   assert_true(modes.list[7].error < 1e-8);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /*
@@ -335,13 +338,15 @@ static void test_sparse_with_rigid_motions(void **unused) {
  */
 static void test_stiffness_ratios_of_a_million_million(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.mass_model = STRUT_MASS_LUMPED;
-  for (int i = 0; i < 8; i++) build_mass(&scene, i, 0, i ? 1 : 0), scene.nodes[i].fixed[1] = true;
-  scene.nodes[0].fixed[0] = true;
-  for (int i = 0; i < 7; i++) build_member(&scene, STRUT_SPRING, i, i + 1, i % 2 ? 1e12 : 1, 0, 0);
-  find(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.scene.mass_model = STRUT_MASS_LUMPED;
+  for (int i = 0; i < 8; i++)
+    build_mass(&setup.scene, i, 0, i ? 1 : 0), setup.scene.nodes[i].fixed[1] = true;
+  setup.scene.nodes[0].fixed[0] = true;
+  for (int i = 0; i < 7; i++)
+    build_member(&setup.scene, STRUT_SPRING, i, i + 1, i % 2 ? 1e12 : 1, 0, 0);
+  find(&setup);
   /* Pairs of mass 2 in a chain of 4 soft springs: 3 pairs and a mass of 1 at the end, K = chain. */
   gsl_matrix *k = gsl_matrix_calloc(4, 4), *m = gsl_matrix_calloc(4, 4);
   for (size_t i = 0; i < 4; i++) {
@@ -363,81 +368,86 @@ static void test_stiffness_ratios_of_a_million_million(void **unused) {
   gsl_vector_free(value);
   gsl_matrix_free(m);
   gsl_matrix_free(k);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* Soft cables around bars 1e13 times as stiff: their stretch decides, which is known. */
 static void test_stiff_bars_in_soft_cables(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   double kc = 1, kb = 1e13, q = 0.1, mc = 0.02, mb = 0.3;
   x_frame frame = FRAME;
   frame.cable_stiffness = kc, frame.bar_stiffness = kb, frame.force_density = q;
   frame.side = 1.0 / 3;
-  strut_scene_init(&scene);
-  structure_x_frame(&scene, &frame);
-  find(&scene);
+  strut_setup_init(&setup);
+  structure_x_frame(&setup.scene, &frame);
+  find(&setup);
   double expected[5] = {8 * (kc + q) / (4 * mc / 3 + 2 * mb), 8 * (kc + q) / (4 * mc / 3 + 2 * mb),
                         16 * (kc - q) / (16 * mc / 3 + 4 * mb / 3),
                         8 * (kb + q) / (8 * mc / 3 + 2 * mb / 3),
                         8 * (kc + kb) / (8 * mc / 3 + 2 * mb / 3)};
   for (size_t i = 0; i < 5; i++) assert_relative(modes.list[3 + i].eigenvalue, expected[i], 1e-10);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* A mass in the middle of a stiff string whose tension is some last bits of its length. */
 static void test_refuses_what_the_last_bits_decide(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
-  strut_scene_init(&scene);
-  build_support(&scene, -1, 0), build_mass(&scene, 0, 0, 1), build_support(&scene, 1, 0);
-  for (int i = 0; i < 2; i++) build_sized(&scene, STRUT_CABLE, i, i + 1, 1e13, 0, 0, 1 - 1e-13);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, -1, 0), build_mass(&setup.scene, 0, 0, 1),
+      build_support(&setup.scene, 1, 0);
+  for (int i = 0; i < 2; i++)
+    build_sized(&setup.scene, STRUT_CABLE, i, i + 1, 1e13, 0, 0, 1 - 1e-13);
   strut_modes_options options = {.at = "drawn"};
-  model = motion_compile(&scene);
-  assert_int_equal(strut_modes_find(model, &options, &modes, &error), STRUT_SINGULAR);
+  model = motion_compile(&setup.scene);
+  assert_int_equal(strut_modes_find(model, &setup.experiment, &options, &modes, &error),
+                   STRUT_SINGULAR);
   assert_non_null(strstr(error.message, "condition"));
   assert_non_null(strstr(error.message, "last bits"));
   strut_modes_free(&modes);
   strut_model_free(model);
-  for (int i = 0; i < 2; i++) scene.members[i].rest_value = 1 - 1e-4; /* a tension of 1e9 N */
-  find_with(&scene, options);
+  for (int i = 0; i < 2; i++) setup.scene.members[i].rest_value = 1 - 1e-4; /* a tension of 1e9 N */
+  find_with(&setup, options);
   assert_relative(modes.list[0].eigenvalue, 2 * 1e9, 1e-11);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* A node without mass between two springs: condensed, as one spring of half the stiffness. */
 static void test_node_without_mass(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0), build_node(&scene, 1, 0), build_mass(&scene, 2, 0, 4);
-  for (int i = 1; i < 3; i++) scene.nodes[i].fixed[1] = true;
-  build_member(&scene, STRUT_SPRING, 0, 1, 30, 0, 0);
-  build_member(&scene, STRUT_SPRING, 1, 2, 30, 0, 0);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0), build_node(&setup.scene, 1, 0),
+      build_mass(&setup.scene, 2, 0, 4);
+  for (int i = 1; i < 3; i++) setup.scene.nodes[i].fixed[1] = true;
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, 30, 0, 0);
+  build_member(&setup.scene, STRUT_SPRING, 1, 2, 30, 0, 0);
   strut_modes_options options = {.at = "drawn"};
-  assert_int_equal(strut_model_compile(&scene, &model, &error), STRUT_OK);
-  assert_int_equal(strut_modes_find(model, &options, &modes, &error), STRUT_OK);
+  assert_int_equal(strut_model_compile(&setup.scene, &model, &error), STRUT_OK);
+  assert_int_equal(strut_modes_find(model, &setup.experiment, &options, &modes, &error), STRUT_OK);
   assert_int_equal(modes.count, 1);
   assert_relative(modes.list[0].eigenvalue, 15.0 / 4, 1e-12);
   assert_relative(modes.list[0].shape[2], 0.5, 1e-12);
   strut_modes_free(&modes);
   strut_model_free(model);
-  scene.nodes[1].fixed[1] = false; /* now it may move sideways, without mass or stiffness */
-  assert_int_equal(strut_model_compile(&scene, &model, &error), STRUT_OK);
-  assert_int_equal(strut_modes_find(model, &options, &modes, &error), STRUT_SINGULAR);
+  setup.scene.nodes[1].fixed[1] = false; /* now it may move sideways, without mass or stiffness */
+  assert_int_equal(strut_model_compile(&setup.scene, &model, &error), STRUT_OK);
+  assert_int_equal(strut_modes_find(model, &setup.experiment, &options, &modes, &error),
+                   STRUT_SINGULAR);
   assert_non_null(strstr(error.message, "'n2'"));
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* The crawler in state I: a bending mode just above the paper's critical band, 8 to 10 Hz. */
 static void test_crawler_bends_near_its_critical_band(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  structure_crawler(&scene, 10, 0, 0.1, false);
-  find(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  structure_crawler(&setup.scene, 10, 0, 0.1, false);
+  find(&setup);
   assert_int_equal(modes.count, 10);
   assert_int_equal(modes.closed_count, 2);
   assert_int_equal(modes.list[0].kind, STRUT_MODE_RIGID);
@@ -446,33 +456,33 @@ static void test_crawler_bends_near_its_critical_band(void **unused) {
   assert_within(modes.list[9].angular_frequency, 1.9e4, 2.1e4); /* the short bars */
   strut_modes_free(&modes);
   strut_model_free(model);
-  find_with(&scene, (strut_modes_options){.stuck = true});
+  find_with(&setup, (strut_modes_options){.stuck = true});
   assert_int_equal(modes.count, 8);
   assert_near(modes.list[0].angular_frequency / (2 * PI), 19.7826, 1e-4);
-  free_modes(&scene);
+  free_modes(&setup);
 }
 
 /* Every refusal of memory is an error without a leak (the sanitizers look at that). */
 static void test_out_of_memory(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  structure_x_frame(&scene, &FRAME);
-  model = motion_compile(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  structure_x_frame(&setup.scene, &FRAME);
+  model = motion_compile(&setup.scene);
   strut_status status = STRUT_NO_MEMORY;
   int64_t allowed = 0;
   for (; status != STRUT_OK && allowed < 1000; allowed++) {
     strut_error error = {0};
     strut_modes_options options = {.at = "drawn"};
     strut_fail_allocation_after(allowed);
-    status = strut_modes_find(model, &options, &modes, &error);
+    status = strut_modes_find(model, &setup.experiment, &options, &modes, &error);
     strut_fail_allocation_after(-1);
     if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
     strut_modes_free(&modes);
   }
   assert_within((double)allowed, 10, 999);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

@@ -12,13 +12,14 @@ enum { HALVINGS = 4, MOST = 200, REFERENCE = 8 };
 
 /* Ends a scene by a method with 2^-halvings of its step: places, then speeds times the duration. */
 static size_t reach(const smooth_scene *smooth, const char *method, int halvings, double *q) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double step = ldexp(smooth->step, -halvings);
-  smooth->make(&scene);
-  size_t count = 2 * scene.node_count;
+  strut_setup_init(&setup);
+  smooth->make(&setup.scene);
+  size_t count = 2 * setup.scene.node_count;
   assert_true(2 * count <= MOST);
-  motion_begin_by(&m, &scene, method, step);
+  motion_begin_by(&m, &setup, method, step);
   if (m.method->restart) m.method->restart(m.model, m.state, m.workspace, step);
   motion_steps(&m, llround(smooth->duration / step));
   assert_int_equal(m.state->trouble, 0);
@@ -27,7 +28,7 @@ static size_t reach(const smooth_scene *smooth, const char *method, int halvings
     q[count + i] = smooth->duration * m.state->v[i];
   }
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return 2 * count;
 }
 
@@ -70,22 +71,22 @@ static void test_every_method_has_its_order(void **unused) {
 
 /* A ball on a driven cable that catches it and lets it go again: where it is after half a second. */
 static double caught_ball(const char *method, double step, double tolerance) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 0.8, 0, 0.5);
-  int32_t cable = build_sized(&scene, STRUT_CABLE, 0, 1, 400, 2, 0, 1);
-  build_actuator(&scene, cable, build_sine(&scene, 0.05, 2));
-  scene.nodes[1].velocity[0] = 1;
-  motion_experiment(&scene, step, 1);
-  if (tolerance > 0) scene.experiment.tolerance = tolerance;
-  motion_begin_by(&m, &scene, method, step);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 0.8, 0, 0.5);
+  int32_t cable = build_sized(&setup.scene, STRUT_CABLE, 0, 1, 400, 2, 0, 1);
+  build_actuator(&setup.scene, cable, build_sine(&setup.scene, 0.05, 2));
+  setup.scene.nodes[1].velocity[0] = 1;
+  motion_experiment(&setup, step, 1);
+  if (tolerance > 0) setup.experiment.tolerance = tolerance;
+  motion_begin_by(&m, &setup, method, step);
   motion_steps(&m, llround(0.5 / step));
   assert_true(m.state->events == 2);
   double x = m.state->q[2];
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return x;
 }
 
@@ -110,20 +111,20 @@ static void test_events_keep_the_order(void **unused) {
 static void test_error_control_sees_velocities(void **unused) {
   (void)unused;
   const double size = 1e-6, omega = 1000, time = 0.1;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1, 0, 1);
-  build_member(&scene, STRUT_SPRING, 0, 1, omega * omega, 0, 0);
-  scene.nodes[1].velocity[0] = size * omega;
-  motion_experiment(&scene, 0.01, time);
-  scene.experiment.tolerance = 1e-6;
-  motion_begin_by(&m, &scene, "adaptive", 0.01);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1, 0, 1);
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, omega * omega, 0, 0);
+  setup.scene.nodes[1].velocity[0] = size * omega;
+  motion_experiment(&setup, 0.01, time);
+  setup.experiment.tolerance = 1e-6;
+  motion_begin_by(&m, &setup, "adaptive", 0.01);
   motion_steps(&m, 10);
   assert_near(m.state->v[2], size * omega * cos(omega * time), 1e-3 * size * omega);
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

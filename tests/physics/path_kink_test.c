@@ -15,11 +15,11 @@ typedef struct walk {
   strut_path path;
 } walk;
 
-static walk follow(const strut_scene *scene, double until) {
-  walk w = {.model = motion_compile(scene)};
+static walk follow(const strut_setup *setup, double until) {
+  walk w = {.model = motion_compile(&setup->scene)};
   strut_path_options options = {.until = until};
   strut_error error = {0};
-  strut_status status = strut_path_follow(w.model, &options, &w.path, &error);
+  strut_status status = strut_path_follow(w.model, &setup->experiment, &options, &w.path, &error);
   if (status) print_error("%s\n", error.message);
   assert_int_equal(status, STRUT_OK);
   return w;
@@ -45,17 +45,17 @@ static const double STOP = 0.1, ANCHOR = 0.5, REST = 0.7, SPRING = 500, STOP_SPR
  * A slider at (x, 0) under a compressed spring from (0, ANCHOR), which drives it from the middle;
  * cables stop it beyond -STOP and STOP. It begins at the left and is pushed to the right by 1 N.
  */
-static void toggle(strut_scene *scene) {
-  strut_scene_init(scene);
-  int32_t anchor = build_support(scene, 0, ANCHOR);
-  int32_t left = build_support(scene, -1, 0), right = build_support(scene, 1, 0);
-  int32_t tip = build_node(scene, -0.12, 0);
+static void toggle(strut_setup *setup) {
+  strut_setup_init(setup);
+  int32_t anchor = build_support(&setup->scene, 0, ANCHOR);
+  int32_t left = build_support(&setup->scene, -1, 0), right = build_support(&setup->scene, 1, 0);
+  int32_t tip = build_node(&setup->scene, -0.12, 0);
   assert_int_equal(tip, TIP);
-  scene->nodes[tip].fixed[1] = true;
-  build_sized(scene, STRUT_SPRING, anchor, tip, SPRING, 0, 0, REST);
-  build_sized(scene, STRUT_CABLE, left, tip, STOP_SPRING, 0, 0, 1 + STOP);
-  build_sized(scene, STRUT_CABLE, right, tip, STOP_SPRING, 0, 0, 1 + STOP);
-  build_load(scene, tip, 1, 0, -1);
+  setup->scene.nodes[tip].fixed[1] = true;
+  build_sized(&setup->scene, STRUT_SPRING, anchor, tip, SPRING, 0, 0, REST);
+  build_sized(&setup->scene, STRUT_CABLE, left, tip, STOP_SPRING, 0, 0, 1 + STOP);
+  build_sized(&setup->scene, STRUT_CABLE, right, tip, STOP_SPRING, 0, 0, 1 + STOP);
+  build_load(&setup->scene, tip, 1, 0, -1);
 }
 
 static double toggle_load(double x) {
@@ -68,12 +68,12 @@ static double toggle_load(double x) {
 /* The load turns at both kinks, where the stiffness jumps from one sign to the other. */
 static void test_limit_points_at_kinks(void **state) {
   (void)state;
-  strut_scene scene;
-  toggle(&scene);
+  strut_setup setup;
+  toggle(&setup);
   double turn = toggle_load(-STOP),
          hard = SPRING * (1 - REST * ANCHOR * ANCHOR / pow(hypot(STOP, ANCHOR), 3));
   assert_true(hard < 0 && hard + STOP_SPRING > 0); /* the tangents on the two sides */
-  walk w = follow(&scene, 2 * turn);
+  walk w = follow(&setup, 2 * turn);
   assert_int_equal(w.path.event_count, 4);
   const strut_path_event *e = w.path.events;
   check_event(&e[0], STRUT_PATH_SLACK, turn, 0, 1);
@@ -95,22 +95,22 @@ static void test_limit_points_at_kinks(void **state) {
   assert_true(unstable > 3);
   assert_int_equal(w.path.end, STRUT_PATH_UNTIL);
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* The other way along it: the same points, each side judged as before. */
 static void test_kinks_backwards(void **state) {
   (void)state;
-  strut_scene scene;
-  toggle(&scene);
-  scene.nodes[TIP].start[0] = 0.12;
+  strut_setup setup;
+  toggle(&setup);
+  setup.scene.nodes[TIP].start[0] = 0.12;
   double turn = toggle_load(-STOP);
-  walk w = follow(&scene, -2 * turn);
+  walk w = follow(&setup, -2 * turn);
   assert_int_equal(w.path.event_count, 4);
   check_event(&w.path.events[1], STRUT_PATH_KINK_LIMIT, -turn, 0, 1);
   check_event(&w.path.events[3], STRUT_PATH_KINK_LIMIT, turn, 1, 0);
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /*
@@ -120,16 +120,16 @@ static void test_kinks_backwards(void **state) {
 static void test_bifurcation_at_kink(void **state) {
   (void)state;
   const double mast = 5e3, top = 0.9;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t base = build_support(&scene, 0, 0);
-  int32_t left = build_support(&scene, -1, 0), right = build_support(&scene, 1, 0);
-  int32_t tip = build_node(&scene, 0, 1);
-  build_sized(&scene, STRUT_BAR, base, tip, mast, 0, 0, 1);
-  build_sized(&scene, STRUT_CABLE, left, tip, 1000, 0, 0, hypot(1, top));
-  build_sized(&scene, STRUT_CABLE, right, tip, 1000, 0, 0, hypot(1, top));
-  build_load(&scene, tip, 0, -1, -1);
-  walk w = follow(&scene, 1.5 * mast * (1 - top));
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t base = build_support(&setup.scene, 0, 0);
+  int32_t left = build_support(&setup.scene, -1, 0), right = build_support(&setup.scene, 1, 0);
+  int32_t tip = build_node(&setup.scene, 0, 1);
+  build_sized(&setup.scene, STRUT_BAR, base, tip, mast, 0, 0, 1);
+  build_sized(&setup.scene, STRUT_CABLE, left, tip, 1000, 0, 0, hypot(1, top));
+  build_sized(&setup.scene, STRUT_CABLE, right, tip, 1000, 0, 0, hypot(1, top));
+  build_load(&setup.scene, tip, 0, -1, -1);
+  walk w = follow(&setup, 1.5 * mast * (1 - top));
   double load = mast * (1 - top);
   assert_int_equal(w.path.event_count, 3);
   check_event(&w.path.events[0], STRUT_PATH_SLACK, load, 0, 0);
@@ -141,23 +141,23 @@ static void test_bifurcation_at_kink(void **state) {
     assert_near(p->q[2 * tip], 0, 1e-12);
   }
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
 static void test_touchdown_restores_stability(void **state) {
   (void)state;
   const double a = 1, h = 0.3, k = 1000, floor = 0.05;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t left = build_support(&scene, -a, 0), right = build_support(&scene, a, 0);
-  int32_t apex = build_node(&scene, 0, h);
-  build_member(&scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(&scene, STRUT_BAR, apex, right, k, 0, 0);
-  build_contact(&scene, apex, 1e4, 0);
-  scene.ground.height = floor;
-  build_load(&scene, apex, 0, -1, -1);
-  walk w = follow(&scene, 15);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t left = build_support(&setup.scene, -a, 0), right = build_support(&setup.scene, a, 0);
+  int32_t apex = build_node(&setup.scene, 0, h);
+  build_member(&setup.scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, apex, right, k, 0, 0);
+  build_contact(&setup.scene, apex, 1e4, 0);
+  setup.scene.ground.height = floor;
+  build_load(&setup.scene, apex, 0, -1, -1);
+  walk w = follow(&setup, 15);
   double there = 2 * k * floor * (hypot(a, h) / hypot(a, floor) - 1);
   assert_int_equal(w.path.event_count, 3);
   assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
@@ -169,7 +169,7 @@ static void test_touchdown_restores_stability(void **state) {
   assert_near(end->contact[0], 1e4 * (floor - y), 1e-9);
   assert_near(end->contact[0] + push, 15, 1e-9);
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /*
@@ -193,16 +193,17 @@ static double buckling_load(double bar, double spring, double length) {
 
 /* Along (x, y), a Pythagorean pair of length l: nothing is rounded as drawn. */
 static double found_buckling_load(double bar, double spring, double x, double y) {
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t base = build_support(&scene, 0, 0), tip = build_node(&scene, x, y);
-  int32_t one = build_support(&scene, x - y, y + x), other = build_support(&scene, x + y, y - x);
-  build_member(&scene, STRUT_BAR, base, tip, bar, 0, 0);
-  build_member(&scene, STRUT_SPRING, tip, one, spring, 0, 0);
-  build_member(&scene, STRUT_SPRING, tip, other, spring, 0, 0);
-  build_load(&scene, tip, -x, -y, -1); /* of length l, exactly along the bar */
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t base = build_support(&setup.scene, 0, 0), tip = build_node(&setup.scene, x, y);
+  int32_t one = build_support(&setup.scene, x - y, y + x),
+          other = build_support(&setup.scene, x + y, y - x);
+  build_member(&setup.scene, STRUT_BAR, base, tip, bar, 0, 0);
+  build_member(&setup.scene, STRUT_SPRING, tip, one, spring, 0, 0);
+  build_member(&setup.scene, STRUT_SPRING, tip, other, spring, 0, 0);
+  build_load(&setup.scene, tip, -x, -y, -1); /* of length l, exactly along the bar */
   double length = hypot(x, y);
-  walk w = follow(&scene, 3 * spring);
+  walk w = follow(&setup, 3 * spring);
   double load = 0;
   for (size_t i = 0; i < w.path.event_count && load == 0; i++)
     if (w.path.events[i].kind == STRUT_PATH_BIFURCATION) {
@@ -211,7 +212,7 @@ static double found_buckling_load(double bar, double spring, double x, double y)
       assert_int_equal(w.path.events[i].after, 1);
     }
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return load;
 }
 
@@ -236,20 +237,20 @@ static double draw(uint64_t *seed) {
 }
 
 /* Five nodes, two of them supports, each pair joined by a bar, a cable or nothing, loaded anyhow. */
-static void random_net(strut_scene *scene, uint64_t seed) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_support(scene, 1 + draw(&seed), 0);
-  for (int i = 0; i < 3; i++) build_node(scene, 2 * draw(&seed), 0.3 + draw(&seed));
+static void random_net(strut_setup *setup, uint64_t seed) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_support(&setup->scene, 1 + draw(&seed), 0);
+  for (int i = 0; i < 3; i++) build_node(&setup->scene, 2 * draw(&seed), 0.3 + draw(&seed));
   for (int32_t i = 0; i < 5; i++)
     for (int32_t k = i > 1 ? i + 1 : 2; k < 5; k++) {
       double kind = draw(&seed), slack = 0.9 + 0.2 * draw(&seed);
       if (kind > 0.9) continue;
-      const double *a = scene->nodes[i].position, *b = scene->nodes[k].position;
-      build_sized(scene, kind < 0.5 ? STRUT_BAR : STRUT_CABLE, i, k, 100 * (1 + draw(&seed)), 0, 0,
-                  slack * hypot(b[0] - a[0], b[1] - a[1]));
+      const double *a = setup->scene.nodes[i].position, *b = setup->scene.nodes[k].position;
+      build_sized(&setup->scene, kind < 0.5 ? STRUT_BAR : STRUT_CABLE, i, k,
+                  100 * (1 + draw(&seed)), 0, 0, slack * hypot(b[0] - a[0], b[1] - a[1]));
     }
-  build_load(scene, 2 + (int32_t)(3 * draw(&seed)), draw(&seed) - 0.5, -draw(&seed), -1);
+  build_load(&setup->scene, 2 + (int32_t)(3 * draw(&seed)), draw(&seed) - 0.5, -draw(&seed), -1);
 }
 
 /* Negative eigenvalues of the potential's own second derivatives; -1 where one is about zero. */
@@ -342,19 +343,19 @@ static void test_random_nets(void **state) {
   (void)state;
   size_t kinks = 0, followed = 0;
   for (uint64_t seed = 1; seed <= 200; seed++) {
-    strut_scene scene;
-    random_net(&scene, seed * 0x9e3779b97f4a7c15u);
+    strut_setup setup;
+    random_net(&setup, seed * 0x9e3779b97f4a7c15u);
     strut_model *model;
-    assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+    assert_int_equal(strut_model_compile(&setup.scene, &model, NULL), STRUT_OK);
     strut_path path;
     strut_path_options options = {.until = 60, .steps = 150};
-    if (strut_path_follow(model, &options, &path, NULL) == STRUT_OK) {
+    if (strut_path_follow(model, &setup.experiment, &options, &path, NULL) == STRUT_OK) {
       check_points(model, &path, &kinks);
       followed++;
     }
     strut_path_free(&path);
     strut_model_free(model);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   assert_true(followed > 100 && kinks > 5);
 }

@@ -12,12 +12,13 @@ static const double SPAN = 1, HEIGHT = 0.3; /* of von Mises' truss: half its wid
 enum { APEX = 2 };
 
 /* Supports at (-+SPAN, 0), apex at (0, HEIGHT), without a load. */
-static void arch(strut_scene *scene, double k) {
-  strut_scene_init(scene);
-  int32_t left = build_support(scene, -SPAN, 0), right = build_support(scene, SPAN, 0);
-  int32_t apex = build_node(scene, 0, HEIGHT);
-  build_member(scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(scene, STRUT_BAR, apex, right, k, 0, 0);
+static void arch(strut_setup *setup, double k) {
+  strut_setup_init(setup);
+  int32_t left = build_support(&setup->scene, -SPAN, 0),
+          right = build_support(&setup->scene, SPAN, 0);
+  int32_t apex = build_node(&setup->scene, 0, HEIGHT);
+  build_member(&setup->scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(&setup->scene, STRUT_BAR, apex, right, k, 0, 0);
 }
 
 /* What holds the apex at y, downwards, and its derivative. */
@@ -37,9 +38,10 @@ static double limit_height(void) {
 }
 
 static strut_path follow(strut_model *model, const strut_path_options *options) {
+  const strut_experiment experiment = strut_experiment_default();
   strut_path path;
   strut_error error = {0};
-  strut_status status = strut_path_follow(model, options, &path, &error);
+  strut_status status = strut_path_follow(model, &experiment, options, &path, &error);
   if (status) print_error("%s\n", error.message);
   assert_int_equal(status, STRUT_OK);
   return path;
@@ -54,10 +56,10 @@ static size_t count(const strut_path *path, strut_path_event_kind kind) {
 /* The apex is pushed through: its reaction draws the curve past both limit points, which are none. */
 static void check_displaced_apex(bool supported, double from) {
   const double k = 1000, until = -0.6;
-  strut_scene scene;
-  arch(&scene, k);
-  scene.nodes[APEX].fixed[1] = supported;
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  arch(&setup, k);
+  setup.scene.nodes[APEX].fixed[1] = supported;
+  strut_model *model = motion_compile(&setup.scene);
   strut_path path = follow(
       model,
       &(strut_path_options){
@@ -85,7 +87,7 @@ static void check_displaced_apex(bool supported, double from) {
   assert_near(least, -limit, 0.01 * limit);
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_displacement_of_a_node(void **state) {
@@ -100,10 +102,10 @@ static void test_displacement_of_a_node(void **state) {
 static void test_displacement_under_load(void **state) {
   (void)state;
   const double k = 1000, load = 5;
-  strut_scene scene;
-  arch(&scene, k);
-  build_load(&scene, APEX, 0, -load, -1);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  arch(&setup, k);
+  build_load(&setup.scene, APEX, 0, -load, -1);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path path =
       follow(model, &(strut_path_options){
                         .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
@@ -115,21 +117,21 @@ static void test_displacement_under_load(void **state) {
   }
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A support pulls a slack cable taut, and then a spring behind it. */
 static void test_displacement_of_a_support(void **state) {
   (void)state;
   const double spring = 300, cable = 600, slack = 0.1;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t wall = build_support(&scene, 0, 0), node = build_node(&scene, 1, 0);
-  int32_t hand = build_support(&scene, 2, 0);
-  scene.nodes[node].fixed[1] = true;
-  build_member(&scene, STRUT_SPRING, wall, node, spring, 0, 0);
-  build_sized(&scene, STRUT_CABLE, node, hand, cable, 0, 0, 1 + slack);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t wall = build_support(&setup.scene, 0, 0), node = build_node(&setup.scene, 1, 0);
+  int32_t hand = build_support(&setup.scene, 2, 0);
+  setup.scene.nodes[node].fixed[1] = true;
+  build_member(&setup.scene, STRUT_SPRING, wall, node, spring, 0, 0);
+  build_sized(&setup.scene, STRUT_CABLE, node, hand, cable, 0, 0, 1 + slack);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path path = follow(
       model,
       &(strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
@@ -145,7 +147,7 @@ static void test_displacement_of_a_support(void **state) {
   }
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* The lever that presses the apex down through a spring: how long it is where the truss is at y. */
@@ -173,13 +175,13 @@ static double turning_height(double k) {
 static void test_actuator_snaps(void **state) {
   (void)state;
   const double k = 1000;
-  strut_scene scene;
-  arch(&scene, k);
-  scene.nodes[APEX].fixed[0] = true;
-  int32_t above = build_support(&scene, 0, HEIGHT + LEVER);
-  int32_t member = build_sized(&scene, STRUT_SPRING, above, APEX, LEVER_SPRING, 0, 0, LEVER);
-  build_actuator(&scene, member, build_sine(&scene, 0.1, 1));
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  arch(&setup, k);
+  setup.scene.nodes[APEX].fixed[0] = true;
+  int32_t above = build_support(&setup.scene, 0, HEIGHT + LEVER);
+  int32_t member = build_sized(&setup.scene, STRUT_SPRING, above, APEX, LEVER_SPRING, 0, 0, LEVER);
+  build_actuator(&setup.scene, member, build_sine(&setup.scene, 0.1, 1));
+  strut_model *model = motion_compile(&setup.scene);
   strut_path path = follow(
       model, &(strut_path_options){.over = STRUT_PATH_OVER_ACTUATOR, .index = 0, .until = 1.2});
   double turn = turning_height(k);
@@ -202,7 +204,7 @@ static void test_actuator_snaps(void **state) {
   }
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Scenes of a number: the truss's stiffness, with a load of 1 N; what is not positive is refused. */
@@ -211,14 +213,14 @@ typedef struct family {
   bool idle, unloaded;
 } family;
 
-static strut_status scene_of_stiffness(void *context, double value, strut_scene *scene,
+static strut_status scene_of_stiffness(void *context, double value, strut_setup *setup,
                                        strut_error *error) {
   family *f = context;
   f->calls++;
   if (value < 50) return strut_fail(error, STRUT_BAD_SCENE, "k must be 50 N/m at least");
-  arch(scene, f->idle ? 1000 : value);
-  if (f->more_nodes && value > f->more_nodes) build_support(scene, 5, 5);
-  build_load(scene, APEX, 0, f->unloaded ? 0 : -1, -1);
+  arch(setup, f->idle ? 1000 : value);
+  if (f->more_nodes && value > f->more_nodes) build_support(&setup->scene, 5, 5);
+  build_load(&setup->scene, APEX, 0, f->unloaded ? 0 : -1, -1);
   return STRUT_OK;
 }
 
@@ -236,9 +238,9 @@ static strut_path_options over_stiffness(family *f, double from, double until) {
 static void test_stiffness_of_a_scene(void **state) {
   (void)state;
   family f = {0};
-  strut_scene scene;
-  assert_int_equal(scene_of_stiffness(&f, 1000, &scene, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, 60);
   options.steps = 60;
   strut_path path = follow(model, &options);
@@ -255,16 +257,16 @@ static void test_stiffness_of_a_scene(void **state) {
   }
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* It ends where the scene means nothing any more, with what the scene says. */
 static void test_end_of_validity(void **state) {
   (void)state;
   family f = {.unloaded = true};
-  strut_scene scene;
-  assert_int_equal(scene_of_stiffness(&f, 1000, &scene, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, -10);
   strut_path path = follow(model, &options);
   assert_int_equal(path.end, STRUT_PATH_INVALID);
@@ -274,32 +276,33 @@ static void test_end_of_validity(void **state) {
   strut_path_free(&path);
   options = over_stiffness(&f, 10, 1000);
   strut_error error = {0};
-  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_BAD_SCENE);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+                   STRUT_BAD_SCENE);
   assert_string_equal(error.message, "k must be 50 N/m at least");
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A ground that is raised under a node on an upright spring: a scene's number again. */
-static strut_status scene_of_ground(void *context, double value, strut_scene *scene,
+static strut_status scene_of_ground(void *context, double value, strut_setup *setup,
                                     strut_error *error) {
   (void)context;
   (void)error;
-  strut_scene_init(scene);
-  int32_t top = build_support(scene, 0, 1), node = build_node(scene, 0, 0);
-  scene->nodes[node].fixed[0] = true;
-  build_member(scene, STRUT_SPRING, top, node, 100, 0, 0);
-  build_contact(scene, node, 1000, 0);
-  scene->ground.height = value;
+  strut_setup_init(setup);
+  int32_t top = build_support(&setup->scene, 0, 1), node = build_node(&setup->scene, 0, 0);
+  setup->scene.nodes[node].fixed[0] = true;
+  build_member(&setup->scene, STRUT_SPRING, top, node, 100, 0, 0);
+  build_contact(&setup->scene, node, 1000, 0);
+  setup->scene.ground.height = value;
   return STRUT_OK;
 }
 
 static void test_rising_ground(void **state) {
   (void)state;
-  strut_scene scene;
-  assert_int_equal(scene_of_ground(NULL, -0.2, &scene, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  assert_int_equal(scene_of_ground(NULL, -0.2, &setup, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path path = follow(model, &(strut_path_options){.over = STRUT_PATH_OVER_SCENE,
                                                         .name = "height",
                                                         .unit = "m",
@@ -319,42 +322,44 @@ static void test_rising_ground(void **state) {
   }
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A number that does nothing, or that changes what the structure is made of. */
 static void test_refusals(void **state) {
   (void)state;
   family idle = {.idle = true}, grows = {.more_nodes = 1500};
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
   strut_path path;
-  assert_int_equal(scene_of_stiffness(&idle, 1000, &scene, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&scene);
+  assert_int_equal(scene_of_stiffness(&idle, 1000, &setup, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&idle, 1000, 2000);
-  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+                   STRUT_USAGE);
   assert_non_null(strstr(error.message, "k changes nothing that matters at rest"));
   strut_path_free(&path);
   options = over_stiffness(&grows, 1000, 2000);
-  strut_status status = strut_path_follow(model, &options, &path, &error);
+  strut_status status = strut_path_follow(model, &setup.experiment, &options, &path, &error);
   assert_int_equal(status, STRUT_OK); /* it is found on the way */
   assert_int_equal(path.end, STRUT_PATH_INVALID);
   assert_near(path.points[path.point_count - 1].factor, 1500, 0.1);
   assert_non_null(strstr(path.remark, "changes what the structure is made of"));
   strut_path_free(&path);
   options = over_stiffness(&grows, 1000, 1000);
-  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+                   STRUT_USAGE);
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_memory(void **state) {
   (void)state;
   family f = {0};
-  strut_scene scene;
-  assert_int_equal(scene_of_stiffness(&f, 1000, &scene, NULL), STRUT_OK);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
+  strut_model *model = motion_compile(&setup.scene);
   const strut_path_options all[] = {
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.05, .at = "start"},
       {.over = STRUT_PATH_OVER_COORDINATE, .index = 0, .from = 0.001, .until = -0.05}};
@@ -364,7 +369,7 @@ static void test_memory(void **state) {
     for (; status != STRUT_OK && n < 10000; n++) {
       strut_path path = {0};
       strut_fail_allocation_after(n);
-      status = strut_path_follow(model, &all[i], &path, NULL);
+      status = strut_path_follow(model, &setup.experiment, &all[i], &path, NULL);
       strut_fail_allocation_after(-1);
       strut_path_free(&path);
       if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
@@ -373,7 +378,7 @@ static void test_memory(void **state) {
     assert_int_equal(status, STRUT_OK);
   }
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

@@ -15,11 +15,11 @@ typedef struct walk {
   strut_path path;
 } walk;
 
-static walk follow(const strut_scene *scene, double until) {
-  walk w = {.model = motion_compile(scene)};
+static walk follow(const strut_setup *setup, double until) {
+  walk w = {.model = motion_compile(&setup->scene)};
   strut_path_options options = {.until = until};
   strut_error error = {0};
-  strut_status status = strut_path_follow(w.model, &options, &w.path, &error);
+  strut_status status = strut_path_follow(w.model, &setup->experiment, &options, &w.path, &error);
   if (status) print_error("%s\n", error.message);
   assert_int_equal(status, STRUT_OK);
   return w;
@@ -50,13 +50,13 @@ static size_t count(const walk *w, strut_path_event_kind kind) {
 }
 
 /* Von Mises' truss: supports at (-+a, 0), apex at (0, h), pressed by 1 N times the factor. */
-static void arch(strut_scene *scene, double a, double h, double k) {
-  strut_scene_init(scene);
-  int32_t left = build_support(scene, -a, 0), right = build_support(scene, a, 0);
-  int32_t apex = build_mass(scene, 0, h, 1.0);
-  build_member(scene, STRUT_BAR, apex, left, k, 0, 0);
-  build_member(scene, STRUT_BAR, apex, right, k, 0, 0);
-  build_load(scene, apex, 0, -1, -1);
+static void arch(strut_setup *setup, double a, double h, double k) {
+  strut_setup_init(setup);
+  int32_t left = build_support(&setup->scene, -a, 0), right = build_support(&setup->scene, a, 0);
+  int32_t apex = build_mass(&setup->scene, 0, h, 1.0);
+  build_member(&setup->scene, STRUT_BAR, apex, left, k, 0, 0);
+  build_member(&setup->scene, STRUT_BAR, apex, right, k, 0, 0);
+  build_load(&setup->scene, apex, 0, -1, -1);
 }
 
 static double arch_load(double a, double h, double k, double y) {
@@ -67,9 +67,9 @@ static double arch_load(double a, double h, double k, double y) {
 static void check_arch(double a, double h, double k, double expected, double digits) {
   double rest = hypot(a, h), length = cbrt(rest * a * a), top = sqrt(length * length - a * a);
   double limit = arch_load(a, h, k, top);
-  strut_scene scene;
-  arch(&scene, a, h, k);
-  walk w = follow(&scene, 1.5 * limit);
+  strut_setup setup;
+  arch(&setup, a, h, k);
+  walk w = follow(&setup, 1.5 * limit);
   assert_near(limit, expected, digits);
   assert_int_equal(count(&w, STRUT_PATH_LIMIT), 2);
   for (int i = 0; i < 2; i++) {
@@ -87,7 +87,7 @@ static void check_arch(double a, double h, double k, double expected, double dig
   assert_true(last(&w)->factor == 1.5 * limit);
   assert_true(last(&w)->q[5] < -h);
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_limit_points(void **state) {
@@ -119,34 +119,36 @@ static void test_sideways_buckling(void **state) {
     double angle = (const double[]){70, 80, steepest + 0.1, steepest - 0.1}[i];
     double a = cos(angle / right_angle * pi / 2), h = sin(angle / right_angle * pi / 2);
     bool sideways = a < sqrt(4.0 / 27.0);
-    strut_scene scene;
-    arch(&scene, a, h, 1);
-    walk w = follow(&scene, 1);
+    strut_setup setup;
+    arch(&setup, a, h, 1);
+    walk w = follow(&setup, 1);
     const strut_path_event *first = &w.path.events[0];
     assert_int_equal(sideways, i < 3);
     assert_int_equal(first->kind, sideways ? STRUT_PATH_BIFURCATION : STRUT_PATH_LIMIT);
     if (sideways) assert_relative(first->factor, sideways_load(a, 1), 1e-9);
     finish(&w);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* An axial stiffness, and the rest length from the force in the drawn shape. */
-static void tension(strut_scene *scene, int32_t member, double axial_stiffness, double force) {
-  strut_member *m = &scene->members[member];
+static void tension(strut_setup *setup, int32_t member, double axial_stiffness, double force) {
+  strut_member *m = &setup->scene.members[member];
   m->stiffness = 0, m->axial_stiffness = axial_stiffness;
   m->rest_kind = STRUT_REST_PRETENSION, m->rest_value = force;
 }
 
 /* Half a T-bar, after TsgFEM: its published path. */
-static void half_t_bar(strut_scene *scene) {
-  strut_scene_init(scene);
-  int32_t n1 = build_support(scene, -1, 0), n2 = build_support(scene, 0, 0);
-  int32_t n3 = build_support(scene, 1, 0), n4 = build_node(scene, 0, 1);
-  tension(scene, build_member(scene, STRUT_BAR, n2, n4, 1, 0, 0), 11453019.53174, -50);
-  tension(scene, build_member(scene, STRUT_CABLE, n1, n4, 1, 0, 0), 242825.130902, 35.35533906);
-  tension(scene, build_member(scene, STRUT_CABLE, n3, n4, 1, 0, 0), 242825.130902, 35.35533906);
-  build_load(scene, n4, 1, 0, -1);
+static void half_t_bar(strut_setup *setup) {
+  strut_setup_init(setup);
+  int32_t n1 = build_support(&setup->scene, -1, 0), n2 = build_support(&setup->scene, 0, 0);
+  int32_t n3 = build_support(&setup->scene, 1, 0), n4 = build_node(&setup->scene, 0, 1);
+  tension(setup, build_member(&setup->scene, STRUT_BAR, n2, n4, 1, 0, 0), 11453019.53174, -50);
+  tension(setup, build_member(&setup->scene, STRUT_CABLE, n1, n4, 1, 0, 0), 242825.130902,
+          35.35533906);
+  tension(setup, build_member(&setup->scene, STRUT_CABLE, n3, n4, 1, 0, 0), 242825.130902,
+          35.35533906);
+  build_load(&setup->scene, n4, 1, 0, -1);
 }
 
 static void test_published_path(void **state) {
@@ -158,39 +160,39 @@ static void test_published_path(void **state) {
                                      {5000, 0.06100022, 0.99770493, 5.1e-9},
                                      {10000, 0.12802679, 0.99089549, 5.1e-9}};
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-    strut_scene scene;
-    half_t_bar(&scene);
-    walk w = follow(&scene, shapes[i][0]);
+    strut_setup setup;
+    half_t_bar(&setup);
+    walk w = follow(&setup, shapes[i][0]);
     assert_near(last(&w)->q[6], shapes[i][1], shapes[i][3]);
     assert_near(last(&w)->q[7], shapes[i][2], shapes[i][3]);
     assert_int_equal(w.path.event_count, 1);
     assert_near(event(&w, STRUT_PATH_SLACK, 0)->factor, 49.9892459, 5e-8);
     assert_int_equal(event(&w, STRUT_PATH_SLACK, 0)->index, 2);
     finish(&w);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* Snelson's X: a square of cables of 0.95 with two bars, on a pin and a roller. */
-static void snelson(strut_scene *scene) {
-  strut_scene_init(scene);
-  int32_t n1 = build_support(scene, 0, 0), n2 = build_node(scene, 1, 0);
-  int32_t n3 = build_node(scene, 1, 1), n4 = build_node(scene, 0, 1);
+static void snelson(strut_setup *setup) {
+  strut_setup_init(setup);
+  int32_t n1 = build_support(&setup->scene, 0, 0), n2 = build_node(&setup->scene, 1, 0);
+  int32_t n3 = build_node(&setup->scene, 1, 1), n4 = build_node(&setup->scene, 0, 1);
   const int32_t ring[5] = {n1, n2, n3, n4, n1};
-  scene->nodes[n2].fixed[1] = true;
+  setup->scene.nodes[n2].fixed[1] = true;
   for (int i = 0; i < 4; i++)
-    build_sized(scene, STRUT_CABLE, ring[i], ring[i + 1], 100, 0, 0, 0.95);
-  build_member(scene, STRUT_BAR, n2, n4, 1000, 0, 0);
-  build_member(scene, STRUT_BAR, n1, n3, 1000, 0, 0);
+    build_sized(&setup->scene, STRUT_CABLE, ring[i], ring[i + 1], 100, 0, 0, 0.95);
+  build_member(&setup->scene, STRUT_BAR, n2, n4, 1000, 0, 0);
+  build_member(&setup->scene, STRUT_BAR, n1, n3, 1000, 0, 0);
 }
 
 static void test_slack_cables(void **state) {
   (void)state;
-  strut_scene scene;
-  snelson(&scene);
-  build_load(&scene, 2, 0, -1, -1);
-  build_load(&scene, 3, 0, -1, -1);
-  walk w = follow(&scene, 10);
+  strut_setup setup;
+  snelson(&setup);
+  build_load(&setup.scene, 2, 0, -1, -1);
+  build_load(&setup.scene, 3, 0, -1, -1);
+  walk w = follow(&setup, 10);
   assert_int_equal(count(&w, STRUT_PATH_SLACK), 2); /* both upright ones, at once */
   for (int i = 0; i < 2; i++) {
     const strut_path_event *e = event(&w, STRUT_PATH_SLACK, i);
@@ -199,40 +201,41 @@ static void test_slack_cables(void **state) {
   }
   assert_int_equal(last(&w)->negative, 0);
   finish(&w);
-  w = follow(&scene, 5);
+  w = follow(&setup, 5);
   assert_int_equal(w.path.event_count, 0);
   assert_near(last(&w)->q[4], 1.0196838, 5e-8);
   assert_near(last(&w)->q[5], 0.9660162, 5e-8);
   finish(&w);
-  strut_scene_free(&scene);
-  snelson(&scene);
-  build_load(&scene, 2, 1, 0, -1);
-  w = follow(&scene, 10);
+  strut_setup_free(&setup);
+  snelson(&setup);
+  build_load(&setup.scene, 2, 1, 0, -1);
+  w = follow(&setup, 10);
   assert_int_equal(w.path.event_count, 1);
   assert_near(event(&w, STRUT_PATH_SLACK, 0)->factor, 6.9110907, 5e-8);
   assert_int_equal(event(&w, STRUT_PATH_SLACK, 0)->index, 1);
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Six cables and two struts: nearly a mechanism, so that its path bends sharply. */
 static double hexagon_moves(double p, double load) {
   const double h = sqrt(7) / 4;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t n1 = build_support(&scene, 0, 0), n2 = build_node(&scene, h, 0.75);
-  int32_t n3 = build_node(&scene, h + 1, 0.75), n4 = build_support(&scene, 2 * h + 1, 0);
-  int32_t n5 = build_node(&scene, h + 1, -0.75), n6 = build_node(&scene, h, -0.75);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t n1 = build_support(&setup.scene, 0, 0), n2 = build_node(&setup.scene, h, 0.75);
+  int32_t n3 = build_node(&setup.scene, h + 1, 0.75),
+          n4 = build_support(&setup.scene, 2 * h + 1, 0);
+  int32_t n5 = build_node(&setup.scene, h + 1, -0.75), n6 = build_node(&setup.scene, h, -0.75);
   const int32_t ring[7] = {n1, n2, n3, n4, n5, n6, n1};
   for (int i = 0; i < 6; i++)
-    build_sized(&scene, STRUT_CABLE, ring[i], ring[i + 1], 1, 0, 0, 1 - p);
-  build_sized(&scene, STRUT_BAR, n2, n6, 0.5, 0, 0, 1.5 * (1 + p));
-  build_sized(&scene, STRUT_BAR, n3, n5, 0.5, 0, 0, 1.5 * (1 + p));
-  build_load(&scene, n6, 1, 0, -1);
-  walk w = follow(&scene, load);
+    build_sized(&setup.scene, STRUT_CABLE, ring[i], ring[i + 1], 1, 0, 0, 1 - p);
+  build_sized(&setup.scene, STRUT_BAR, n2, n6, 0.5, 0, 0, 1.5 * (1 + p));
+  build_sized(&setup.scene, STRUT_BAR, n3, n5, 0.5, 0, 0, 1.5 * (1 + p));
+  build_load(&setup.scene, n6, 1, 0, -1);
+  walk w = follow(&setup, load);
   double moved = last(&w)->q[2 * n6] - w.path.points[0].q[2 * n6];
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return moved;
 }
 
@@ -252,75 +255,77 @@ static void test_stiffening_mechanism(void **state) {
 static void test_touchdown(void **state) {
   (void)state;
   const double k = 100, ground = 1000, gap = 0.1;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t top = build_support(&scene, 0, 1 + gap), node = build_node(&scene, 0, gap);
-  scene.nodes[node].fixed[0] = true;
-  build_member(&scene, STRUT_SPRING, top, node, k, 0, 0);
-  build_contact(&scene, node, ground, 0);
-  build_load(&scene, node, 0, -1, -1);
-  walk w = follow(&scene, 20);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t top = build_support(&setup.scene, 0, 1 + gap), node = build_node(&setup.scene, 0, gap);
+  setup.scene.nodes[node].fixed[0] = true;
+  build_member(&setup.scene, STRUT_SPRING, top, node, k, 0, 0);
+  build_contact(&setup.scene, node, ground, 0);
+  build_load(&setup.scene, node, 0, -1, -1);
+  walk w = follow(&setup, 20);
   assert_int_equal(w.path.event_count, 1);
   assert_relative(event(&w, STRUT_PATH_TOUCHDOWN, 0)->factor, k * gap, 1e-12);
   assert_near(last(&w)->q[3], -(20 - k * gap) / (k + ground), 1e-13);
   finish(&w);
-  scene.nodes[node].start[1] = -0.05; /* begins in the ground: nothing holds it there */
-  scene.nodes[node].position[1] = -0.05, scene.nodes[top].position[1] = 0.95;
-  scene.nodes[top].start[1] = 0.95, scene.loads[0].force[1] = 1;
-  w = follow(&scene, 20);
+  setup.scene.nodes[node].start[1] = -0.05; /* begins in the ground: nothing holds it there */
+  setup.scene.nodes[node].position[1] = -0.05, setup.scene.nodes[top].position[1] = 0.95;
+  setup.scene.nodes[top].start[1] = 0.95, setup.scene.loads[0].force[1] = 1;
+  w = follow(&setup, 20);
   double depth = 0.05 * k / (k + ground); /* spring force k (0.05 - depth) = ground depth */
   assert_near(w.path.points[0].q[3], -depth, 1e-13);
   assert_relative(event(&w, STRUT_PATH_LIFT_OFF, 0)->factor, k * 0.05, 1e-10);
   assert_near(last(&w)->q[3], 20 / k - 0.05, 1e-12);
   finish(&w);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A box lifted at one corner tips when the load is half its weight: the others leave together. */
 static void test_lift_off(void **state) {
   (void)state;
-  strut_scene scene;
-  snelson(&scene);
-  scene.gravity[1] = -9.81;
+  strut_setup setup;
+  snelson(&setup);
+  setup.scene.gravity[1] = -9.81;
   for (int32_t i = 0; i < 4; i++) {
-    scene.nodes[i].mass = 0.1;
-    scene.nodes[i].fixed[0] = scene.nodes[i].fixed[1] = false;
-    build_contact(&scene, i, 1e5, 0);
+    setup.scene.nodes[i].mass = 0.1;
+    setup.scene.nodes[i].fixed[0] = setup.scene.nodes[i].fixed[1] = false;
+    build_contact(&setup.scene, i, 1e5, 0);
   }
-  build_load(&scene, 2, 0, 1, -1);
-  walk w = follow(&scene, 1.9);
+  build_load(&setup.scene, 2, 0, 1, -1);
+  walk w = follow(&setup, 1.9);
   assert_int_equal(w.path.event_count, 0);
   finish(&w);
   strut_path path = {0};
-  strut_model *model = motion_compile(&scene);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path_options options = {.until = 3, .steps = 60};
-  assert_int_equal(strut_path_follow(model, &options, &path, NULL), STRUT_OK);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL), STRUT_OK);
   assert_int_equal(path.events[0].kind, STRUT_PATH_LIFT_OFF);
   assert_int_equal(path.events[0].index, 1);
   assert_relative(path.events[0].factor, 0.4 * 9.81 / 2, 1e-6); /* it leans a little */
   strut_path_free(&path);
-  scene.loads[0].force[0] = 1, scene.loads[0].force[1] = 0; /* no friction holds it */
-  assert_int_equal(strut_path_follow(model, &options, &path, NULL), STRUT_NOT_SETTLED);
+  setup.scene.loads[0].force[0] = 1, setup.scene.loads[0].force[1] = 0; /* no friction holds it */
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL),
+                   STRUT_NOT_SETTLED);
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Two bistable cells on a spring kc: does the state with one cell up, one down exist? */
 static bool mixed_state(double kc) {
-  strut_scene scene;
-  strut_scene_init(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
   int32_t apex[2];
   for (int i = 0; i < 2; i++) {
-    int32_t left = build_support(&scene, -1, 2 * i), right = build_support(&scene, 1, 2 * i);
-    apex[i] = build_node(&scene, 0, 2 * i + 0.3);
-    scene.nodes[apex[i]].fixed[0] = true;
-    build_member(&scene, STRUT_BAR, left, apex[i], 1, 0, 0);
-    build_member(&scene, STRUT_BAR, right, apex[i], 1, 0, 0);
-    scene.nodes[apex[i]].start[1] = 2 * i + (i ? -0.18 : 0.18);
+    int32_t left = build_support(&setup.scene, -1, 2 * i),
+            right = build_support(&setup.scene, 1, 2 * i);
+    apex[i] = build_node(&setup.scene, 0, 2 * i + 0.3);
+    setup.scene.nodes[apex[i]].fixed[0] = true;
+    build_member(&setup.scene, STRUT_BAR, left, apex[i], 1, 0, 0);
+    build_member(&setup.scene, STRUT_BAR, right, apex[i], 1, 0, 0);
+    setup.scene.nodes[apex[i]].start[1] = 2 * i + (i ? -0.18 : 0.18);
   }
-  build_sized(&scene, STRUT_SPRING, apex[0], apex[1], kc, 0, 0, 2);
-  strut_model *model = motion_compile(&scene);
+  build_sized(&setup.scene, STRUT_SPRING, apex[0], apex[1], kc, 0, 0, 2);
+  strut_model *model = motion_compile(&setup.scene);
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
   assert_int_equal(strut_potential_create(model, NULL, false, &potential, NULL), STRUT_OK);
@@ -333,7 +338,7 @@ static bool mixed_state(double kc) {
   strut_minimiser_free(minimiser);
   strut_potential_free(potential);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return mixed;
 }
 
@@ -349,64 +354,67 @@ static void test_mixed_state_is_lost(void **state) {
 /* A load with a signal is followed by its name, with its force alone; the others stay. */
 static void test_named_load(void **state) {
   (void)state;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  int32_t a = build_support(&scene, 0, 0), b = build_node(&scene, 1, 0);
-  scene.nodes[b].fixed[1] = true;
-  build_member(&scene, STRUT_SPRING, a, b, 100, 0, 0);
-  build_load(&scene, b, 5, 0, build_sine(&scene, 0.1, 1));
-  build_load(&scene, b, -3, 0, -1);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t a = build_support(&setup.scene, 0, 0), b = build_node(&setup.scene, 1, 0);
+  setup.scene.nodes[b].fixed[1] = true;
+  build_member(&setup.scene, STRUT_SPRING, a, b, 100, 0, 0);
+  build_load(&setup.scene, b, 5, 0, build_sine(&setup.scene, 0.1, 1));
+  build_load(&setup.scene, b, -3, 0, -1);
+  strut_model *model = motion_compile(&setup.scene);
   for (int i = 0; i < 2; i++) {
     strut_path path = {0};
     strut_path_options options = {.load = i ? NULL : "l1"};
-    assert_int_equal(strut_path_follow(model, &options, &path, NULL), STRUT_OK);
+    assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, NULL), STRUT_OK);
     assert_near(path.points[0].q[2 * b], i ? 1 : 0.97, 1e-14);
     assert_near(path.points[path.point_count - 1].q[2 * b], i ? 0.97 : 1.02, 1e-14);
     strut_path_free(&path);
   }
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_refusals(void **state) {
   (void)state;
-  strut_scene scene;
+  strut_setup setup;
   strut_path path = {0};
   strut_error error = {0};
   strut_path_options options = {.load = "push"};
-  arch(&scene, 1, 0.3, 1000);
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  arch(&setup, 1, 0.3, 1000);
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+                   STRUT_USAGE);
   assert_string_equal(error.message, "there is no load 'push'; the scene's loads are: l1");
   strut_path_free(&path);
   strut_model_free(model);
-  scene.loads[0].node = 0; /* a support */
-  model = motion_compile(&scene);
+  setup.scene.loads[0].node = 0; /* a support */
+  model = motion_compile(&setup.scene);
   options.load = NULL;
-  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+                   STRUT_USAGE);
   strut_path_free(&path);
   strut_model_free(model);
-  scene.load_count = 0;
-  model = motion_compile(&scene);
-  assert_int_equal(strut_path_follow(model, &options, &path, &error), STRUT_USAGE);
+  setup.scene.load_count = 0;
+  model = motion_compile(&setup.scene);
+  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+                   STRUT_USAGE);
   strut_path_free(&path);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_memory(void **state) {
   (void)state;
-  strut_scene scene;
-  half_t_bar(&scene);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  half_t_bar(&setup);
+  strut_model *model = motion_compile(&setup.scene);
   strut_path_options options = {.until = 100};
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK && n < 10000; n++) {
     strut_path path = {0};
     strut_fail_allocation_after(n);
-    status = strut_path_follow(model, &options, &path, NULL);
+    status = strut_path_follow(model, &setup.experiment, &options, &path, NULL);
     strut_fail_allocation_after(-1);
     strut_path_free(&path);
     if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
@@ -414,7 +422,7 @@ static void test_memory(void **state) {
   assert_true(n > 10);
   assert_int_equal(status, STRUT_OK);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

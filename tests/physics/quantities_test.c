@@ -11,10 +11,10 @@
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
 
 static void read_scene(const char *text, const strut_override *set, size_t count,
-                       strut_scene *scene) {
+                       strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
   strut_status status =
-      strut_scene_read(scene, "test", text, strlen(text), set, count, STRUT_FOR_RUN, &diagnostics);
+      strut_setup_read(setup, "test", text, strlen(text), set, count, STRUT_FOR_RUN, &diagnostics);
   if (status) print_message("%s", strut_diagnostics_render(&diagnostics, 10));
   assert_int_equal(status, STRUT_OK);
   strut_diagnostics_free(&diagnostics);
@@ -22,15 +22,15 @@ static void read_scene(const char *text, const strut_override *set, size_t count
 
 /* The scene and the summary of its run; end_run frees both. */
 typedef struct measured_run {
-  strut_scene scene;
+  strut_setup setup;
   strut_summary summary;
 } measured_run;
 
 static measured_run run_with(const char *text, const strut_override *set, size_t count) {
   measured_run r;
-  read_scene(text, set, count, &r.scene);
-  r.summary = motion_simulate(&r.scene);
-  assert_int_equal(r.summary.measured_count, r.scene.experiment.quantity_count);
+  read_scene(text, set, count, &r.setup);
+  r.summary = motion_simulate(&r.setup);
+  assert_int_equal(r.summary.measured_count, r.setup.experiment.quantity_count);
   return r;
 }
 
@@ -38,7 +38,7 @@ static measured_run run_text(const char *text) { return run_with(text, NULL, 0);
 
 static void end_run(measured_run *r) {
   strut_summary_free(&r->summary);
-  strut_scene_free(&r->scene);
+  strut_setup_free(&r->setup);
 }
 
 static const strut_measured *get(const measured_run *r, const char *name) {
@@ -81,7 +81,7 @@ static void test_a_mass_caught_by_a_cable(void **unused) {
   assert_string_equal(get(&r, "factor")->unit, "1");
   assert_relative(get(&r, "peak")->scale, peak, 1e-3);
   assert_true(get(&r, "side")->zero && r.summary.velocity_zero && !get(&r, "peak")->zero);
-  const strut_quantity_definition *q = r.scene.experiment.quantities;
+  const strut_quantity_definition *q = r.setup.experiment.quantities;
   assert_true(q[0].accuracy == 0.005 && q[0].accuracy_absolute == 0);
   assert_true(q[2].accuracy == 0 && q[2].accuracy_absolute == 1e-4);
   end_run(&r);
@@ -366,11 +366,11 @@ static const char ALL[] =
     ", quantities: {n: a.normal, f: {of: b.friction, take: max}, w: {of: work.drives, take: rate},"
     " l: {of: leg.force, take: min}, e: {of: energy.total, take: final}, v: com.vx}";
 
-static strut_summary hop(const char *method, const char *quantities, strut_scene *scene) {
+static strut_summary hop(const char *method, const char *quantities, strut_setup *setup) {
   char text[1400];
   snprintf(text, sizeof text, HOPPER, method, quantities);
-  read_scene(text, NULL, 0, scene);
-  return motion_simulate(scene);
+  read_scene(text, NULL, 0, setup);
+  return motion_simulate(setup);
 }
 
 /* Looking on changes no bit of the motion, and a scene without quantities has none. */
@@ -378,7 +378,7 @@ static void test_measuring_changes_nothing(void **unused) {
   (void)unused;
   static const char *const methods[] = {"rk4", "verlet", "verlet-events", "rk4-events", "adaptive"};
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-    strut_scene plain, more;
+    strut_setup plain, more;
     strut_summary s = hop(methods[i], "", &plain), m = hop(methods[i], ALL, &more);
     assert_true(s.measured_count == 0 && !s.measured && m.measured_count == 6);
     assert_int_equal(s.force_evaluations, m.force_evaluations);
@@ -388,41 +388,42 @@ static void test_measuring_changes_nothing(void **unused) {
     for (size_t k = 0; k < 4; k++) assert_same_bits(s.positions[k], m.positions[k]);
     for (size_t k = 0; k < 6; k++) assert_true(isfinite(m.measured[k].value));
     strut_summary_free(&s), strut_summary_free(&m);
-    strut_scene_free(&plain), strut_scene_free(&more);
+    strut_setup_free(&plain), strut_setup_free(&more);
   }
 }
 
 /* Works are there where the run keeps no ledger for itself. */
 static void test_works_without_the_ledger(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_summary with = hop("rk4", ALL, &scene), without;
+  strut_setup setup;
+  strut_summary with = hop("rk4", ALL, &setup), without;
   strut_error error = {0};
-  strut_model *model = motion_compile(&scene);
+  strut_model *model = motion_compile(&setup.scene);
   strut_run_options options = {.without_ledger = true};
-  assert_int_equal(strut_simulate(model, &options, &without, &error), STRUT_OK);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &without, &error), STRUT_OK);
   assert_same_bits(without.measured[2].value, with.measured[2].value);
   assert_true(with.measured[2].value > 0);
   strut_summary_free(&with), strut_summary_free(&without);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A stopped window gives no number, and no crash. */
 static void test_a_run_that_is_interrupted(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
-  strut_summary full = hop("rk4", ALL, &scene), s;
+  strut_summary full = hop("rk4", ALL, &setup), s;
   strut_summary_free(&full);
-  strut_model *model = motion_compile(&scene);
+  strut_model *model = motion_compile(&setup.scene);
   volatile sig_atomic_t stop = 1;
   strut_run_options options = {.interrupt = &stop};
-  assert_int_equal(strut_simulate(model, &options, &s, &error), STRUT_INTERRUPTED);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error),
+                   STRUT_INTERRUPTED);
   for (size_t k = 0; k < 6; k++) assert_true(isnan(s.measured[k].value) && !s.measured[k].zero);
   strut_summary_free(&s);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Twice as many steps take as many allocations. */
@@ -430,21 +431,21 @@ static void test_steps_allocate_nothing(void **unused) {
   (void)unused;
   uint64_t count[2];
   for (int i = 0; i < 2; i++) {
-    strut_scene scene;
+    strut_setup setup;
     strut_error error = {0};
     strut_summary s;
     char text[1400];
     snprintf(text, sizeof text, HOPPER, "rk4", ALL);
-    read_scene(text, NULL, 0, &scene);
-    scene.experiment.step /= 1 + i;
-    strut_model *model = motion_compile(&scene);
+    read_scene(text, NULL, 0, &setup);
+    setup.experiment.step /= 1 + i;
+    strut_model *model = motion_compile(&setup.scene);
     uint64_t before = strut_allocation_count();
     strut_run_options options = {0};
-    assert_int_equal(strut_simulate(model, &options, &s, &error), STRUT_OK);
+    assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, &error), STRUT_OK);
     count[i] = strut_allocation_count() - before;
     strut_summary_free(&s);
     strut_model_free(model);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   assert_int_equal(count[0], count[1]);
 }
@@ -457,34 +458,34 @@ static void test_memory_that_runs_out(void **unused) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status == STRUT_NO_MEMORY && n < 5000; n++) {
-    strut_scene scene;
+    strut_setup setup;
     strut_diagnostics diagnostics = {0};
     strut_fail_allocation_after(n);
     status =
-        strut_scene_read(&scene, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics);
+        strut_setup_read(&setup, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics);
     strut_fail_allocation_after(-1);
     strut_diagnostics_free(&diagnostics);
-    if (status == STRUT_OK) strut_scene_free(&scene);
+    if (status == STRUT_OK) strut_setup_free(&setup);
   }
   assert_int_equal(status, STRUT_OK);
   assert_true(n > 20);
-  strut_scene scene;
-  read_scene(text, NULL, 0, &scene);
-  scene.experiment.step = 1e-4;
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  read_scene(text, NULL, 0, &setup);
+  setup.experiment.step = 1e-4;
+  strut_model *model = motion_compile(&setup.scene);
   for (status = STRUT_NO_MEMORY, n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
     strut_run_options options = {0};
     strut_error error = {0};
     strut_summary s;
     strut_fail_allocation_after(n);
-    status = strut_simulate(model, &options, &s, &error);
+    status = strut_simulate(model, &setup.experiment, &options, &s, &error);
     strut_fail_allocation_after(-1);
     strut_summary_free(&s);
   }
   assert_int_equal(status, STRUT_OK);
   assert_true(n > 5);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Driven at 1 Hz and 0.5 Hz, of which the first counts: a motion of two periods. */

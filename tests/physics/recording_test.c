@@ -57,15 +57,15 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 static memory first, second;
 static unsigned first_wants, second_wants; /* channels of their own */
 
-static strut_status run(const strut_scene *scene, strut_error *error) {
+static strut_status run(const strut_setup *setup, strut_error *error) {
   strut_sink sinks[] = {{&first, begin, rows, end, first_wants},
                         {&second, begin, rows, end, second_wants}};
   strut_sink *all[] = {&sinks[0], &sinks[1]};
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   strut_summary summary;
   *error = (strut_error){0};
-  strut_status status = strut_simulate(model, &options, &summary, error);
+  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   assert_int_equal(summary.status, status);
   strut_summary_free(&summary);
   strut_model_free(model);
@@ -81,23 +81,23 @@ static int clean(void **unused) {
 }
 
 /* x = 1 + 0.5 t for the mass, which nothing moves. */
-static void gliding(strut_scene *scene, double step, double duration, double every) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0, 1);
-  build_sized(scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
-  scene->nodes[1].velocity[0] = 0.5;
-  motion_experiment(scene, step, duration);
-  scene->experiment.output_every = every;
+static void gliding(strut_setup *setup, double step, double duration, double every) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 1, 0, 1);
+  build_sized(&setup->scene, STRUT_CABLE, 0, 1, 10, 1, 0, 1000);
+  setup->scene.nodes[1].velocity[0] = 0.5;
+  motion_experiment(setup, step, duration);
+  setup->experiment.output_every = every;
 }
 
 static void check_rows(double step, double duration, double last, double every, size_t count) {
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
   clean(NULL);
-  gliding(&scene, step, duration, every);
-  scene.experiment.output_last = last;
-  assert_int_equal(run(&scene, &error), STRUT_OK);
+  gliding(&setup, step, duration, every);
+  setup.experiment.output_last = last;
+  assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.count, count);
   assert_int_equal(first.width, 1 + 4 + 1 + 1);
   assert_int_equal(first.channels,
@@ -114,7 +114,7 @@ static void check_rows(double step, double duration, double last, double every, 
     assert_near(row[first.offset[1]], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
     assert_true(row[first.offset[2]] == 0);
   }
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_rows_come_at_their_times(void **unused) {
@@ -128,43 +128,43 @@ static void test_rows_come_at_their_times(void **unused) {
 
 static void test_rows_are_a_thousandth_apart_if_nothing_is_said(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  gliding(&scene, 1e-4, 2, 0);
-  assert_int_equal(run(&scene, &error), STRUT_OK);
+  gliding(&setup, 1e-4, 2, 0);
+  assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.count, 1001);
   assert_near(first.row[1][0], 0.002, 1e-15);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* More often than there are steps: each step once. */
 static void test_no_step_is_recorded_twice(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  gliding(&scene, 0.01, 1, 0.001);
-  assert_int_equal(run(&scene, &error), STRUT_OK);
+  gliding(&setup, 0.01, 1, 0.001);
+  assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.count, 101);
   for (size_t i = 0; i < 101; i++) assert_near(first.row[i][0], 0.01 * (double)i, 1e-14);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Every channel of the crawler against the state that a motion by hand has at the same step. */
 static void test_every_channel_holds_what_it_says(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
   motion m;
-  strut_scene_init(&scene);
-  structure_crawler(&scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&scene, 1e-4, 0.1);
-  scene.experiment.output_every = 0.01;
-  scene.experiment.channels = 63;
-  assert_int_equal(run(&scene, &error), STRUT_OK);
+  strut_setup_init(&setup);
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&setup, 1e-4, 0.1);
+  setup.experiment.output_every = 0.01;
+  setup.experiment.channels = 63;
+  assert_int_equal(run(&setup, &error), STRUT_OK);
   assert_int_equal(first.channel_count, 6);
   assert_int_equal(first.count, 11);
   assert_int_equal(first.width, 1 + 10 + 10 + 9 + 9 + 10 + 10);
-  motion_begin(&m, &scene, 1e-4);
+  motion_begin(&m, &setup.scene, 1e-4);
   m.state->ledger = true;
   for (size_t i = 0; i < first.count; i++) {
     const double *row = first.row[i], *energy = row + first.offset[5];
@@ -188,7 +188,7 @@ static void test_every_channel_holds_what_it_says(void **unused) {
     motion_steps(&m, 100);
   }
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Columns of a part that are those of the whole. */
@@ -220,124 +220,126 @@ static void test_each_sink_gets_the_channels_it_wants(void **unused) {
       {STRUT_CHANNEL_ENERGY, STRUT_CHANNEL_FORCE | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_CONTACT},
       {63, STRUT_CHANNEL_POSITION}};
   static memory whole;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  strut_scene_init(&scene);
-  structure_crawler(&scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&scene, 1e-4, 0.1);
-  scene.experiment.output_every = 5e-4;
-  scene.experiment.channels = 63;
-  assert_int_equal(run(&scene, &error), STRUT_OK);
+  strut_setup_init(&setup);
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&setup, 1e-4, 0.1);
+  setup.experiment.output_every = 5e-4;
+  setup.experiment.channels = 63;
+  assert_int_equal(run(&setup, &error), STRUT_OK);
   whole = first;
   assert_int_equal(whole.count, 201);
-  scene.experiment.channels = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_ENERGY;
+  setup.experiment.channels = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_ENERGY;
   for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++) {
     clean(NULL);
     first_wants = pairs[p][0], second_wants = pairs[p][1];
-    assert_int_equal(run(&scene, &error), STRUT_OK);
-    check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : scene.experiment.channels);
-    check_part(&second, &whole, pairs[p][1] ? pairs[p][1] : scene.experiment.channels);
+    assert_int_equal(run(&setup, &error), STRUT_OK);
+    check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : setup.experiment.channels);
+    check_part(&second, &whole, pairs[p][1] ? pairs[p][1] : setup.experiment.channels);
   }
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Recording looks on: a run with sinks ends with the bits of one without. */
 static void test_recording_changes_no_bit(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  strut_scene_init(&scene);
-  structure_crawler(&scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&scene, 1e-4, 0.5);
-  scene.experiment.output_every = 0.5;
-  assert_int_equal(run(&scene, &error), STRUT_OK);
+  strut_setup_init(&setup);
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&setup, 1e-4, 0.5);
+  setup.experiment.output_every = 0.5;
+  assert_int_equal(run(&setup, &error), STRUT_OK);
   double coarse[10];
   memcpy(coarse, first.row[1] + 1, sizeof coarse);
   clean(NULL);
-  scene.experiment.output_every = 0.0007, scene.experiment.channels = 63;
-  assert_int_equal(run(&scene, &error), STRUT_OK);
-  strut_summary s = motion_simulate(&scene);
+  setup.experiment.output_every = 0.0007, setup.experiment.channels = 63;
+  assert_int_equal(run(&setup, &error), STRUT_OK);
+  strut_summary s = motion_simulate(&setup);
   assert_memory_equal(coarse, s.positions, sizeof coarse);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_sink_that_fails_stops_the_run(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  gliding(&scene, 1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
+  gliding(&setup, 1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
   second.fail_rows = STRUT_FILE_TROUBLE;
-  assert_int_equal(run(&scene, &error), STRUT_FILE_TROUBLE);
+  assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
   assert_string_equal(error.message, "rows fail");
   assert_int_equal(second.calls, 1);
   assert_true(first.ended == 1 && second.ended == 1);
   assert_int_equal(first.ended_with, STRUT_FILE_TROUBLE);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_sink_that_cannot_begin(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  gliding(&scene, 1e-3, 1, 0.1);
+  gliding(&setup, 1e-3, 1, 0.1);
   second.fail_begin = STRUT_FILE_TROUBLE;
-  assert_int_equal(run(&scene, &error), STRUT_FILE_TROUBLE);
+  assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
   assert_string_equal(error.message, "begin fails");
   assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_FILE_TROUBLE);
   assert_true(second.ended == 0 && first.count == 0);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_sink_that_cannot_end(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  gliding(&scene, 1e-3, 1, 0.1);
+  gliding(&setup, 1e-3, 1, 0.1);
   first.fail_end = STRUT_FILE_TROUBLE;
-  assert_int_equal(run(&scene, &error), STRUT_FILE_TROUBLE);
+  assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
   assert_string_equal(error.message, "end fails");
   assert_true(first.ended == 1 && second.ended == 1 && second.count == 11);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* What was recorded before a divergence is handed over, and marked. */
 static void test_rows_of_a_run_that_diverges_are_kept(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error;
-  gliding(&scene, 0.01, 1000, 0.01);
-  scene.members[0].kind = STRUT_BAR, scene.members[0].rest_value = 1;
-  scene.members[0].stiffness = 2e5; /* w dt = 4.5 */
-  assert_int_equal(run(&scene, &error), STRUT_DIVERGED);
+  gliding(&setup, 0.01, 1000, 0.01);
+  setup.scene.members[0].kind = STRUT_BAR, setup.scene.members[0].rest_value = 1;
+  setup.scene.members[0].stiffness = 2e5; /* w dt = 4.5 */
+  assert_int_equal(run(&setup, &error), STRUT_DIVERGED);
   assert_non_null(strstr(error.message, "n2"));
   assert_int_equal(first.ended_with, STRUT_DIVERGED);
   assert_true(first.count > 2 && first.count < 200);
   assert_near(first.row[1][0], 0.01, 1e-15);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Everything that asks for memory: blocks, a factor, contacts, drives, loads, settling, sinks. */
-static void demanding(strut_scene *scene) {
-  strut_scene_init(scene);
-  structure_chain(scene, 12, STRUT_MASS_CONSISTENT);
-  scene->nodes[0].fixed[0] = false; /* x and y differ */
-  int32_t a = build_mass(scene, 3, 3, 1), b = build_node(scene, 4, 3), c = build_node(scene, 4, 4);
-  build_member(scene, STRUT_BAR, a, b, 1e3, 10, 1);
-  build_member(scene, STRUT_BAR, b, c, 1e3, 10, 1);
-  build_actuator(scene, 3, build_sine(scene, 1e-4, 10));
-  build_load(scene, b, 1e-3, 0, 0);
-  for (int32_t i = 0; i < 10; i++) build_rough_contact(scene, i, 10, 1, 0.1, 0.1, 1e-3);
-  scene->ground.height = -1;
-  scene->settle.wanted = true;
-  scene->settle.speed = scene->settle.acceleration = 1e9; /* at rest from the first step on */
-  motion_experiment(scene, 1e-5, 1e-3);
+static void demanding(strut_setup *setup) {
+  strut_setup_init(setup);
+  structure_chain(&setup->scene, 12, STRUT_MASS_CONSISTENT);
+  setup->scene.nodes[0].fixed[0] = false; /* x and y differ */
+  int32_t a = build_mass(&setup->scene, 3, 3, 1), b = build_node(&setup->scene, 4, 3),
+          c = build_node(&setup->scene, 4, 4);
+  build_member(&setup->scene, STRUT_BAR, a, b, 1e3, 10, 1);
+  build_member(&setup->scene, STRUT_BAR, b, c, 1e3, 10, 1);
+  build_actuator(&setup->scene, 3, build_sine(&setup->scene, 1e-4, 10));
+  build_load(&setup->scene, b, 1e-3, 0, 0);
+  for (int32_t i = 0; i < 10; i++) build_rough_contact(&setup->scene, i, 10, 1, 0.1, 0.1, 1e-3);
+  setup->scene.ground.height = -1;
+  setup->experiment.settle.wanted = true;
+  setup->experiment.settle.speed = setup->experiment.settle.acceleration =
+      1e9; /* at rest from the first step on */
+  motion_experiment(setup, 1e-5, 1e-3);
 }
 
 static void test_every_allocation_may_fail(void **unused) {
   (void)unused;
-  strut_scene scene;
-  demanding(&scene);
+  strut_setup setup;
+  demanding(&setup);
   int64_t n = 0;
   for (;; n++) {
     strut_sink sink = {&first, begin, rows, end, 0}, *all[] = {&sink};
@@ -347,8 +349,8 @@ static void test_every_allocation_may_fail(void **unused) {
     strut_error error = {0};
     clean(NULL);
     strut_fail_allocation_after(n);
-    strut_status status = strut_model_compile(&scene, &model, &error);
-    if (!status) status = strut_simulate(model, &options, &summary, &error);
+    strut_status status = strut_model_compile(&setup.scene, &model, &error);
+    if (!status) status = strut_simulate(model, &setup.experiment, &options, &summary, &error);
     strut_fail_allocation_after(-1);
     assert_int_equal(first.begun, first.ended);
     if (!status) assert_int_equal(summary.steps, 100);
@@ -360,7 +362,7 @@ static void test_every_allocation_may_fail(void **unused) {
     assert_true(n < 1000);
   }
   assert_true(n > 30);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A block that exact friction holds against a push: what is recorded is what holds it. */
@@ -369,26 +371,26 @@ static void test_contact_forces_of_methods_with_events(void **unused) {
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
   const double mass = 2, g = 9.81, k = 1e4, push = 0.2 * mass * g;
   for (int i = 0; i < 4; i++) {
-    strut_scene scene;
+    strut_setup setup;
     strut_error error;
     clean(NULL);
-    strut_scene_init(&scene);
-    build_contact(&scene, build_mass(&scene, 0, -mass * g / k, mass), k, 10);
-    scene.contacts[0].friction =
+    strut_setup_init(&setup);
+    build_contact(&setup.scene, build_mass(&setup.scene, 0, -mass * g / k, mass), k, 10);
+    setup.scene.contacts[0].friction =
         (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = 0.5, .mu_kinetic = 0.4};
-    scene.gravity[1] = -g;
-    build_load(&scene, 0, push, 0, -1);
-    motion_experiment(&scene, 1e-3, 0.1);
-    scene.experiment.integrator = methods[i];
-    scene.experiment.output_every = 0.01;
-    scene.experiment.channels = STRUT_CHANNEL_CONTACT;
-    assert_int_equal(run(&scene, &error), STRUT_OK);
+    setup.scene.gravity[1] = -g;
+    build_load(&setup.scene, 0, push, 0, -1);
+    motion_experiment(&setup, 1e-3, 0.1);
+    setup.experiment.integrator = methods[i];
+    setup.experiment.output_every = 0.01;
+    setup.experiment.channels = STRUT_CHANNEL_CONTACT;
+    assert_int_equal(run(&setup, &error), STRUT_OK);
     assert_true(first.count == 11 && first.width == 3);
     for (size_t r = 0; r < first.count; r++) {
       assert_near(first.row[r][1], mass * g, 1e-9);
       assert_near(first.row[r][2], -push, 1e-9);
     }
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 

@@ -10,10 +10,10 @@
 
 static const double G = 9.81, L = 0.7;
 
-static void begin(strut_scene *scene) {
-  strut_scene_init(scene);
-  scene->bar_model = STRUT_BARS_RIGID;
-  scene->gravity[1] = -G;
+static void begin(strut_setup *setup) {
+  strut_setup_init(setup);
+  setup->scene.bar_model = STRUT_BARS_RIGID;
+  setup->scene.gravity[1] = -G;
 }
 
 /* From the horizontal, after a quarter of the elliptic integral's period it hangs straight down. */
@@ -26,13 +26,13 @@ static void test_pendulum_has_the_period_of_the_elliptic_integral(void **unused)
   }
   double period = 2 * acos(-1) / a * sqrt(L / G);
   for (int k = 0; k < 3; k++) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     int steps = 60 << k;
-    begin(&scene);
-    int32_t hook = build_support(&scene, 0, 0), bob = build_mass(&scene, L, 0, 2);
-    build_member(&scene, STRUT_BAR, hook, bob, 1e5, 1, 0);
-    motion_begin(&m, &scene, period / 4 / steps);
+    begin(&setup);
+    int32_t hook = build_support(&setup.scene, 0, 0), bob = build_mass(&setup.scene, L, 0, 2);
+    build_member(&setup.scene, STRUT_BAR, hook, bob, 1e5, 1, 0);
+    motion_begin(&m, &setup.scene, period / 4 / steps);
     motion_steps(&m, steps);
     error[k] = fabs(m.state->q[2]) / L;
     double length[1], force[1];
@@ -41,7 +41,7 @@ static void test_pendulum_has_the_period_of_the_elliptic_integral(void **unused)
     assert_relative(length[0], L, 1e-12);
     assert_relative(force[0], 3 * 2 * G, 1e-6); /* weight and centrifugal force */
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   assert_true(error[0] < 1e-6);
   assert_within(observed_order(error, 3), 3.7, 4.6);
@@ -51,46 +51,46 @@ static void test_pendulum_has_the_period_of_the_elliptic_integral(void **unused)
 static void test_double_pendulum_of_rods_has_its_two_frequencies(void **unused) {
   (void)unused;
   for (int mode = -1; mode <= 1; mode += 2) {
-    strut_scene scene;
+    strut_setup setup;
     motion m;
     const double small = 1e-4, x = 3 + mode * 6 / sqrt(7), other = (1.5 - 4 * x / 3) / (x / 2);
     double swing[2] = {small, small * other}, omega = sqrt(x * G / L);
-    begin(&scene);
-    int32_t top = build_support(&scene, 0, 0);
+    begin(&setup);
+    int32_t top = build_support(&setup.scene, 0, 0);
     double x1 = L * sin(swing[0]), y1 = -L * cos(swing[0]);
-    int32_t knee = build_node(&scene, x1, y1);
-    int32_t end = build_node(&scene, x1 + L * sin(swing[1]), y1 - L * cos(swing[1]));
-    build_member(&scene, STRUT_BAR, top, knee, 1e5, 0, 3);
-    build_member(&scene, STRUT_BAR, knee, end, 1e5, 0, 3);
-    motion_begin(&m, &scene, acos(-1) / 2 / omega / 200);
+    int32_t knee = build_node(&setup.scene, x1, y1);
+    int32_t end = build_node(&setup.scene, x1 + L * sin(swing[1]), y1 - L * cos(swing[1]));
+    build_member(&setup.scene, STRUT_BAR, top, knee, 1e5, 0, 3);
+    build_member(&setup.scene, STRUT_BAR, knee, end, 1e5, 0, 3);
+    motion_begin(&m, &setup.scene, acos(-1) / 2 / omega / 200);
     motion_steps(&m, 200);
     assert_near(m.state->q[2] / L, 0, 1e-6 * small);
     assert_near((m.state->q[4] - m.state->q[2]) / L, 0, 1e-6 * small);
     assert_relative(m.state->v[2], -omega * L * small, 1e-6);
     motion_end(&m);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* Thrown up so that it tumbles; the supported end of the first bar drags on it. */
-static void chain(strut_scene *scene) {
-  begin(scene);
-  int32_t last = build_support(scene, 0, 0);
+static void chain(strut_setup *setup) {
+  begin(setup);
+  int32_t last = build_support(&setup->scene, 0, 0);
   for (int i = 1; i <= 4; i++) {
-    int32_t next = build_node(scene, i * 0.3, i % 2 * 0.1);
-    build_member(scene, STRUT_BAR, last, next, 1e5, 2, 0.5);
+    int32_t next = build_node(&setup->scene, i * 0.3, i % 2 * 0.1);
+    build_member(&setup->scene, STRUT_BAR, last, next, 1e5, 2, 0.5);
     last = next;
   }
-  scene->nodes[last].mass = 0.2;
+  setup->scene.nodes[last].mass = 0.2;
 }
 
 static void test_lengths_hold_over_a_long_tumble(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   double kept[4];
-  chain(&scene);
-  motion_begin(&m, &scene, 5e-4);
+  chain(&setup);
+  motion_begin(&m, &setup.scene, 5e-4);
   memcpy(kept, m.state->rigid->length, sizeof kept);
   for (int i = 0; i < 200; i++) {
     motion_steps(&m, 500);
@@ -103,22 +103,22 @@ static void test_lengths_hold_over_a_long_tumble(void **unused) {
     }
   }
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_energy_is_kept_at_fourth_order(void **unused) {
   (void)unused;
   double error[3];
   for (int k = 0; k < 3; k++) {
-    strut_scene scene;
-    chain(&scene);
-    motion_experiment(&scene, ldexp(2e-3, -k), 0.4);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    chain(&setup);
+    motion_experiment(&setup, ldexp(2e-3, -k), 0.4);
+    strut_summary s = motion_simulate(&setup);
     error[k] = fabs(s.energy.residual) / s.energy.moved;
     assert_true(s.energy.elastic == 0);
     assert_true(s.energy.dissipated_members < 1e-4 * s.energy.moved);
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   assert_true(error[2] < 1e-6);
   assert_true(observed_order(error, 3) > 3.5);
@@ -126,21 +126,22 @@ static void test_energy_is_kept_at_fourth_order(void **unused) {
 
 /* A sled of two feet and a bar, pushed at one foot: it holds as one body, and slides as one. */
 static double pushed_sled(double share) {
-  strut_scene scene;
+  strut_setup setup;
   motion m;
   const double mass = 0.4, mu_static = 0.5, mu_kinetic = 0.3, stiffness = 1e5;
   double depth = mass * G / stiffness;
-  begin(&scene);
-  int32_t a = build_mass(&scene, 0, -depth, mass), b = build_mass(&scene, 1, -depth, mass);
-  build_member(&scene, STRUT_BAR, a, b, 1e4, 0, 0);
-  build_rough_contact(&scene, a, stiffness, 0, mu_static, mu_kinetic, 1e-4);
-  build_rough_contact(&scene, b, stiffness, 0, mu_static, mu_kinetic, 1e-4);
-  build_load(&scene, a, share * mu_static * 2 * mass * G, 0, -1);
-  motion_begin(&m, &scene, 1e-4);
+  begin(&setup);
+  int32_t a = build_mass(&setup.scene, 0, -depth, mass),
+          b = build_mass(&setup.scene, 1, -depth, mass);
+  build_member(&setup.scene, STRUT_BAR, a, b, 1e4, 0, 0);
+  build_rough_contact(&setup.scene, a, stiffness, 0, mu_static, mu_kinetic, 1e-4);
+  build_rough_contact(&setup.scene, b, stiffness, 0, mu_static, mu_kinetic, 1e-4);
+  build_load(&setup.scene, a, share * mu_static * 2 * mass * G, 0, -1);
+  motion_begin(&m, &setup.scene, 1e-4);
   motion_steps(&m, 2000);
   double speed = m.state->v[2];
   motion_end(&m);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return speed;
 }
 
@@ -151,11 +152,11 @@ static void test_bars_and_stick_are_solved_together(void **unused) {
 }
 
 /* What strut_simulate says of a scene that it must refuse. */
-static strut_status refusal(const strut_scene *scene, strut_error *error) {
-  strut_model *model = motion_compile(scene);
+static strut_status refusal(const strut_setup *setup, strut_error *error) {
+  strut_model *model = motion_compile(&setup->scene);
   strut_summary summary;
   strut_run_options options = {0};
-  strut_status status = strut_simulate(model, &options, &summary, error);
+  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);
   strut_model_free(model);
   return status;
@@ -163,44 +164,44 @@ static strut_status refusal(const strut_scene *scene, strut_error *error) {
 
 static void test_what_cannot_be_rigid_is_refused_by_name(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
-  begin(&scene);
-  int32_t n[4] = {build_support(&scene, 0, 0), build_support(&scene, 1, 0),
-                  build_mass(&scene, 0, 1, 1), build_mass(&scene, 1, 1, 1)};
-  build_member(&scene, STRUT_BAR, n[0], n[2], 1e4, 0, 0);
-  build_member(&scene, STRUT_BAR, n[1], n[3], 1e4, 0, 0);
-  build_member(&scene, STRUT_BAR, n[2], n[3], 1e4, 0, 0);
-  build_member(&scene, STRUT_BAR, n[0], n[3], 1e4, 0, 0);
-  int32_t extra = build_member(&scene, STRUT_BAR, n[1], n[2], 1e4, 0, 0);
-  motion_experiment(&scene, 1e-3, 0.1);
-  assert_int_equal(refusal(&scene, &error), STRUT_SINGULAR);
-  assert_non_null(strstr(error.message, scene.members[extra].name));
-  scene.members[extra].kind = STRUT_SPRING;
-  strut_summary s = motion_simulate(&scene);
+  begin(&setup);
+  int32_t n[4] = {build_support(&setup.scene, 0, 0), build_support(&setup.scene, 1, 0),
+                  build_mass(&setup.scene, 0, 1, 1), build_mass(&setup.scene, 1, 1, 1)};
+  build_member(&setup.scene, STRUT_BAR, n[0], n[2], 1e4, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, n[1], n[3], 1e4, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, n[2], n[3], 1e4, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, n[0], n[3], 1e4, 0, 0);
+  int32_t extra = build_member(&setup.scene, STRUT_BAR, n[1], n[2], 1e4, 0, 0);
+  motion_experiment(&setup, 1e-3, 0.1);
+  assert_int_equal(refusal(&setup, &error), STRUT_SINGULAR);
+  assert_non_null(strstr(error.message, setup.scene.members[extra].name));
+  setup.scene.members[extra].kind = STRUT_SPRING;
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.status, STRUT_OK);
   strut_summary_free(&s);
-  scene.experiment.integrator = "verlet-events";
-  assert_int_equal(refusal(&scene, &error), STRUT_USAGE);
+  setup.experiment.integrator = "verlet-events";
+  assert_int_equal(refusal(&setup, &error), STRUT_USAGE);
   assert_non_null(strstr(error.message, "rk4"));
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Stiff bars no longer limit the step: what is left is a mass on a spring between rigid walls. */
 static void test_step_limit_is_that_of_the_motions_left(void **unused) {
   (void)unused;
-  strut_scene scene;
-  begin(&scene);
-  scene.gravity[1] = 0;
-  int32_t wall = build_support(&scene, -1, 0), a = build_mass(&scene, 0, 0, 1.5);
-  int32_t b = build_mass(&scene, 1, 0, 0.5);
-  build_member(&scene, STRUT_SPRING, wall, a, 800, 0, 0);
-  build_member(&scene, STRUT_BAR, a, b, 1e9, 0, 0);
-  motion_experiment(&scene, 1e-3, 0.1);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  begin(&setup);
+  setup.scene.gravity[1] = 0;
+  int32_t wall = build_support(&setup.scene, -1, 0), a = build_mass(&setup.scene, 0, 0, 1.5);
+  int32_t b = build_mass(&setup.scene, 1, 0, 0.5);
+  build_member(&setup.scene, STRUT_SPRING, wall, a, 800, 0, 0);
+  build_member(&setup.scene, STRUT_BAR, a, b, 1e9, 0, 0);
+  motion_experiment(&setup, 1e-3, 0.1);
+  strut_summary s = motion_simulate(&setup);
   assert_relative(s.step_limit, 2 * sqrt(2) / sqrt(800 / 2.0), 1e-6);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A rod that only swings has no limit, also where it lies along an axis, in which nothing moves. */
@@ -208,16 +209,17 @@ static void test_a_rod_that_only_swings_has_no_step_limit(void **unused) {
   (void)unused;
   const double way[][2] = {{1, 0}, {0, -1}, {0.6, -0.8}, {-0.28, 0.96}};
   for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
-    strut_scene scene;
-    begin(&scene);
-    scene.gravity[1] = 0;
-    int32_t pin = build_support(&scene, 0, 0), tip = build_node(&scene, way[i][0], way[i][1]);
-    build_member(&scene, STRUT_BAR, pin, tip, 1e6, 0, 1.0);
-    motion_experiment(&scene, 1e-3, 0.1);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    begin(&setup);
+    setup.scene.gravity[1] = 0;
+    int32_t pin = build_support(&setup.scene, 0, 0),
+            tip = build_node(&setup.scene, way[i][0], way[i][1]);
+    build_member(&setup.scene, STRUT_BAR, pin, tip, 1e6, 0, 1.0);
+    motion_experiment(&setup, 1e-3, 0.1);
+    strut_summary s = motion_simulate(&setup);
     assert_true(s.step_limit > 1.0);
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 

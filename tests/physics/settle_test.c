@@ -14,14 +14,14 @@
 static const double G = 9.81;
 
 /* A mass of 1 kg on a rod of 1 m, its pin in the origin, `angle` from upright. */
-static void rod(strut_scene *scene, double stiffness, double angle) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, sin(angle), cos(angle), 1);
-  build_sized(scene, STRUT_BAR, 0, 1, stiffness, 10, 0, 1);
-  scene->gravity[1] = -G;
-  scene->settle.wanted = true;
-  motion_experiment(scene, 1e-3, 0.1);
+static void rod(strut_setup *setup, double stiffness, double angle) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, sin(angle), cos(angle), 1);
+  build_sized(&setup->scene, STRUT_BAR, 0, 1, stiffness, 10, 0, 1);
+  setup->scene.gravity[1] = -G;
+  setup->experiment.settle.wanted = true;
+  motion_experiment(setup, 1e-3, 0.1);
 }
 
 typedef struct settled {
@@ -31,133 +31,135 @@ typedef struct settled {
   strut_status status;
 } settled;
 
-static settled settle(const strut_scene *scene) {
+static settled settle(const strut_setup *setup) {
   settled s = {.time = 0};
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   assert_true(model->length <= 64);
-  s.status = strut_settle_experiment(model, NULL, NULL, s.q, &s.time, &s.how, &s.error);
+  s.status = strut_settle_experiment(model, &setup->experiment, NULL, NULL, s.q, &s.time, &s.how,
+                                     &s.error);
   strut_model_free(model);
   return s;
 }
 
 static void an_upright_rod_is_unstable(void **unused) {
   (void)unused;
-  strut_scene scene;
-  rod(&scene, 1e5, 0);
-  settled s = settle(&scene);
+  strut_setup setup;
+  rod(&setup, 1e5, 0);
+  settled s = settle(&setup);
   double length = 1 - G / 1e5;
   assert_int_equal(s.status, STRUT_OK);
   assert_near(s.q[3], length, 1e-12);
   assert_true(s.how.unstable);
-  assert_string_equal(s.how.node, scene.nodes[1].name);
+  assert_string_equal(s.how.node, setup.scene.nodes[1].name);
   assert_relative(s.how.stiffness, -G / length, 1e-9);
   assert_relative(s.how.growth_rate, sqrt(G / length), 1e-9);
   char text[300];
   assert_true(strut_settle_warning(&s.how, text, sizeof text));
-  assert_non_null(strstr(text, scene.nodes[1].name));
-  strut_scene_free(&scene);
+  assert_non_null(strstr(text, setup.scene.nodes[1].name));
+  strut_setup_free(&setup);
 }
 
 /* A rod 1e6 times as stiff: the same instability beside a stiffness that is 1e10 times larger. */
 static void a_stiff_rod_is_as_unstable(void **unused) {
   (void)unused;
-  strut_scene scene;
-  rod(&scene, 1e11, 0);
-  scene.experiment.step = 1e-7;
-  settled s = settle(&scene);
+  strut_setup setup;
+  rod(&setup, 1e11, 0);
+  setup.experiment.step = 1e-7;
+  settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_true(s.how.unstable);
   assert_relative(s.how.growth_rate, sqrt(G), 1e-6);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void a_perturbed_rod_hangs(void **unused) {
   (void)unused;
-  strut_scene scene;
-  rod(&scene, 1e5, 0);
-  scene.settle.perturb = true;
-  settled s = settle(&scene);
+  strut_setup setup;
+  rod(&setup, 1e5, 0);
+  setup.experiment.settle.perturb = true;
+  settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_false(s.how.unstable);
   assert_int_equal(s.how.perturbations, 1);
   assert_near(s.q[2], 0, 1e-7);
   assert_near(s.q[3], -1 - G / 1e5, 1e-9);
-  settled again = settle(&scene);
+  settled again = settle(&setup);
   assert_memory_equal(s.q, again.q, sizeof s.q);
   char text[300];
   assert_false(strut_settle_warning(&s.how, text, sizeof text));
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Nothing is perturbed that is stable: the bits are those without the key. */
 static void a_stable_rest_is_left_alone(void **unused) {
   (void)unused;
-  strut_scene scene;
-  rod(&scene, 1e5, 3.0);
-  settled s = settle(&scene);
-  scene.settle.perturb = true;
-  settled perturbed = settle(&scene);
+  strut_setup setup;
+  rod(&setup, 1e5, 3.0);
+  settled s = settle(&setup);
+  setup.experiment.settle.perturb = true;
+  settled perturbed = settle(&setup);
   assert_false(s.how.unstable);
   assert_int_equal(perturbed.how.perturbations, 0);
   assert_memory_equal(s.q, perturbed.q, sizeof s.q);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Motions without stiffness are none that grow: two masses that float, a block that slides. */
 static void free_motions_are_not_unstable(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  for (int i = 0; i < 3; i++) build_mass(&scene, 0.3 * i, 0.4 * (i % 2), 1 + i);
-  for (int32_t i = 0; i < 3; i++) build_sized(&scene, STRUT_BAR, i, (i + 1) % 3, 1e4, 1, 0, 0.5);
-  scene.settle.wanted = true;
-  motion_experiment(&scene, 1e-3, 0.1);
-  settled s = settle(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  for (int i = 0; i < 3; i++) build_mass(&setup.scene, 0.3 * i, 0.4 * (i % 2), 1 + i);
+  for (int32_t i = 0; i < 3; i++)
+    build_sized(&setup.scene, STRUT_BAR, i, (i + 1) % 3, 1e4, 1, 0, 0.5);
+  setup.experiment.settle.wanted = true;
+  motion_experiment(&setup, 1e-3, 0.1);
+  settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_false(s.how.unstable);
-  for (int32_t i = 0; i < 2; i++) build_contact(&scene, 2 * i, 1e4, 10);
-  scene.gravity[1] = -G;
-  s = settle(&scene);
+  for (int32_t i = 0; i < 2; i++) build_contact(&setup.scene, 2 * i, 1e4, 10);
+  setup.scene.gravity[1] = -G;
+  s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_false(s.how.unstable);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A block that friction keeps on a slope is held there. */
 static void what_friction_holds_is_not_unstable(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_rough_contact(&scene, build_mass(&scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
-  scene.gravity[1] = -G;
-  scene.ground.slope = 0.2;
-  motion_experiment(&scene, 1e-4, 0.01);
-  scene.settle.wanted = scene.settle.friction = true;
-  scene.settle.acceleration = 1e-6;
-  settled s = settle(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_rough_contact(&setup.scene, build_mass(&setup.scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
+  setup.scene.gravity[1] = -G;
+  setup.scene.ground.slope = 0.2;
+  motion_experiment(&setup, 1e-4, 0.01);
+  setup.experiment.settle.wanted = setup.experiment.settle.friction = true;
+  setup.experiment.settle.acceleration = 1e-6;
+  settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_OK);
   assert_false(s.how.unstable);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* What method, step or accuracy a run has: it starts from the same bits. */
 static void every_method_starts_from_the_same_bits(void **unused) {
   (void)unused;
   static const char *const method[] = {"verlet", "verlet-events", "adaptive", "midpoint", "euler"};
-  strut_scene scene;
-  rod(&scene, 1e5, 2.5);
-  scene.settle.step = 1e-3; /* as the parser takes it from the file's solver.step */
-  settled first = settle(&scene);
+  strut_setup setup;
+  rod(&setup, 1e5, 2.5);
+  setup.experiment.settle.step = 1e-3; /* as the parser takes it from the file's solver.step */
+  settled first = settle(&setup);
   assert_int_equal(first.status, STRUT_OK);
   for (size_t i = 0; i < sizeof method / sizeof method[0]; i++) {
-    scene.experiment.integrator = method[i];
-    scene.experiment.step = 1e-2 / (double)(1 << i);
-    settled s = settle(&scene);
+    setup.experiment.integrator = method[i];
+    setup.experiment.step = 1e-2 / (double)(1 << i);
+    settled s = settle(&setup);
     assert_int_equal(s.status, STRUT_OK);
     assert_memory_equal(s.q, first.q, sizeof s.q);
     assert_int_equal(s.how.evaluations, first.how.evaluations);
   }
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* The first row of a run: where it starts. */
@@ -186,17 +188,18 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 
 static void an_accurate_run_starts_where_the_plain_one_does(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   first_row plain = {.taken = false}, accurate = {.taken = false};
   strut_sink sink = {&plain, begin, rows, end, STRUT_CHANNEL_POSITION}, *sinks[] = {&sink};
   strut_run_options options = {.sinks = sinks, .sink_count = 1};
   strut_summary s, t;
-  rod(&scene, 1e5, 0);
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_simulate(model, &options, &s, NULL), STRUT_OK);
+  rod(&setup, 1e5, 0);
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   sink.context = &accurate;
-  scene.experiment.accuracy = 0.01;
-  assert_int_equal(strut_simulate_accurately(&scene, &options, &t, NULL), STRUT_OK);
+  setup.experiment.accuracy = 0.01;
+  assert_int_equal(strut_simulate_accurately(model, &setup.experiment, &options, &t, NULL),
+                   STRUT_OK);
   assert_true(plain.taken && accurate.taken);
   assert_memory_equal(plain.position, accurate.position, sizeof plain.position);
   assert_true(s.settle.unstable && t.settle.unstable);
@@ -205,53 +208,55 @@ static void an_accurate_run_starts_where_the_plain_one_does(void **unused) {
   strut_summary_free(&s);
   strut_summary_free(&t);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* `start` of statics is that state too; its list of equilibria knows it as the saddle it is. */
 static void statics_start_from_the_same_bits(void **unused) {
   (void)unused;
   for (int perturb = 0; perturb < 2; perturb++) {
-    strut_scene scene;
-    rod(&scene, 1e5, 0);
-    scene.settle.perturb = perturb;
-    settled s = settle(&scene);
-    strut_model *model = motion_compile(&scene);
+    strut_setup setup;
+    rod(&setup, 1e5, 0);
+    setup.experiment.settle.perturb = perturb;
+    settled s = settle(&setup);
+    strut_model *model = motion_compile(&setup.scene);
     strut_arena arena = {0};
     strut_rest_state stand;
-    assert_int_equal(strut_rest_state_find(model, NULL, &arena, &stand, NULL), STRUT_OK);
+    assert_int_equal(strut_rest_state_find(model, &setup.experiment, NULL, &arena, &stand, NULL),
+                     STRUT_OK);
     assert_memory_equal(stand.q, s.q, (size_t)model->length * sizeof *s.q);
     assert_true(stand.at_rest);
     assert_int_equal(stand.settle.unstable, !perturb);
     strut_equilibria_options options = {0};
     strut_equilibria all;
-    assert_int_equal(strut_equilibria_find(model, &options, &all, NULL), STRUT_OK);
+    assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, NULL),
+                     STRUT_OK);
     assert_true(all.start >= 0);
     assert_int_equal(all.list[all.start].point.label, perturb ? STRUT_STABLE : STRUT_SADDLE);
     strut_equilibria_free(&all);
     strut_arena_free(&arena);
     strut_model_free(model);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* A mass that falls for ever: it ends after so many evaluations, and says who moves and how fast. */
 static void settling_is_bounded_in_work(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_mass(&scene, 0, 0, 1);
-  scene.gravity[1] = -G;
-  motion_experiment(&scene, 1e-3, 0.1);
-  scene.settle.wanted = true;
-  scene.settle.evaluations = 4000;
-  settled s = settle(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_mass(&setup.scene, 0, 0, 1);
+  setup.scene.gravity[1] = -G;
+  motion_experiment(&setup, 1e-3, 0.1);
+  setup.experiment.settle.wanted = true;
+  setup.experiment.settle.evaluations = 4000;
+  settled s = settle(&setup);
   assert_int_equal(s.status, STRUT_NOT_SETTLED);
   assert_non_null(strstr(s.error.message, "4000 evaluations"));
-  assert_non_null(strstr(s.error.message, scene.nodes[0].name));
+  assert_non_null(strstr(s.error.message, setup.scene.nodes[0].name));
   assert_non_null(strstr(s.error.message, "9.81 m/s")); /* after 1000 steps of 1 ms */
   assert_non_null(strstr(s.error.message, "initial.settle.evaluations"));
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A step above the stability limit, and none at all: it is chosen. */
@@ -259,14 +264,14 @@ static void a_step_that_is_not_stable_is_replaced(void **unused) {
   (void)unused;
   static const double step[] = {0.1, -1};
   for (size_t i = 0; i < 2; i++) {
-    strut_scene scene;
-    rod(&scene, 1e5, 2.5);
-    scene.settle.step = step[i];
-    settled s = settle(&scene);
+    strut_setup setup;
+    rod(&setup, 1e5, 2.5);
+    setup.experiment.settle.step = step[i];
+    settled s = settle(&setup);
     assert_int_equal(s.status, STRUT_OK);
     assert_within(s.how.step, 1e-3, 2.83 / sqrt(1e5));
     assert_near(s.q[3], -1 - G / 1e5, 1e-9);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 

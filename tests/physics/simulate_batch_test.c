@@ -50,7 +50,7 @@ static strut_status trace_end(void *context, strut_status status, strut_error *e
 }
 
 typedef struct point {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_run_options options;
   strut_sink sink, *sinks[1];
@@ -70,7 +70,7 @@ static bool next_point(void *context, strut_batch_point *p) {
   if (all->next == all->count) return false;
   point *it = &all->at[all->next++];
   it->given++;
-  *p = (strut_batch_point){it->model, &it->options, it};
+  *p = (strut_batch_point){it->model, &it->setup.experiment, &it->options, it};
   return true;
 }
 
@@ -127,23 +127,24 @@ static void same_summary(const strut_summary *a, const strut_summary *b) {
 }
 
 /* The crawler, sometimes as something that no lane takes, or that fails. */
-static void make_scene(strut_scene *scene, int i, const char *method, uint64_t *r) {
-  strut_scene_init(scene);
-  structure_crawler(scene, random_between(r, 2, 20), random_between(r, 1e-5, 3e-4),
+static void make_scene(strut_setup *setup, int i, const char *method, uint64_t *r) {
+  strut_setup_init(setup);
+  structure_crawler(&setup->scene, random_between(r, 2, 20), random_between(r, 1e-5, 3e-4),
                     random_between(r, 0.05, 0.6), i % 2);
-  strut_experiment *e = &scene->experiment;
+  strut_experiment *e = &setup->experiment;
   e->step = random_between(r, 5e-5, 1e-4);
   e->duration = random_between(r, 0.02, 0.5);
   e->measure_last = random_between(r, 0.1, 1.0) * e->duration;
-  if (i % 4 == 1) scene->contacts[0].stiffness *= 0.9; /* the limit of the step is another one */
-  if (i % 8 == 4) scene->members[0].stiffness *= 0.95;
-  if (i % 7 == 2) scene->signals[0].kind = STRUT_HALF_SINE;
+  if (i % 4 == 1)
+    setup->scene.contacts[0].stiffness *= 0.9; /* the limit of the step is another one */
+  if (i % 8 == 4) setup->scene.members[0].stiffness *= 0.95;
+  if (i % 7 == 2) setup->scene.signals[0].kind = STRUT_HALF_SINE;
   e->integrator = (i % 11 == 5) == (strcmp(method, "rk4") == 0) ? "verlet-events" : "rk4";
-  if (i % 13 == 6) scene->contacts[1].friction.law = STRUT_FRICTION_SMOOTH;
-  if (i % 13 == 6) scene->contacts[1].friction.width = 1e-3;
-  if (i % 17 == 8) scene->members[3].node[0] = 4;       /* another topology */
-  if (i % 17 == 9) e->step = 1e-2;                      /* refused */
-  if (i % 17 == 10) scene->nodes[2].velocity[1] = 1e15; /* diverges */
+  if (i % 13 == 6) setup->scene.contacts[1].friction.law = STRUT_FRICTION_SMOOTH;
+  if (i % 13 == 6) setup->scene.contacts[1].friction.width = 1e-3;
+  if (i % 17 == 8) setup->scene.members[3].node[0] = 4;       /* another topology */
+  if (i % 17 == 9) e->step = 1e-2;                            /* refused */
+  if (i % 17 == 10) setup->scene.nodes[2].velocity[1] = 1e15; /* diverges */
   if (i % 5) return;
   e->steady.wanted = true;
   e->steady.tolerance = 0.3;
@@ -157,8 +158,8 @@ static void make_points(points *all, int count, const char *method, bool without
   *all = (points){.count = count};
   for (int i = 0; i < count; i++) {
     point *p = &all->at[i];
-    make_scene(&p->scene, i, method, &r);
-    p->model = motion_compile(&p->scene);
+    make_scene(&p->setup, i, method, &r);
+    p->model = motion_compile(&p->setup.scene);
     p->options.without_ledger = without_ledger;
     p->sink = (strut_sink){&p->seen, trace_begin, trace_rows, trace_end, 0};
     p->sinks[0] = &p->sink;
@@ -170,10 +171,11 @@ static void make_points(points *all, int count, const char *method, bool without
 static void check_alone(point *p) {
   strut_summary alone;
   trace seen = p->seen;
-  strut_model *model = motion_compile(&p->scene);
+  strut_model *model = motion_compile(&p->setup.scene);
   assert_int_equal(p->given, 1);
   assert_int_equal(p->back, 1);
-  assert_int_equal(strut_simulate(model, &p->options, &alone, NULL), p->status);
+  assert_int_equal(strut_simulate(model, &p->setup.experiment, &p->options, &alone, NULL),
+                   p->status);
   same_summary(&p->summary, &alone);
   assert_int_equal(p->seen.rows, seen.rows);
   assert_int_equal(p->seen.hash, seen.hash);
@@ -184,16 +186,17 @@ static void check_alone(point *p) {
 
 static void compare(int32_t width, int count, const char *method, bool without_ledger) {
   static points all;
-  strut_scene crawler;
-  strut_scene_init(&crawler);
-  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
+  strut_setup crawler;
+  strut_setup_init(&crawler);
+  structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
   crawler.experiment.integrator = method;
-  strut_model *example = motion_compile(&crawler);
+  strut_model *example = motion_compile(&crawler.scene);
   make_points(&all, count, method, without_ledger);
   strut_simulate_batch(&(strut_batch_source){.context = &all,
                                              .next = next_point,
                                              .result = take_result,
                                              .example = example,
+                                             .integrator = method,
                                              .without_ledger = without_ledger,
                                              .width = width});
   int failed = 0;
@@ -201,11 +204,11 @@ static void compare(int32_t width, int count, const char *method, bool without_l
     failed += all.at[i].status != STRUT_OK;
     check_alone(&all.at[i]);
     strut_summary_free(&all.at[i].summary);
-    strut_scene_free(&all.at[i].scene);
+    strut_setup_free(&all.at[i].setup);
   }
   assert_true(count < 20 || (failed > 1 && failed < count / 2));
   strut_model_free(example);
-  strut_scene_free(&crawler);
+  strut_setup_free(&crawler);
 }
 
 static void test_every_width(void **unused) {
@@ -235,21 +238,24 @@ static void test_few_points(void **unused) {
 static void test_no_memory_for_lanes(void **unused) {
   (void)unused;
   static points all;
-  strut_scene crawler;
-  strut_scene_init(&crawler);
-  structure_crawler(&crawler, 10, 1e-4, 0.1, false);
-  strut_model *example = motion_compile(&crawler);
+  strut_setup crawler;
+  strut_setup_init(&crawler);
+  structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
+  strut_model *example = motion_compile(&crawler.scene);
   make_points(&all, 1, "rk4", false);
   strut_fail_allocation_after(0);
-  strut_simulate_batch(&(strut_batch_source){
-      .context = &all, .next = next_point, .result = take_result, .example = example});
+  strut_simulate_batch(&(strut_batch_source){.context = &all,
+                                             .next = next_point,
+                                             .result = take_result,
+                                             .example = example,
+                                             .integrator = "rk4"});
   strut_fail_allocation_after(-1);
   assert_int_equal(all.at[0].back, 1);
   assert_int_equal(all.at[0].status, STRUT_NO_MEMORY);
   strut_summary_free(&all.at[0].summary);
-  strut_scene_free(&all.at[0].scene);
+  strut_setup_free(&all.at[0].setup);
   strut_model_free(example);
-  strut_scene_free(&crawler);
+  strut_setup_free(&crawler);
 }
 
 int main(void) {

@@ -12,58 +12,58 @@
 static const double PI = 3.14159265358979323846;
 
 /* A free mass of 2 kg that drifts at 0.3 m/s and is pushed by 5 N at 7.3 Hz, and by `steady` N. */
-static void drifting(strut_scene *scene, double steady) {
-  strut_scene_init(scene);
-  build_mass(scene, 0, 0, 2);
-  scene->nodes[0].velocity[0] = 0.3;
-  build_load(scene, 0, 5, 0, build_sine(scene, 1, 7.3));
-  if (steady != 0) build_load(scene, 0, steady, 0, -1);
-  scene->experiment.step = 1e-3; /* 136.986 steps in a period */
-  scene->experiment.periods = 50;
-  scene->experiment.period_signal = 0;
-  scene->experiment.measure_last = 8;
+static void drifting(strut_setup *setup, double steady) {
+  strut_setup_init(setup);
+  build_mass(&setup->scene, 0, 0, 2);
+  setup->scene.nodes[0].velocity[0] = 0.3;
+  build_load(&setup->scene, 0, 5, 0, build_sine(&setup->scene, 1, 7.3));
+  if (steady != 0) build_load(&setup->scene, 0, steady, 0, -1);
+  setup->experiment.step = 1e-3; /* 136.986 steps in a period */
+  setup->experiment.periods = 50;
+  setup->experiment.period_signal = 0;
+  setup->experiment.measure_last = 8;
 }
 
 static void test_velocity_over_periods_that_the_step_does_not_divide(void **unused) {
   (void)unused;
-  strut_scene scene;
-  drifting(&scene, 0);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  drifting(&setup, 0);
+  strut_summary s = motion_simulate(&setup);
   assert_near(s.velocity, 0.3 + 5 / (2 * 2 * PI * 7.3), 1e-9);
   assert_within(s.velocity_spread, 0, 1e-8);
   assert_relative(s.window_start, 42 / 7.3, 1e-15);
   assert_int_equal(s.steps, (int64_t)ceil(50 / 7.3 / 1e-3));
   assert_same_bits(s.duration, 50 / 7.3);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_spread_of_an_accelerated_mass(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   const double steady = 0.4, period = 1 / 7.3, a = steady / 2;
-  drifting(&scene, steady);
-  strut_summary s = motion_simulate(&scene);
+  drifting(&setup, steady);
+  strut_summary s = motion_simulate(&setup);
   double middle = 46 * period; /* of the window */
   assert_near(s.velocity, 0.3 + 5 / (2 * 2 * PI * 7.3) + a * middle, 1e-9);
   assert_near(s.velocity_spread, a * period * sqrt(8 * 9 / 12.0), 1e-8);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Two masses that fly apart: of one node, or of their centre. */
 static void test_velocity_of_a_node_or_of_the_centre_of_mass(void **unused) {
   (void)unused;
   for (int32_t node = -1; node < 2; node++) {
-    strut_scene scene;
-    strut_scene_init(&scene);
-    build_mass(&scene, 0, 0, 1);
-    build_mass(&scene, 1, 0, 3);
-    scene.nodes[0].velocity[0] = -2, scene.nodes[1].velocity[0] = 1;
-    motion_experiment(&scene, 0.01, 1);
-    scene.experiment.measure_node = node;
-    scene.experiment.measure_last = 0.333;
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    build_mass(&setup.scene, 0, 0, 1);
+    build_mass(&setup.scene, 1, 0, 3);
+    setup.scene.nodes[0].velocity[0] = -2, setup.scene.nodes[1].velocity[0] = 1;
+    motion_experiment(&setup, 0.01, 1);
+    setup.experiment.measure_node = node;
+    setup.experiment.measure_last = 0.333;
+    strut_summary s = motion_simulate(&setup);
     assert_near(s.velocity, node < 0 ? 0.25 : node ? 1 : -2, 1e-12);
     assert_true(isnan(s.velocity_spread));
     assert_near(s.window_start, 0.667, 1e-15);
@@ -71,30 +71,30 @@ static void test_velocity_of_a_node_or_of_the_centre_of_mass(void **unused) {
     assert_string_equal(s.node_names[1], "n2");
     assert_near(s.positions[2], 2, 1e-13);
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* A mass that swings by 0.1 m about a ground too soft to be felt, 0.04 m above its middle. */
 static void test_duty_and_height_of_a_contact(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, -1);
-  build_mass(&scene, 0, 0, 1);
-  build_member(&scene, STRUT_SPRING, 0, 1, 4 * PI * PI, 0, 0); /* 1 Hz */
-  scene.nodes[1].start[1] = 0.1;
-  build_contact(&scene, 1, 1e-9, 0);
-  scene.ground.height = 0.04;
-  motion_experiment(&scene, 1e-4, 5);
-  scene.experiment.measure_last = 3;
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, -1);
+  build_mass(&setup.scene, 0, 0, 1);
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, 4 * PI * PI, 0, 0); /* 1 Hz */
+  setup.scene.nodes[1].start[1] = 0.1;
+  build_contact(&setup.scene, 1, 1e-9, 0);
+  setup.scene.ground.height = 0.04;
+  motion_experiment(&setup, 1e-4, 5);
+  setup.experiment.measure_last = 3;
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.contact_count, 1);
   assert_string_equal(s.contacts[0].node, "n2");
   assert_near(s.contacts[0].duty, 1 - acos(0.4) / PI, 3e-4);
   assert_near(s.contacts[0].max_height, 0.06, 1e-7);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A mass that flies off sloping ground: its height is measured across the ground. */
@@ -103,37 +103,37 @@ static void test_height_above_sloping_ground(void **unused) {
   static const double slopes[] = {0.4, -0.7, 0};
   for (int i = 0; i < 3; i++) {
     const double x = 0.3, y = 1.5, vx = 3, vy = 2.5, height = 0.25;
-    strut_scene scene;
-    strut_scene_init(&scene);
-    build_mass(&scene, x, y, 1);
-    scene.nodes[0].velocity[0] = vx, scene.nodes[0].velocity[1] = vy;
-    build_contact(&scene, 0, 1e4, 0);
-    scene.ground.height = height, scene.ground.slope = slopes[i];
-    motion_experiment(&scene, 1e-3, 1);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    build_mass(&setup.scene, x, y, 1);
+    setup.scene.nodes[0].velocity[0] = vx, setup.scene.nodes[0].velocity[1] = vy;
+    build_contact(&setup.scene, 0, 1e4, 0);
+    setup.scene.ground.height = height, setup.scene.ground.slope = slopes[i];
+    motion_experiment(&setup, 1e-3, 1);
+    strut_summary s = motion_simulate(&setup);
     double up = (y + vy - height) * cos(slopes[i]) - (x + vx) * sin(slopes[i]);
     assert_near(s.contacts[0].max_height, up, 1e-12);
     assert_near(s.contacts[0].duty, 0, 0);
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* w = 20 rad/s: RK4 bears a step of 0.1414 s. */
-static void stiff(strut_scene *scene, double step, double duration) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0, 0.5);
-  build_member(scene, STRUT_SPRING, 0, 1, 200, 0, 0);
-  scene->nodes[1].start[0] = 1.1;
-  motion_experiment(scene, step, duration);
+static void stiff(strut_setup *setup, double step, double duration) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 1, 0, 0.5);
+  build_member(&setup->scene, STRUT_SPRING, 0, 1, 200, 0, 0);
+  setup->scene.nodes[1].start[0] = 1.1;
+  motion_experiment(setup, step, duration);
 }
 
-static strut_status simulate(const strut_scene *scene, const strut_run_options *options,
+static strut_status simulate(const strut_setup *setup, const strut_run_options *options,
                              strut_summary *summary, strut_error *error) {
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   *error = (strut_error){0};
-  strut_status status = strut_simulate(model, options, summary, error);
+  strut_status status = strut_simulate(model, &setup->experiment, options, summary, error);
   assert_int_equal(summary->status, status);
   assert_string_equal(summary->reason, status ? error->message : "");
   strut_model_free(model);
@@ -142,35 +142,35 @@ static strut_status simulate(const strut_scene *scene, const strut_run_options *
 
 static void test_a_step_above_the_limit_is_refused(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {0};
-  stiff(&scene, 0.142, 1);
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_STEP_TOO_LARGE);
+  stiff(&setup, 0.142, 1);
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE);
   assert_non_null(strstr(error.message, "0.142 s"));
   assert_non_null(strstr(error.message, "0.1414 s"));
   assert_relative(s.step_limit, sqrt(8) / 20, 1e-6);
   assert_int_equal(s.steps, 0);
   strut_summary_free(&s);
-  scene.experiment.step = 0.141;
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_OK);
+  setup.experiment.step = 0.141;
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_force_runs_above_the_limit_until_it_diverges(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {.force = true};
-  stiff(&scene, 0.142, 0.142 * 20);
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_OK); /* a short run survives */
+  stiff(&setup, 0.142, 0.142 * 20);
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK); /* a short run survives */
   assert_int_equal(s.steps, 20);
   strut_summary_free(&s);
-  scene.experiment.step = 0.2, scene.experiment.duration = 1000;
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_DIVERGED);
+  setup.experiment.step = 0.2, setup.experiment.duration = 1000;
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_DIVERGED);
   assert_non_null(strstr(error.message, "node 'n2'"));
   assert_non_null(strstr(error.message, "t = "));
   assert_non_null(strstr(error.message, "dt = 0.2 s"));
@@ -181,26 +181,26 @@ static void test_force_runs_above_the_limit_until_it_diverges(void **unused) {
   assert_int_equal(s.node_count, 2);
   assert_string_equal(s.node_names[1], "n2");
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A mass that is blown away without any instability: beyond 1e10 sizes it is lost. */
 static void test_a_mass_that_flies_beyond_all_bounds_is_lost(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {0};
-  stiff(&scene, 0.01, 100);
-  build_mass(&scene, 0, 1, 1);
-  scene.nodes[2].velocity[1] = 1e9;
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_DIVERGED);
+  stiff(&setup, 0.01, 100);
+  build_mass(&setup.scene, 0, 1, 1);
+  setup.scene.nodes[2].velocity[1] = 1e9;
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_DIVERGED);
   assert_non_null(strstr(error.message, "node 'n3'"));
   assert_null(strstr(error.message, "use a smaller step"));
   assert_within(s.duration, 10, 10 + 64 * 0.01 + 1e-9);
   assert_true(isfinite(s.positions[2]));
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static volatile sig_atomic_t stop;
@@ -215,48 +215,48 @@ static void stop_at_once(void *context, double fraction) {
 
 static void test_an_interrupt_stops_within_a_second(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {
       .interrupt = &stop, .progress = stop_at_once, .progress_context = &told};
   stop = 0, told = 0;
-  stiff(&scene, 1e-3, 1e9);
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_INTERRUPTED);
+  stiff(&setup, 1e-3, 1e9);
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   assert_int_equal(told, 1);
   assert_within(s.wall_time, 0, 1);
   assert_true(s.steps > 0);
   assert_near(s.duration, 1e-3 * (double)s.steps, 1e-9 * s.duration);
   assert_true(isfinite(s.positions[2]) && isfinite(s.energy.residual));
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A weight on a spring, with everything on that settling must leave aside. */
-static void hanging(strut_scene *scene) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 0.1, -1, 2);
-  int32_t spring = build_sized(scene, STRUT_SPRING, 0, 1, 300, 1, 0, 1);
-  scene->gravity[1] = -9.81;
-  build_actuator(scene, spring, build_sine(scene, 0.1, 3));
-  build_load(scene, 1, 100, 0, build_sine(scene, 1, 2));
-  build_load(scene, 1, 0, -4, -1);
-  build_rough_contact(scene, 1, 1e3, 0, 0.5, 0.5, 1e-3);
-  scene->ground.height = -5;
-  scene->nodes[1].velocity[1] = 1;
-  scene->settle.wanted = true;
-  motion_experiment(scene, 1e-3, 1e-3);
+static void hanging(strut_setup *setup) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 0.1, -1, 2);
+  int32_t spring = build_sized(&setup->scene, STRUT_SPRING, 0, 1, 300, 1, 0, 1);
+  setup->scene.gravity[1] = -9.81;
+  build_actuator(&setup->scene, spring, build_sine(&setup->scene, 0.1, 3));
+  build_load(&setup->scene, 1, 100, 0, build_sine(&setup->scene, 1, 2));
+  build_load(&setup->scene, 1, 0, -4, -1);
+  build_rough_contact(&setup->scene, 1, 1e3, 0, 0.5, 0.5, 1e-3);
+  setup->scene.ground.height = -5;
+  setup->scene.nodes[1].velocity[1] = 1;
+  setup->experiment.settle.wanted = true;
+  motion_experiment(setup, 1e-3, 1e-3);
 }
 
 static void test_settling_finds_the_static_equilibrium(void **unused) {
   (void)unused;
-  strut_scene scene;
-  hanging(&scene);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  hanging(&setup);
+  strut_model *model = motion_compile(&setup.scene);
   strut_summary s;
   strut_run_options options = {0};
-  assert_int_equal(strut_simulate(model, &options, &s, NULL), STRUT_OK);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   assert_true(s.settle_time > 0);
   assert_int_equal(s.steps, 1);
   assert_near(s.duration, 1e-3, 1e-18);
@@ -267,41 +267,41 @@ static void test_settling_finds_the_static_equilibrium(void **unused) {
                   150 * pow((2 * 9.81 + 4) / 300, 2) - 2 * 9.81 * (1 + (2 * 9.81 + 4) / 300), 1e-8);
   strut_summary_free(&s);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_settling_gives_up_at_its_limit(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {0};
-  hanging(&scene);
-  scene.settle.limit = 0.05;
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_NOT_SETTLED);
+  hanging(&setup);
+  setup.experiment.settle.limit = 0.05;
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_NOT_SETTLED);
   assert_non_null(strstr(error.message, "0.05 s"));
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
 static void test_settling_on_a_slope_needs_friction(void **unused) {
   (void)unused;
   for (int kept = 0; kept < 2; kept++) {
-    strut_scene scene;
-    strut_scene_init(&scene);
-    build_rough_contact(&scene, build_mass(&scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
-    scene.gravity[1] = -9.81;
-    scene.ground.slope = 0.2;
-    scene.experiment.step = 1e-4, scene.experiment.duration = 0.01;
-    scene.settle = (strut_settle){
+    strut_setup setup;
+    strut_setup_init(&setup);
+    build_rough_contact(&setup.scene, build_mass(&setup.scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
+    setup.scene.gravity[1] = -9.81;
+    setup.scene.ground.slope = 0.2;
+    setup.experiment.step = 1e-4, setup.experiment.duration = 0.01;
+    setup.experiment.settle = (strut_settle){
         .wanted = true, .friction = kept, .speed = 1e-8, .acceleration = 1e-6, .limit = 3};
     strut_summary s;
     strut_error error = {0};
     strut_run_options options = {0};
     strut_model *model = NULL;
-    assert_int_equal(strut_model_compile(&scene, &model, &error), STRUT_OK);
-    strut_status status = strut_simulate(model, &options, &s, &error);
+    assert_int_equal(strut_model_compile(&setup.scene, &model, &error), STRUT_OK);
+    strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
     assert_int_equal(status, kept ? STRUT_OK : STRUT_NOT_SETTLED);
     if (kept) /* the weight's share across the slope, over the ground's stiffness */
       assert_near(s.positions[0] * sin(0.2) - s.positions[1] * cos(0.2), 9.81 * cos(0.2) / 1e4,
@@ -310,45 +310,46 @@ static void test_settling_on_a_slope_needs_friction(void **unused) {
       assert_non_null(strstr(error.message, "initial.settle.friction"));
     strut_summary_free(&s);
     strut_model_free(model);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 static void test_settling_can_be_interrupted(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {.interrupt = &stop};
-  hanging(&scene);
-  scene.settle.limit = 1e9, scene.settle.speed = scene.settle.acceleration = 1e-30;
+  hanging(&setup);
+  setup.experiment.settle.limit = 1e9,
+  setup.experiment.settle.speed = setup.experiment.settle.acceleration = 1e-30;
   stop = 1;
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_INTERRUPTED);
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   strut_summary_free(&s);
-  scene.contact_count = 0, scene.ground.present = false;
-  scene.members[0].kind = STRUT_CABLE;
-  scene.members[0].rest_value = 1e30; /* a free fall, in which nothing ever slows down */
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_INTERRUPTED);
+  setup.scene.contact_count = 0, setup.scene.ground.present = false;
+  setup.scene.members[0].kind = STRUT_CABLE;
+  setup.scene.members[0].rest_value = 1e30; /* a free fall, in which nothing ever slows down */
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_scene_without_mass_or_method_does_not_run(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_summary s;
   strut_error error;
   strut_run_options options = {0};
-  stiff(&scene, 1e-3, 1);
-  scene.experiment.integrator = "leapfrog";
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_USAGE);
+  stiff(&setup, 1e-3, 1);
+  setup.experiment.integrator = "leapfrog";
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_USAGE);
   assert_non_null(strstr(error.message, "leapfrog"));
   strut_summary_free(&s);
-  scene.experiment.integrator = "rk4";
-  scene.nodes[1].mass = 0;
-  assert_int_equal(simulate(&scene, &options, &s, &error), STRUT_SINGULAR);
+  setup.experiment.integrator = "rk4";
+  setup.scene.nodes[1].mass = 0;
+  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_SINGULAR);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

@@ -14,18 +14,18 @@ static const double PI = 3.14159265358979323846;
  * commensurable. When a run calls it steady the transient must have died to what the tolerance says.
  */
 static void slow(double zeta, double tolerance, double periods) {
-  strut_scene scene;
+  strut_setup setup;
   double w = 2 * PI * sqrt(1.5);
-  driven_oscillator(&scene, w, zeta);
-  driven_watch(&scene, 0.005, periods, tolerance);
-  strut_summary s = motion_simulate(&scene);
+  driven_oscillator(&setup, w, zeta);
+  driven_watch(&setup, 0.005, periods, tolerance);
+  strut_summary s = motion_simulate(&setup);
   double left = exp(-zeta * w * s.duration);
   if (s.steady.kind == STRUT_MOTION_PERIODIC)
     assert_within(left, 0, 10 * tolerance);
   else
     assert_int_equal(s.steady.kind, STRUT_MOTION_TRANSIENT);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_slow_transients_are_not_steady(void **unused) {
@@ -40,26 +40,26 @@ static void test_slow_transients_are_not_steady(void **unused) {
 
 static void test_a_damped_oscillator_becomes_steady(void **unused) {
   (void)unused;
-  strut_scene scene;
-  driven_oscillator(&scene, 2 * PI * sqrt(1.5), 0.05);
-  driven_watch(&scene, 0.005, 400, 0.005);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.05);
+  driven_watch(&setup, 0.005, 400, 0.005);
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.periods < 60);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* x'' + 2 zeta w x' + w^2 x = sin(2 pi t): the orbit at t = 0 and the multipliers, exactly. */
 static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   double w = 2 * PI * sqrt(1.5), zeta = 0.05, drive = 2 * PI;
-  driven_oscillator(&scene, w, zeta);
-  driven_watch(&scene, 0.0005, 400, 0.02);
-  scene.experiment.steady.shooting = true;
-  strut_summary s = motion_simulate(&scene);
+  driven_oscillator(&setup, w, zeta);
+  driven_watch(&setup, 0.0005, 400, 0.02);
+  setup.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_true(s.steady.shot);
   assert_within(s.steady.residual, 0, 1e-11);
@@ -73,7 +73,7 @@ static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
   }
   assert_near(s.steady.multiplier[0][1], -s.steady.multiplier[1][1], 1e-12);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /*
@@ -82,18 +82,18 @@ static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
  * tolerance of the speed; the speed told is that of the latest five periods, so older by half of them.
  */
 static void creeping(double tolerance) {
-  strut_scene scene;
+  strut_setup setup;
   const double mu = 0.5, width = 100, damper = mu * 9.81 / width, speed = 1;
-  strut_scene_init(&scene);
-  build_mass(&scene, 0, -9.81 / 1e4, 1); /* where the ground carries it */
-  scene.gravity[1] = -9.81;
-  build_contact(&scene, 0, 1e4, 0);
-  scene.contacts[0].friction =
+  strut_setup_init(&setup);
+  build_mass(&setup.scene, 0, -9.81 / 1e4, 1); /* where the ground carries it */
+  setup.scene.gravity[1] = -9.81;
+  build_contact(&setup.scene, 0, 1e4, 0);
+  setup.scene.contacts[0].friction =
       (strut_friction){.law = STRUT_FRICTION_SMOOTH, .mu_kinetic = mu, .width = width};
-  build_load(&scene, 0, 1, 0, build_sine(&scene, 1, 1));
-  build_load(&scene, 0, damper * speed, 0, -1);
-  driven_watch(&scene, 0.005, 400, tolerance);
-  strut_summary s = motion_simulate(&scene);
+  build_load(&setup.scene, 0, 1, 0, build_sine(&setup.scene, 1, 1));
+  build_load(&setup.scene, 0, damper * speed, 0, -1);
+  driven_watch(&setup, 0.005, 400, tolerance);
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   double left = exp(-damper * s.duration); /* of the speed, after the latest period */
   assert_within(left, 0.25 * tolerance, 1.05 * tolerance);
@@ -101,7 +101,7 @@ static void creeping(double tolerance) {
   double told = speed - (speed - 1 / (2 * PI)) * exp(-damper * (s.duration - 2.5));
   assert_near(s.velocity, told, 0.1 * tolerance);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_what_is_steady_is_so_within_the_tolerance(void **unused) {
@@ -114,12 +114,12 @@ static void test_what_is_steady_is_so_within_the_tolerance(void **unused) {
 /* The drive\'s phase matters only every other period: forced at 1 Hz and 0.5 Hz. */
 static void test_a_motion_that_repeats_every_second_period(void **unused) {
   (void)unused;
-  strut_scene scene;
-  driven_oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
-  build_load(&scene, 1, 1, 0, build_sine(&scene, 1, 0.5));
-  driven_watch(&scene, 0.005, 400, 0.001);
-  scene.experiment.steady.shooting = true;
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.1);
+  build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 1, 0.5));
+  driven_watch(&setup, 0.005, 400, 0.001);
+  setup.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 2);
   assert_true(s.steady.shot);
@@ -127,28 +127,28 @@ static void test_a_motion_that_repeats_every_second_period(void **unused) {
   assert_near(hypot(s.steady.multiplier[0][0], s.steady.multiplier[0][1]),
               exp(-2 * 0.1 * 2 * PI * sqrt(1.5)), 1e-7);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A shallow truss pushed through its flat shape, regularly or not: what is claimed holds later. */
 static void claim_holds(double amplitude, double frequency) {
-  strut_scene scene;
-  driven_snap(&scene, 0.4, amplitude, frequency);
-  driven_watch(&scene, 0.002 / frequency, 1500, 0.005);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  driven_snap(&setup, 0.4, amplitude, frequency);
+  driven_watch(&setup, 0.002 / frequency, 1500, 0.005);
+  strut_summary s = motion_simulate(&setup);
   if (s.steady.kind == STRUT_MOTION_PERIODIC) { /* 480 is a multiple of all n */
-    scene.experiment.steady.wanted = false;
+    setup.experiment.steady.wanted = false;
     double y[2], at = s.duration * frequency;
     for (int k = 0; k < 2; k++) {
-      scene.experiment.periods = round(at) + 480.0 * k;
-      strut_summary later = motion_simulate(&scene);
+      setup.experiment.periods = round(at) + 480.0 * k;
+      strut_summary later = motion_simulate(&setup);
       y[k] = later.positions[5];
       strut_summary_free(&later);
     }
     assert_near(y[1], y[0], 0.02);
   }
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_what_a_snapping_truss_is_said_to_do_it_does(void **unused) {
@@ -161,13 +161,13 @@ static void test_what_a_snapping_truss_is_said_to_do_it_does(void **unused) {
 static void test_late_loads_and_beats_are_not_steady(void **unused) {
   (void)unused;
   for (int k = 0; k < 3; k++) {
-    strut_scene scene;
-    driven_oscillator(&scene, 2 * PI * sqrt(1.5), 0.1);
-    int32_t signal = build_sine(&scene, 0.3, k == 0 ? 1 : k == 1 ? 1.001 : 1.37);
-    if (k == 0) scene.signals[signal].start = 100;
-    build_load(&scene, 1, 1, 0, signal);
-    driven_watch(&scene, 0.005, 250, 0.005);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.1);
+    int32_t signal = build_sine(&setup.scene, 0.3, k == 0 ? 1 : k == 1 ? 1.001 : 1.37);
+    if (k == 0) setup.scene.signals[signal].start = 100;
+    build_load(&setup.scene, 1, 1, 0, signal);
+    driven_watch(&setup, 0.005, 250, 0.005);
+    strut_summary s = motion_simulate(&setup);
     if (k == 0) {
       assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
       assert_true(s.steady.periods > 105 && s.steady.periods < 200);
@@ -175,27 +175,27 @@ static void test_late_loads_and_beats_are_not_steady(void **unused) {
       assert_int_equal(s.steady.kind, STRUT_MOTION_TRANSIENT);
     }
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* A driven block that friction holds: it stands still, and the run stops. */
 static void test_standing_still_is_steady(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_mass(&scene, 0, 0, 1);
-  scene.gravity[1] = -9.81;
-  build_rough_contact(&scene, 0, 1e5, 300, 0.5, 0.5, 1e-3);
-  build_load(&scene, 0, 1, 0, build_sine(&scene, 1, 5));
-  driven_watch(&scene, 1e-4, 1000, 0.005);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_mass(&setup.scene, 0, 0, 1);
+  setup.scene.gravity[1] = -9.81;
+  build_rough_contact(&setup.scene, 0, 1e5, 300, 0.5, 0.5, 1e-3);
+  build_load(&setup.scene, 0, 1, 0, build_sine(&setup.scene, 1, 5));
+  driven_watch(&setup, 1e-4, 1000, 0.005);
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.periods <= 60);
   assert_within(s.velocity, 0, 1e-4);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

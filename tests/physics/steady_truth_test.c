@@ -65,9 +65,9 @@ static int snap_truth(double push, double frequency, double *lyapunov) {
   return 0;
 }
 
-static void snap_scene(strut_scene *scene, double push, double frequency) {
-  driven_snap(scene, C, push, frequency);
-  driven_watch(scene, 1 / frequency / STEPS, 1000, 0.005);
+static void snap_scene(strut_setup *setup, double push, double frequency) {
+  driven_snap(setup, C, push, frequency);
+  driven_watch(setup, 1 / frequency / STEPS, 1000, 0.005);
 }
 
 /*
@@ -88,9 +88,9 @@ static void test_doubling_and_chaos(void **unused) {
     int period = snap_truth(cases[i].push, cases[i].frequency, &lyapunov);
     assert_int_equal(period, cases[i].period);
     assert_true(period ? lyapunov < -0.02 : lyapunov > 0.2);
-    strut_scene scene;
-    snap_scene(&scene, cases[i].push, cases[i].frequency);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    snap_scene(&setup, cases[i].push, cases[i].frequency);
+    strut_summary s = motion_simulate(&setup);
     if (period) {
       assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
       assert_int_equal(s.steady.repeats, period);
@@ -98,7 +98,7 @@ static void test_doubling_and_chaos(void **unused) {
       assert_int_not_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
     }
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -112,10 +112,10 @@ static void test_multipliers_of_a_doubled_motion(void **unused) {
   }
   double trace = z[2] + z[5], product = z[2] * z[5] - z[3] * z[4];
   double root = 0.25 * trace * trace - product;
-  strut_scene scene;
-  snap_scene(&scene, 7, 2.6);
-  scene.experiment.steady.shooting = true;
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  snap_scene(&setup, 7, 2.6);
+  setup.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.repeats, 2);
   assert_true(s.steady.shot);
   assert_int_equal(s.steady.multiplier_count, 2);
@@ -125,7 +125,7 @@ static void test_multipliers_of_a_doubled_motion(void **unused) {
     assert_near(fabs(s.steady.multiplier[k][1]), sqrt(-root), 1e-5);
   }
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* ---- a mass that bounces on the pushed way down to the ground ---- */
@@ -151,17 +151,17 @@ static void test_multipliers_of_a_bouncing_mass(void **unused) {
       y = half + 0.5 * h * v;
     }
   }
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_mass(&scene, 0, 0.01, 1);
-  scene.nodes[0].fixed[0] = true;
-  scene.gravity[1] = -9.81;
-  build_contact(&scene, 0, stiffness, damping);
-  build_load(&scene, 0, 0, 1, build_sine(&scene, push, frequency));
-  driven_watch(&scene, 1 / frequency / 2000, 400, 0.001);
-  scene.experiment.integrator = "rk4-events";
-  scene.experiment.steady.shooting = true;
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_mass(&setup.scene, 0, 0.01, 1);
+  setup.scene.nodes[0].fixed[0] = true;
+  setup.scene.gravity[1] = -9.81;
+  build_contact(&setup.scene, 0, stiffness, damping);
+  build_load(&setup.scene, 0, 0, 1, build_sine(&setup.scene, push, frequency));
+  driven_watch(&setup, 1 / frequency / 2000, 400, 0.001);
+  setup.experiment.integrator = "rk4-events";
+  setup.experiment.steady.shooting = true;
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.shot);
   assert_within(s.contacts[0].duty, 0.1, 0.5);
@@ -171,18 +171,18 @@ static void test_multipliers_of_a_bouncing_mass(void **unused) {
     product *= hypot(s.steady.multiplier[k][0], s.steady.multiplier[k][1]);
   assert_relative(product, exp(-damping * works), 2e-3);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* ---- an oscillator of 1 kg whose transient comes nearly or exactly back with the drive's periods ---- */
 
 /* Parts of the steady motion that are left of the transient when it is called steady; else 0. */
 static double left_over(double ratio, double zeta, double tolerance, double periods) {
-  strut_scene scene;
+  strut_setup setup;
   double w = 2 * PI * ratio, drive = 2 * PI;
-  driven_oscillator(&scene, w, zeta);
-  driven_watch(&scene, 0.01, periods, tolerance);
-  strut_summary s = motion_simulate(&scene);
+  driven_oscillator(&setup, w, zeta);
+  driven_watch(&setup, 0.01, periods, tolerance);
+  strut_summary s = motion_simulate(&setup);
   assert_int_not_equal(s.steady.kind, STRUT_MOTION_IRREGULAR);
   double re = w * w - drive * drive, im = 2 * zeta * w * drive, size = hypot(re, im);
   double own = w * sqrt(1 - zeta * zeta), x = im / (size * size);
@@ -190,7 +190,7 @@ static double left_over(double ratio, double zeta, double tolerance, double peri
   double left = exp(-zeta * w * s.duration) * hypot(x, v) * fmax(1, ratio) * size;
   bool steady = s.steady.kind == STRUT_MOTION_PERIODIC;
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return steady ? left : 0;
 }
 
@@ -219,19 +219,19 @@ static void test_transients_in_tune_with_the_drive(void **unused) {
 static void test_a_swing_that_grows_from_almost_nothing(void **unused) {
   (void)unused;
   for (int power = 4; power <= 10; power += 2) {
-    strut_scene scene;
-    strut_scene_init(&scene);
-    build_support(&scene, 0, 0);
-    build_mass(&scene, pow(10, -power), -1, 1);
-    build_member(&scene, STRUT_SPRING, 0, 1, 400, 6, 0);
-    scene.gravity[1] = -9.81;
-    build_load(&scene, 1, 0, 1, build_sine(&scene, 20, 0.985));
-    driven_watch(&scene, 0.005 / 0.985, 300, 0.005);
-    strut_summary s = motion_simulate(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    build_support(&setup.scene, 0, 0);
+    build_mass(&setup.scene, pow(10, -power), -1, 1);
+    build_member(&setup.scene, STRUT_SPRING, 0, 1, 400, 6, 0);
+    setup.scene.gravity[1] = -9.81;
+    build_load(&setup.scene, 1, 0, 1, build_sine(&setup.scene, 20, 0.985));
+    driven_watch(&setup, 0.005 / 0.985, 300, 0.005);
+    strut_summary s = motion_simulate(&setup);
     assert_int_not_equal(s.steady.kind,
                          STRUT_MOTION_PERIODIC); /* it is so at the earliest at 500 */
     strut_summary_free(&s);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -242,58 +242,59 @@ static void test_a_swing_that_grows_from_almost_nothing(void **unused) {
  */
 static void test_a_drift_that_ends_in_a_jolt(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
   const double stiffness = 0.04, damping = 500 * stiffness, drift = 0.3, push = 0.2;
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1 - drift, 0, 1);
-  build_support(&scene, -1, 0);
-  build_sized(&scene, STRUT_SPRING, 0, 1, stiffness, damping, 0, 1);
-  build_sized(&scene, STRUT_CABLE, 2, 1, 400, 1, 0, 2 - 0.05 * drift);
-  scene.nodes[1].fixed[1] = true;
-  build_load(&scene, 1, 1, 0, build_sine(&scene, push, 1));
-  driven_watch(&scene, 0.01, 4000, 0.005);
-  strut_summary s = motion_simulate(&scene);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1 - drift, 0, 1);
+  build_support(&setup.scene, -1, 0);
+  build_sized(&setup.scene, STRUT_SPRING, 0, 1, stiffness, damping, 0, 1);
+  build_sized(&setup.scene, STRUT_CABLE, 2, 1, 400, 1, 0, 2 - 0.05 * drift);
+  setup.scene.nodes[1].fixed[1] = true;
+  build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, push, 1));
+  driven_watch(&setup, 0.01, 4000, 0.005);
+  strut_summary s = motion_simulate(&setup);
   double sway = push / (2 * PI * hypot(damping, 2 * PI)),
          when = log(drift / (0.05 * drift + 2 * sway));
   assert_true((double)s.steady.periods > 500 * when);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A frame at rest under its weight that nothing moves: it stands still, and the run ends at once. */
 static void test_standing_still_under_its_weight(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 0, -1, 1);
-  build_member(&scene, STRUT_SPRING, 0, 1, 981, 20, 0);
-  scene.gravity[1] = -9.81;
-  build_load(&scene, 1, 1, 0, build_sine(&scene, 0, 2));
-  driven_watch(&scene, 1e-3, 1000, 0.005);
-  strut_summary s = motion_simulate(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 0, -1, 1);
+  build_member(&setup.scene, STRUT_SPRING, 0, 1, 981, 20, 0);
+  setup.scene.gravity[1] = -9.81;
+  build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 0, 2));
+  driven_watch(&setup, 1e-3, 1000, 0.005);
+  strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.kind, STRUT_MOTION_PERIODIC);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.periods < 60);
   assert_near(s.velocity, 0, 0);
   strut_summary_free(&s);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* ---- shooting that is told to stop ---- */
 
 static void test_shooting_can_be_interrupted(void **unused) {
   (void)unused;
-  strut_scene scene;
-  snap_scene(&scene, 5, 1.1);
-  scene.experiment.steady.wanted = false;
+  strut_setup setup;
+  snap_scene(&setup, 5, 1.1);
+  setup.experiment.steady.wanted = false;
   volatile sig_atomic_t flag = 0;
+  strut_model *model = motion_compile(&setup.scene);
   strut_period_map map;
   strut_steady_summary found = {0};
   strut_error error = {0};
-  assert_int_equal(strut_period_map_create(&scene, &scene.experiment, 1, &map, &error), STRUT_OK);
+  assert_int_equal(strut_period_map_create(model, &setup.experiment, 1, &map, &error), STRUT_OK);
   map.interrupt = &flag;
   double y[40] = {0}, before[40], travel;
   assert_true(2 * map.model->length + 1 <= 40);
@@ -308,7 +309,8 @@ static void test_shooting_can_be_interrupted(void **unused) {
   assert_int_equal(strut_shoot(&map, y, &travel, &found), STRUT_OK);
   assert_true(found.shot);
   strut_period_map_free(&map);
-  strut_scene_free(&scene);
+  strut_model_free(model);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

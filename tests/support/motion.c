@@ -6,7 +6,8 @@
 
 static void check(const strut_scene *scene) {
   strut_findings findings = {0};
-  strut_status status = strut_scene_check(scene, STRUT_FOR_STATICS, &findings);
+  const strut_setup setup = {.scene = *scene, .experiment = strut_experiment_default()};
+  strut_status status = strut_setup_check(&setup, STRUT_FOR_STATICS, &findings);
   for (size_t i = 0; i < findings.count; i++) print_error("%s\n", findings.items[i].message);
   strut_findings_free(&findings);
   assert_int_equal(status, STRUT_OK);
@@ -22,19 +23,26 @@ strut_model *motion_compile(const strut_scene *scene) {
   return model;
 }
 
-void motion_begin(motion *m, const strut_scene *scene, double step) {
-  motion_begin_by(m, scene, "rk4", step);
-}
-
-void motion_begin_by(motion *m, const strut_scene *scene, const char *method, double step) {
+static void begin(motion *m, const strut_scene *scene, const strut_experiment *experiment,
+                  const char *method, double step) {
+  const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
   m->model = motion_compile(scene);
   assert_non_null(m->model->mass);
   assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
   m->method = strut_integrator_find(method);
   assert_non_null(m->method);
-  m->workspace = m->method->create(m->model, m->state);
+  m->workspace = m->method->create(m->model, m->state, &settings);
   assert_non_null(m->workspace);
   m->step = step;
+}
+
+void motion_begin(motion *m, const strut_scene *scene, double step) {
+  const strut_experiment experiment = strut_experiment_default();
+  begin(m, scene, &experiment, "rk4", step);
+}
+
+void motion_begin_by(motion *m, const strut_setup *setup, const char *method, double step) {
+  begin(m, &setup->scene, &setup->experiment, method, step);
 }
 
 void motion_steps(motion *m, int64_t count) {
@@ -46,17 +54,17 @@ void motion_end(motion *m) {
   strut_model_free(m->model);
 }
 
-void motion_experiment(strut_scene *scene, double step, double duration) {
-  scene->experiment.step = step;
-  scene->experiment.duration = duration;
+void motion_experiment(strut_setup *setup, double step, double duration) {
+  setup->experiment.step = step;
+  setup->experiment.duration = duration;
 }
 
-strut_summary motion_simulate(const strut_scene *scene) {
-  strut_model *model = motion_compile(scene);
+strut_summary motion_simulate(const strut_setup *setup) {
+  strut_model *model = motion_compile(&setup->scene);
   strut_run_options options = {0};
   strut_summary summary;
   strut_error error = {0};
-  strut_status status = strut_simulate(model, &options, &summary, &error);
+  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
   if (status) print_error("%s\n", error.message);
   assert_int_equal(status, STRUT_OK);
   strut_model_free(model);

@@ -14,7 +14,7 @@
 
 /* A valid scene that uses everything, in arrays that a test may spoil. */
 typedef struct sample {
-  strut_scene scene;
+  strut_setup setup;
   strut_node nodes[3];
   strut_member members[2];
   strut_contact contacts[2];
@@ -67,26 +67,26 @@ static void fill(sample *s) {
   memset(s, 0, sizeof *s);
   fill_structure(s);
   fill_drives(s);
-  strut_scene *scene = &s->scene;
-  strut_scene_init(scene);
-  scene->nodes = s->nodes, scene->node_count = 3;
-  scene->members = s->members, scene->member_count = 2;
-  scene->contacts = s->contacts, scene->contact_count = 2;
-  scene->actuators = s->actuators, scene->actuator_count = 1;
-  scene->loads = s->loads, scene->load_count = 2;
-  scene->signals = s->signals, scene->signal_count = 4;
-  scene->ground.present = true;
-  scene->settle.wanted = true;
-  scene->experiment.step = 1e-3;
-  scene->experiment.periods = 10, scene->experiment.period_signal = 0;
-  scene->experiment.measure_last = 5, scene->experiment.output_last = 10;
+  strut_setup *setup = &s->setup;
+  strut_setup_init(setup);
+  setup->scene.nodes = s->nodes, setup->scene.node_count = 3;
+  setup->scene.members = s->members, setup->scene.member_count = 2;
+  setup->scene.contacts = s->contacts, setup->scene.contact_count = 2;
+  setup->scene.actuators = s->actuators, setup->scene.actuator_count = 1;
+  setup->scene.loads = s->loads, setup->scene.load_count = 2;
+  setup->scene.signals = s->signals, setup->scene.signal_count = 4;
+  setup->scene.ground.present = true;
+  setup->experiment.settle.wanted = true;
+  setup->experiment.step = 1e-3;
+  setup->experiment.periods = 10, setup->experiment.period_signal = 0;
+  setup->experiment.measure_last = 5, setup->experiment.output_last = 10;
 }
 
 /* Checks the spoilt sample: exactly one finding, about that key, whose text has the word. */
 static void expect(sample *s, strut_subject subject, size_t index, const char *key,
                    const char *word) {
   strut_findings findings = {0};
-  strut_status status = strut_scene_check(&s->scene, STRUT_FOR_RUN, &findings);
+  strut_status status = strut_setup_check(&s->setup, STRUT_FOR_RUN, &findings);
   if (findings.count != 1) {
     for (size_t i = 0; i < findings.count; i++) print_error("%s\n", findings.items[i].message);
     fail_msg("%zu findings instead of one: %s", findings.count, word);
@@ -107,8 +107,8 @@ static void a_valid_scene_has_no_findings(void **state) {
   sample s;
   strut_findings findings = {0};
   fill(&s);
-  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_OK);
-  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_STATICS, &findings), STRUT_OK);
+  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
+  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings), STRUT_OK);
   assert_int_equal(findings.count, 0);
   strut_findings_free(&findings);
 }
@@ -137,8 +137,8 @@ static void nodes(void **state) {
   expect(&s, STRUT_ON_NODE, 0, "velocity", "fixed in y");
   s.nodes[2].mass = s.members[1].mass = 0;
   expect(&s, STRUT_ON_NODE, 2, "mass", "no mass");
-  s.scene.member_count = 1, s.scene.actuator_count = 0;
-  s.scene.load_count = 0, s.nodes[2].mass = 0;
+  s.setup.scene.member_count = 1, s.setup.scene.actuator_count = 0;
+  s.setup.scene.load_count = 0, s.nodes[2].mass = 0;
   expect(&s, STRUT_ON_NODE, 2, NULL, "nothing uses node 'c'");
 }
 
@@ -197,24 +197,24 @@ static void a_spring_of_no_length_may_begin_in_one_place(void **state) {
   fill(&s);
   s.nodes[1].position[0] = s.nodes[1].start[0] = 0;
   s.members[0].rest_kind = STRUT_REST_LENGTH, s.members[0].rest_value = 0;
-  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_OK);
+  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
 }
 
 static void ground(void **state) {
   (void)state;
   sample s;
   fill(&s);
-  s.scene.ground.height = (double)NAN;
+  s.setup.scene.ground.height = (double)NAN;
   expect(&s, STRUT_ON_GROUND, 0, "height", "finite");
-  s.scene.ground.belt_speed = (double)INFINITY;
+  s.setup.scene.ground.belt_speed = (double)INFINITY;
   expect(&s, STRUT_ON_GROUND, 0, "belt_speed", "finite");
-  s.scene.ground.slope = 1.5707963267948966;
+  s.setup.scene.ground.slope = 1.5707963267948966;
   expect(&s, STRUT_ON_GROUND, 0, "slope", "90 deg");
-  s.scene.ground.slope = (double)NAN;
+  s.setup.scene.ground.slope = (double)NAN;
   expect(&s, STRUT_ON_GROUND, 0, "slope", "between");
-  s.scene.contact_count = 0;
+  s.setup.scene.contact_count = 0;
   expect(&s, STRUT_ON_GROUND, 0, "nodes", "no node");
-  s.scene.ground.present = false;
+  s.setup.scene.ground.present = false;
   expect(&s, STRUT_ON_GROUND, 0, NULL, "no ground");
   s.contacts[1].node = 3;
   expect(&s, STRUT_ON_CONTACT, 1, NULL, "does not exist");
@@ -238,7 +238,7 @@ static void signals(void **state) {
   (void)state;
   sample s;
   fill(&s);
-  s.scene.experiment.periods = 0, s.scene.experiment.duration = 20;
+  s.setup.experiment.periods = 0, s.setup.experiment.duration = 20;
   s.signals[0].frequency = 0;
   expect(&s, STRUT_ON_SIGNAL, 0, "frequency", "signal 'wave'");
   s.signals[0].frequency = (double)NAN;
@@ -280,11 +280,11 @@ static void sums_cannot_explode(void **state) {
       terms[i][0] = terms[i][1] = i - 1;
       signals[i].terms = terms[i], signals[i].term_count = wide ? 2 : 1;
     }
-    s.scene.signals = signals, s.scene.signal_count = wide ? 41 : 101;
-    s.scene.actuators[0].signal = wide ? 40 : 100;
-    s.scene.load_count = 1;
-    s.scene.experiment.periods = 0, s.scene.experiment.duration = 20;
-    assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
+    s.setup.scene.signals = signals, s.setup.scene.signal_count = wide ? 41 : 101;
+    s.setup.scene.actuators[0].signal = wide ? 40 : 100;
+    s.setup.scene.load_count = 1;
+    s.setup.experiment.periods = 0, s.setup.experiment.duration = 20;
+    assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
     assert_int_equal(findings.count, 1);
     assert_non_null(strstr(findings.items[0].message, "more than 10000 terms"));
     strut_findings_free(&findings);
@@ -319,13 +319,13 @@ static void shapes(void **state) {
   strut_configuration two[2] = {configuration, configuration};
   fill(&s);
   for (int spoilt = 0; spoilt < 12; spoilt++) {
-    s.scene.configurations = two;
-    s.scene.configuration_count = 1;
+    s.setup.scene.configurations = two;
+    s.setup.scene.configuration_count = 1;
     two[0] = configuration;
     set = (strut_node_set){2, nodes};
     nodes[0] = 1, nodes[1] = 2, position[2][1] = 0;
     if (spoilt == 0) {
-      s.scene.configuration_count = 2;
+      s.setup.scene.configuration_count = 2;
       expect(&s, STRUT_ON_CONFIGURATION, 1, NULL, "two configurations 'I'");
     } else if (spoilt == 1) {
       nodes[1] = 0;
@@ -343,23 +343,23 @@ static void shapes(void **state) {
       position[2][1] = (double)NAN;
       expect(&s, STRUT_ON_CONFIGURATION, 0, NULL, "not finite");
     } else if (spoilt == 6) {
-      s.scene.search.supports = &set, s.scene.search.support_count = 1;
-      s.scene.configuration_count = 0, nodes[0] = -1;
+      s.setup.experiment.search.supports = &set, s.setup.experiment.search.support_count = 1;
+      s.setup.scene.configuration_count = 0, nodes[0] = -1;
       expect(&s, STRUT_ON_EQUILIBRIA, 0, "supports", "does not exist");
     } else if (spoilt == 7) {
-      s.scene.search.starts = -1;
+      s.setup.experiment.search.starts = -1;
       expect(&s, STRUT_ON_EQUILIBRIA, 0, "starts", "from 0");
     } else if (spoilt == 8) {
-      s.scene.search.seed = UINT64_MAX;
+      s.setup.experiment.search.seed = UINT64_MAX;
       expect(&s, STRUT_ON_EQUILIBRIA, 0, "seed", "at most");
     } else if (spoilt == 9) {
-      s.scene.start_equilibrium = 1;
+      s.setup.scene.start_equilibrium = 1;
       expect(&s, STRUT_ON_INITIAL, 0, NULL, "does not exist");
     } else if (spoilt == 10) {
-      s.scene.start_equilibrium = 0;
+      s.setup.scene.start_equilibrium = 0;
       expect(&s, STRUT_ON_INITIAL, 0, NULL, "nothing to settle");
     } else {
-      s.scene.ground.present = false, s.scene.contact_count = 0;
+      s.setup.scene.ground.present = false, s.setup.scene.contact_count = 0;
       expect(&s, STRUT_ON_CONFIGURATION, 0, "contacts", "need a ground");
     }
   }
@@ -369,14 +369,14 @@ static void experiment(void **state) {
   (void)state;
   sample s;
   fill(&s);
-  strut_experiment *e = &s.scene.experiment;
-  s.scene.settle.speed = 0;
+  strut_experiment *e = &s.setup.experiment;
+  s.setup.experiment.settle.speed = 0;
   expect(&s, STRUT_ON_INITIAL, 0, "speed", "above zero");
-  s.scene.settle.limit = (double)NAN;
+  s.setup.experiment.settle.limit = (double)NAN;
   expect(&s, STRUT_ON_INITIAL, 0, "limit", "finite");
-  s.scene.gravity[1] = (double)NAN;
+  s.setup.scene.gravity[1] = (double)NAN;
   expect(&s, STRUT_ON_SCENE, 0, "gravity", "finite");
-  s.scene.mass_model = (strut_mass_model)5;
+  s.setup.scene.mass_model = (strut_mass_model)5;
   expect(&s, STRUT_ON_SCENE, 0, "mass_model", "unknown");
   e->step = 0;
   expect(&s, STRUT_ON_SOLVER, 0, "step", "no step");
@@ -418,10 +418,10 @@ static void statics_need_neither_mass_nor_run(void **state) {
   strut_findings findings = {0};
   fill(&s);
   s.nodes[2].mass = s.members[0].mass = s.members[1].mass = 0;
-  s.scene.experiment.step = s.scene.experiment.periods = 0;
-  s.scene.experiment.measure_last = s.scene.experiment.output_last = 0;
-  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_STATICS, &findings), STRUT_OK);
-  assert_int_equal(strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
+  s.setup.experiment.step = s.setup.experiment.periods = 0;
+  s.setup.experiment.measure_last = s.setup.experiment.output_last = 0;
+  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_STATICS, &findings), STRUT_OK);
+  assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_BAD_SCENE);
   assert_int_equal(findings.count, 4); /* nodes b and c, the step, the run */
   strut_findings_free(&findings);
 }
@@ -435,7 +435,7 @@ static void no_memory(void **state) {
   for (int n = 0; status == STRUT_NO_MEMORY && n < 100; n++) {
     strut_findings findings = {0};
     strut_fail_allocation_after(n);
-    status = strut_scene_check(&s.scene, STRUT_FOR_RUN, &findings);
+    status = strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings);
     strut_fail_allocation_after(-1);
     strut_findings_free(&findings);
   }

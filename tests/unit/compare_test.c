@@ -25,9 +25,9 @@ static const char hopper[] =
     "solver: {step: 0.1 ms}\n"
     "run: {periods: 20, of: d, measure: {last: 5}}\n";
 
-static void read_hopper(strut_scene *scene) {
+static void read_hopper(strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
-  assert_int_equal(strut_scene_read(scene, "hopper", hopper, strlen(hopper), NULL, 0, STRUT_FOR_ANY,
+  assert_int_equal(strut_setup_read(setup, "hopper", hopper, strlen(hopper), NULL, 0, STRUT_FOR_ANY,
                                     &diagnostics),
                    STRUT_OK);
   strut_diagnostics_free(&diagnostics);
@@ -81,13 +81,13 @@ static void differences_without_memory(void **unused) {
 static strut_status make(const strut_compare_options *options, bool tell) {
   static const strut_difference changed = {"members.leg.stiffness", "1", "2"};
   static const char *const without[] = {"friction"};
-  strut_scene scenes[2];
+  strut_setup scenes[2];
   strut_compare result;
   strut_error error = {0};
   for (int i = 0; i < 2; i++) read_hopper(&scenes[i]);
-  const strut_compare_input inputs[2] = {{.label = "one", .scene = &scenes[0]},
+  const strut_compare_input inputs[2] = {{.label = "one", .setup = &scenes[0]},
                                          {.label = "two",
-                                          .scene = &scenes[1],
+                                          .setup = &scenes[1],
                                           .differences = &changed,
                                           .difference_count = 1,
                                           .without = without,
@@ -103,7 +103,7 @@ static strut_status make(const strut_compare_options *options, bool tell) {
     }
   }
   strut_compare_free(&result);
-  for (int i = 0; i < 2; i++) strut_scene_free(&scenes[i]);
+  for (int i = 0; i < 2; i++) strut_setup_free(&scenes[i]);
   return status;
 }
 
@@ -115,11 +115,11 @@ static void without_memory(void **unused) {
   assert_int_equal(make(&options, true), STRUT_OK);
   int64_t all = (int64_t)(strut_allocation_count() - before), refused = 0;
   for (int64_t n = 0; n < all; n += 1 + all / 400) {
-    strut_scene probe; /* what reading takes is not asked here */
+    strut_setup probe; /* what reading takes is not asked here */
     uint64_t start = strut_allocation_count();
     for (int i = 0; i < 2; i++) {
       read_hopper(&probe);
-      strut_scene_free(&probe);
+      strut_setup_free(&probe);
     }
     int64_t reading = (int64_t)(strut_allocation_count() - start);
     strut_fail_allocation_after(reading + n);
@@ -140,11 +140,11 @@ static void interrupted(void **unused) {
 
 static void told(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_compare result;
   strut_error error = {0};
-  read_hopper(&scene);
-  const strut_compare_input input = {.label = "one", .scene = &scene};
+  read_hopper(&setup);
+  const strut_compare_input input = {.label = "one", .setup = &setup};
   const strut_compare_options options = {.accuracy = 0.01};
   assert_int_equal(strut_compare_make(&input, 1, &options, &result, &error), STRUT_OK);
   char *csv = strut_compare_csv(&result);
@@ -161,7 +161,7 @@ static void told(void **unused) {
   assert_int_equal(strut_compare_figure("/nowhere/at/all.svg", 200, &result, 0, 1, &error),
                    STRUT_FILE_TROUBLE);
   strut_compare_free(&result);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

@@ -31,7 +31,6 @@ static strut_scene make_scene(void) {
   scene.node_count = 1;
   scene.parameters = parameters;
   scene.parameter_count = 3;
-  scene.experiment.measure_node = -1;
   return scene;
 }
 

@@ -107,7 +107,7 @@ static void plain_keys_are_bound_to_fields(void **state) {
 }
 
 /* What a field of the section holds where the file does not give the key; NULL: nothing to compare. */
-static const void *default_object(strut_section section, strut_scene *scene) {
+static const void *default_object(strut_section section, strut_setup *setup) {
   static strut_node node;
   static strut_member member;
   static strut_ground_section ground;
@@ -118,7 +118,7 @@ static const void *default_object(strut_section section, strut_scene *scene) {
   ground.contact = strut_contact_default();
   signal = strut_signal_default(STRUT_SINE);
   switch (section) {
-    case STRUT_SECTION_SCENE: return scene;
+    case STRUT_SECTION_SCENE: return &setup->scene;
     case STRUT_SECTION_NODE: return &node;
     case STRUT_SECTION_MEMBER: return &member;
     case STRUT_SECTION_GROUND: return &ground;
@@ -126,13 +126,13 @@ static const void *default_object(strut_section section, strut_scene *scene) {
     case STRUT_SECTION_HALF_SINE:
     case STRUT_SECTION_SQUARE:
     case STRUT_SECTION_RAMP: return &signal;
-    case STRUT_SECTION_SETTLE: return &scene->settle;
-    case STRUT_SECTION_EQUILIBRIA: return &scene->search;
+    case STRUT_SECTION_SETTLE: return &setup->experiment.settle;
+    case STRUT_SECTION_EQUILIBRIA: return &setup->experiment.search;
     case STRUT_SECTION_SOLVER:
     case STRUT_SECTION_RUN:
-    case STRUT_SECTION_OUTPUT: return &scene->experiment;
+    case STRUT_SECTION_OUTPUT: return &setup->experiment;
     case STRUT_SECTION_QUANTITY: return &quantity;
-    case STRUT_SECTION_STEADY: return &scene->experiment.steady;
+    case STRUT_SECTION_STEADY: return &setup->experiment.steady;
     default: return NULL;
   }
 }
@@ -155,12 +155,12 @@ static bool is_spelled_otherwise(const strut_key *key) {
 
 static void defaults_are_those_of_the_fields(void **state) {
   (void)state;
-  strut_scene scene;
+  strut_setup setup;
   size_t compared = 0;
-  strut_scene_init(&scene);
+  strut_setup_init(&setup);
   for (int i = 0; i < STRUT_KEY_COUNT; i++) {
     const strut_key *key = strut_key_at(i);
-    const char *object = default_object(key->section, &scene);
+    const char *object = default_object(key->section, &setup);
     if (!object || !strut_key_is_bound(key) || !*key->fallback || is_spelled_otherwise(key))
       continue;
     char *end;

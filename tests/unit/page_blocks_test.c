@@ -169,28 +169,32 @@ static void whole_steps_are_exact(void **state) {
 }
 
 /* A weight on a spring. */
-static strut_model *weight(strut_scene *scene) {
+static strut_model *weight(strut_setup *setup) {
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0, 2);
-  build_member(scene, STRUT_SPRING, 0, 1, 100, 0, 0);
-  scene->experiment.step = 1e-3;
-  assert_int_equal(strut_model_compile(scene, &model, &error), STRUT_OK);
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 1, 0, 2);
+  build_member(&setup->scene, STRUT_SPRING, 0, 1, 100, 0, 0);
+  setup->experiment.step = 1e-3;
+  assert_int_equal(strut_model_compile(&setup->scene, &model, &error), STRUT_OK);
   return model;
 }
 
 /* A page of a motion of it; NULL: none. */
 static char *page_of(strut_trajectory *motion, size_t most, strut_page_frames *frames) {
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
-  strut_model *model = weight(&scene);
-  strut_page page = {.model = model, .motion = motion, .yaml = "strut: 1\n", .most_bytes = most};
+  strut_model *model = weight(&setup);
+  strut_page page = {.model = model,
+                     .experiment = &setup.experiment,
+                     .motion = motion,
+                     .yaml = "strut: 1\n",
+                     .most_bytes = most};
   char *html = strut_page_html(&page, frames, &error);
   assert_non_null(html);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return html;
 }
 
@@ -274,11 +278,12 @@ static void frames_are_left_out_until_they_fit(void **state) {
 
 static void memory_that_is_out_is_told(void **state) {
   (void)state;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
   strut_trajectory motion = swing();
-  strut_model *model = weight(&scene);
-  strut_page page = {.model = model, .motion = &motion, .yaml = "strut: 1\n"};
+  strut_model *model = weight(&setup);
+  strut_page page = {
+      .model = model, .experiment = &setup.experiment, .motion = &motion, .yaml = "strut: 1\n"};
   int64_t failed = 0;
   for (int64_t n = 0;; n++) {
     strut_fail_allocation_after(n);
@@ -293,7 +298,7 @@ static void memory_that_is_out_is_told(void **state) {
   }
   assert_true(failed > 5);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static size_t count(const char *html, const char *text) {
@@ -306,12 +311,13 @@ static size_t count(const char *html, const char *text) {
 static void no_name_becomes_markup(void **state) {
   (void)state;
   static const char evil[] = "</script><!--<script>&\"\\\xe2\x80\xa8\n";
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
-  strut_model *model = weight(&scene);
-  strut_page page = {.model = model, .yaml = "strut: 1\n"};
+  strut_model *model = weight(&setup);
+  strut_page page = {.model = model, .experiment = &setup.experiment, .yaml = "strut: 1\n"};
   char *plain = strut_page_html(&page, NULL, &error);
-  scene.nodes[0].name = scene.members[0].name = scene.name = scene.description = evil;
+  setup.scene.nodes[0].name = setup.scene.members[0].name = setup.scene.name =
+      setup.scene.description = evil;
   page.yaml = page.remark = page.summary = evil;
   char *html = strut_page_html(&page, NULL, &error);
   assert_true(plain && html);
@@ -325,7 +331,7 @@ static void no_name_becomes_markup(void **state) {
   strut_release(plain);
   strut_release(html);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

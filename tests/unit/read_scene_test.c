@@ -19,20 +19,20 @@
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"
 
-static strut_status read_text(strut_scene *scene, const char *text, const strut_override *set,
+static strut_status read_text(strut_setup *setup, const char *text, const strut_override *set,
                               size_t sets) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_scene_read(scene, "test.yaml", text, strlen(text), set, sets,
+  strut_status status = strut_setup_read(setup, "test.yaml", text, strlen(text), set, sets,
                                          STRUT_FOR_RUN, &diagnostics);
   strut_diagnostics_free(&diagnostics);
   return status;
 }
 
 /* Reads a scene that must be valid. */
-static void read_good(strut_scene *scene, const char *text, const strut_override *set,
+static void read_good(strut_setup *setup, const char *text, const strut_override *set,
                       size_t sets) {
   strut_diagnostics diagnostics = {0};
-  if (strut_scene_read(scene, "test.yaml", text, strlen(text), set, sets, STRUT_FOR_RUN,
+  if (strut_setup_read(setup, "test.yaml", text, strlen(text), set, sets, STRUT_FOR_RUN,
                        &diagnostics) != STRUT_OK)
     fail_msg("%s", strut_diagnostics_render(&diagnostics, 50));
   assert_int_equal(diagnostics.count, 0);
@@ -49,38 +49,42 @@ static char *read_path(const char *path, size_t *length) {
 static void the_crawler_page(void **state) {
   (void)state;
   size_t length;
-  strut_scene s;
+  strut_setup s;
   char *text = read_path(STRUT_TESTS_DIR "/language/good/crawler.yaml", &length);
   read_good(&s, text, NULL, 0);
   strut_release(text); /* the scene owns all it needs */
-  assert_string_equal(s.name, "Nine-member multistable crawler");
-  assert_true(s.node_count == 5 && s.member_count == 9 && s.contact_count == 5);
-  assert_true(s.gravity[0] == 0 && s.gravity[1] == -9.81);
-  assert_true(s.nodes[1].position[0] == 0.0965109 && s.nodes[1].position[1] == 0.0238714);
-  assert_true(s.nodes[1].start[0] == 0.096 && s.nodes[1].start[1] == 0.024); /* start: "II" */
-  assert_true(s.nodes[2].start[0] == s.nodes[2].position[0]);
-  const strut_member *m = s.members;
+  assert_string_equal(s.scene.name, "Nine-member multistable crawler");
+  assert_true(s.scene.node_count == 5 && s.scene.member_count == 9 && s.scene.contact_count == 5);
+  assert_true(s.scene.gravity[0] == 0 && s.scene.gravity[1] == -9.81);
+  assert_true(s.scene.nodes[1].position[0] == 0.0965109 &&
+              s.scene.nodes[1].position[1] == 0.0238714);
+  assert_true(s.scene.nodes[1].start[0] == 0.096 &&
+              s.scene.nodes[1].start[1] == 0.024); /* start: "II" */
+  assert_true(s.scene.nodes[2].start[0] == s.scene.nodes[2].position[0]);
+  const strut_member *m = s.scene.members;
   assert_true(m[0].kind == STRUT_BAR && m[0].stiffness == 1e6 && m[0].damping == 0.2);
   assert_true(m[0].mass == 0.1 && m[0].rest_kind == STRUT_REST_LENGTH && m[0].rest_value == 0.1);
   assert_true(m[1].node[0] == 2 && m[1].node[1] == 1);
   assert_true(m[3].kind == STRUT_SPRING && m[3].stiffness == 3000 && m[3].rest_value == 0.02);
   assert_true(m[4].stiffness == 2000 && m[8].mass == 1e-6);
-  assert_true(s.ground.present && s.ground.height == 0 && s.contacts[4].node == 4);
-  assert_true(s.contacts[4].stiffness == 1e5 && s.contacts[4].damping == 100);
-  const strut_friction *f = &s.contacts[2].friction;
+  assert_true(s.scene.ground.present && s.scene.ground.height == 0 &&
+              s.scene.contacts[4].node == 4);
+  assert_true(s.scene.contacts[4].stiffness == 1e5 && s.scene.contacts[4].damping == 100);
+  const strut_friction *f = &s.scene.contacts[2].friction;
   assert_true(f->law == STRUT_FRICTION_KARNOPP && f->mu_static == 0.1 && f->mu_kinetic == 0.1);
   assert_true(f->stick_velocity == 1e-4);
-  assert_true(s.actuator_count == 1 && s.actuators[0].member == 7);
-  const strut_signal *drive = &s.signals[s.actuators[0].signal];
+  assert_true(s.scene.actuator_count == 1 && s.scene.actuators[0].member == 7);
+  const strut_signal *drive = &s.scene.signals[s.scene.actuators[0].signal];
   assert_true(drive->kind == STRUT_SINE && drive->amplitude == 1e-4 && drive->frequency == 10);
-  assert_true(s.settle.wanted && s.settle.speed == 1e-8 && s.settle.limit == 100);
+  assert_true(s.experiment.settle.wanted && s.experiment.settle.speed == 1e-8 &&
+              s.experiment.settle.limit == 100);
   assert_true(s.experiment.step == 1e-4 && s.experiment.periods == 1100);
   assert_true(s.experiment.measure_last == 100 && s.experiment.period_signal == 0);
   assert_string_equal(s.experiment.period_of, "drive");
-  assert_int_equal(s.parameter_count, 4);
-  assert_string_equal(s.parameters[0].text, "10 Hz");
-  assert_true(s.parameters[0].value == 10 && isnan(s.parameters[3].value));
-  strut_scene_free(&s);
+  assert_int_equal(s.scene.parameter_count, 4);
+  assert_string_equal(s.scene.parameters[0].text, "10 Hz");
+  assert_true(s.scene.parameters[0].value == 10 && isnan(s.scene.parameters[3].value));
+  strut_setup_free(&s);
 }
 
 static void overrides(void **state) {
@@ -93,18 +97,18 @@ static void overrides(void **state) {
       "initial: {configuration: start}\n" RUN;
   const strut_override set[] = {
       {"f", "20"}, {"l", "twice_bare"}, {"bare", "1 cm"}, {"start", "II"}};
-  strut_scene s;
+  strut_setup s;
   read_good(&s, text, NULL, 0);
-  assert_true(s.nodes[0].position[0] == 0.004 && s.nodes[0].mass == 10);
-  assert_true(s.nodes[0].start[0] == 1);
-  strut_scene_free(&s);
+  assert_true(s.scene.nodes[0].position[0] == 0.004 && s.scene.nodes[0].mass == 10);
+  assert_true(s.scene.nodes[0].start[0] == 1);
+  strut_setup_free(&s);
   const strut_override good[] = {set[0], {"l", "1 m + 100 mm"}, set[2], set[3]};
   read_good(&s, text, good, 4);
-  assert_true(s.nodes[0].position[0] == 2.2 && s.nodes[0].position[1] == 0.01);
-  assert_true(s.nodes[0].mass == 20 && s.nodes[0].start[0] == 2);
-  assert_string_equal(s.parameters[0].text, "20");
-  assert_string_equal(s.parameters[4].text, "II");
-  strut_scene_free(&s);
+  assert_true(s.scene.nodes[0].position[0] == 2.2 && s.scene.nodes[0].position[1] == 0.01);
+  assert_true(s.scene.nodes[0].mass == 20 && s.scene.nodes[0].start[0] == 2);
+  assert_string_equal(s.scene.parameters[0].text, "20");
+  assert_string_equal(s.scene.parameters[4].text, "II");
+  strut_setup_free(&s);
   assert_int_equal(read_text(&s, text, &set[1], 1), STRUT_BAD_SCENE);
   const strut_override circle = {"l", "twice"}, wrong = {"bare", "1 kg"};
   assert_int_equal(read_text(&s, text, &circle, 1), STRUT_BAD_SCENE);
@@ -128,10 +132,10 @@ static void configurations(void **state) {
       "equilibria: {supports: [[b, a]], starts: 20*5, seed: 12}\n"
       "initial: {equilibrium: start, velocity: [0, 1]}\n" RUN;
   const strut_override set = {"start", "II"};
-  strut_scene s;
+  strut_setup s;
   read_good(&s, text, NULL, 0);
-  assert_int_equal(s.configuration_count, 4);
-  const strut_configuration *c = s.configurations;
+  assert_int_equal(s.scene.configuration_count, 4);
+  const strut_configuration *c = s.scene.configurations;
   assert_true(c[0].shaped && c[0].set_count == 1 && c[0].sets[0].count == 2);
   assert_true(c[0].sets[0].node[0] == 1 && c[0].sets[0].node[1] == 0);
   assert_true(c[0].position[2][0] == 0 && c[0].position[2][1] == 3 && c[0].position[1][0] == 1);
@@ -139,14 +143,15 @@ static void configurations(void **state) {
   assert_true(c[1].position[3][0] == 2);
   assert_true(c[2].shaped && c[2].set_count == 0);
   assert_true(c[3].shaped && c[3].position[3][0] == 5 && c[3].position[3][1] == 6);
-  assert_true(s.search.support_count == 1 && s.search.supports[0].node[0] == 1);
-  assert_true(s.search.starts == 100 && s.search.seed == 12);
-  assert_true(s.start_equilibrium == 0 && s.nodes[2].velocity[1] == 1);
-  assert_true(s.nodes[2].start[0] == 1); /* as drawn, until it is resolved */
-  strut_scene_free(&s);
+  assert_true(s.experiment.search.support_count == 1 &&
+              s.experiment.search.supports[0].node[0] == 1);
+  assert_true(s.experiment.search.starts == 100 && s.experiment.search.seed == 12);
+  assert_true(s.scene.start_equilibrium == 0 && s.scene.nodes[2].velocity[1] == 1);
+  assert_true(s.scene.nodes[2].start[0] == 1); /* as drawn, until it is resolved */
+  strut_setup_free(&s);
   read_good(&s, text, &set, 1);
-  assert_int_equal(s.start_equilibrium, 1);
-  strut_scene_free(&s);
+  assert_int_equal(s.scene.start_equilibrium, 1);
+  strut_setup_free(&s);
 }
 
 static void groups_give_defaults(void **state) {
@@ -163,11 +168,12 @@ static void groups_give_defaults(void **state) {
       "  m2: {group: [two, one], nodes: [a, b]}\n"
       "  m3: {group: one, nodes: [a, b], axial_stiffness: 9, rest_length_ratio: 0.5, mass: "
       "0}\n" RUN;
-  strut_scene s;
+  strut_setup s;
   read_good(&s, text, NULL, 0);
-  const strut_member *m = s.members;
-  assert_true(s.nodes[0].fixed[0] && s.nodes[0].fixed[1] && s.nodes[0].mass == 8);
-  assert_true(!s.nodes[1].fixed[0] && s.nodes[1].fixed[1] && s.nodes[1].mass == 8);
+  const strut_member *m = s.scene.members;
+  assert_true(s.scene.nodes[0].fixed[0] && s.scene.nodes[0].fixed[1] && s.scene.nodes[0].mass == 8);
+  assert_true(!s.scene.nodes[1].fixed[0] && s.scene.nodes[1].fixed[1] &&
+              s.scene.nodes[1].mass == 8);
   assert_true(m[0].kind == STRUT_CABLE && m[0].stiffness == 0 && m[0].axial_stiffness == 5);
   assert_true(m[0].rest_kind == STRUT_REST_PRETENSION && m[0].rest_value == 6);
   assert_true(m[0].damping == 7 && m[0].mass == 3);
@@ -175,7 +181,7 @@ static void groups_give_defaults(void **state) {
   assert_true(m[1].rest_kind == STRUT_REST_LENGTH && m[1].rest_value == 2 && m[1].damping == 7);
   assert_true(m[2].stiffness == 0 && m[2].axial_stiffness == 9 && m[2].mass == 0);
   assert_true(m[2].rest_kind == STRUT_REST_RATIO && m[2].rest_value == 0.5);
-  strut_scene_free(&s);
+  strut_setup_free(&s);
 }
 
 static void friction_comes_in_layers(void **state) {
@@ -192,16 +198,16 @@ static void friction_comes_in_layers(void **state) {
       "  contacts:\n"
       "    c: {group: [ice, wet], friction: {stick_velocity: 2 mm/s}}\n"
       "    d: {stiffness: 2e4, friction: {law: none}}\n" RUN;
-  strut_scene s;
+  strut_setup s;
   read_good(&s, text, NULL, 0);
-  assert_int_equal(s.contact_count, 3);
-  const strut_contact *c = s.contacts;
+  assert_int_equal(s.scene.contact_count, 3);
+  const strut_contact *c = s.scene.contacts;
   assert_true(c[0].node == 1 && c[1].node == 2 && c[2].node == 3);
   assert_true(c[0].friction.mu_static == 0.5 && c[0].friction.mu_kinetic == 0.4);
   assert_true(c[1].friction.mu_static == 0.2 && c[1].friction.mu_kinetic == 0.01);
   assert_true(c[1].friction.stick_velocity == 0.002 && c[1].damping == 9 && c[1].stiffness == 1e4);
   assert_true(c[2].friction.law == STRUT_FRICTION_NONE && c[2].stiffness == 2e4);
-  strut_scene_free(&s);
+  strut_setup_free(&s);
 }
 
 static void signals_and_their_names(void **state) {
@@ -221,21 +227,24 @@ static void signals_and_their_names(void **state) {
       "solver: {step: 1 ms}\n"
       "run: {periods: 3, of: two, measure: {node: b}}\n"
       "output: {channels: [energy, position]}\n";
-  strut_scene s;
+  strut_setup s;
   read_good(&s, text, NULL, 0);
-  assert_int_equal(s.signal_count, 4);
-  assert_string_equal(s.signals[0].name, "early"); /* terms come before their sum */
-  assert_true(s.signals[0].phase == 0.25 && s.signals[0].start == 1 && s.signals[0].stop == 60);
-  assert_true(s.signals[1].kind == STRUT_CONSTANT && s.signals[1].name == NULL);
-  assert_string_equal(s.signals[2].name, "late");
-  assert_true(s.signals[2].term_count == 2 && s.signals[2].terms[0] == 0);
-  assert_true(s.actuators[0].signal == 2 && s.actuators[1].signal == 0);
-  assert_true(s.loads[0].signal == 3 && s.loads[1].signal == -1 && s.loads[1].force[1] == 2);
+  assert_int_equal(s.scene.signal_count, 4);
+  assert_string_equal(s.scene.signals[0].name, "early"); /* terms come before their sum */
+  assert_true(s.scene.signals[0].phase == 0.25 && s.scene.signals[0].start == 1 &&
+              s.scene.signals[0].stop == 60);
+  assert_true(s.scene.signals[1].kind == STRUT_CONSTANT && s.scene.signals[1].name == NULL);
+  assert_string_equal(s.scene.signals[2].name, "late");
+  assert_true(s.scene.signals[2].term_count == 2 && s.scene.signals[2].terms[0] == 0);
+  assert_true(s.scene.actuators[0].signal == 2 && s.scene.actuators[1].signal == 0);
+  assert_true(s.scene.loads[0].signal == 3 && s.scene.loads[1].signal == -1 &&
+              s.scene.loads[1].force[1] == 2);
   assert_true(s.experiment.period_signal == 0 && s.experiment.measure_node == 1);
   assert_int_equal(s.experiment.channels, STRUT_CHANNEL_ENERGY | STRUT_CHANNEL_POSITION);
-  assert_true(s.nodes[0].velocity[0] == 0 && s.nodes[0].velocity[1] == 2); /* held in x */
-  assert_true(s.nodes[1].velocity[0] == 3 && s.nodes[1].velocity[1] == 4);
-  strut_scene_free(&s);
+  assert_true(s.scene.nodes[0].velocity[0] == 0 &&
+              s.scene.nodes[0].velocity[1] == 2); /* held in x */
+  assert_true(s.scene.nodes[1].velocity[0] == 3 && s.scene.nodes[1].velocity[1] == 4);
+  strut_setup_free(&s);
 }
 
 static void statics_need_no_run(void **state) {
@@ -244,11 +253,11 @@ static void statics_need_no_run(void **state) {
       "strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: [1, 0]}\n"
       "members: {m: {nodes: [a, b], kind: bar, stiffness: 1}}\n";
   strut_diagnostics diagnostics = {0};
-  strut_scene s;
+  strut_setup s;
   assert_int_equal(
-      strut_scene_read(&s, "f", text, strlen(text), NULL, 0, STRUT_FOR_STATICS, &diagnostics),
+      strut_setup_read(&s, "f", text, strlen(text), NULL, 0, STRUT_FOR_STATICS, &diagnostics),
       STRUT_OK);
-  strut_scene_free(&s);
+  strut_setup_free(&s);
   assert_int_equal(read_text(&s, text, NULL, 0), STRUT_BAD_SCENE);
   strut_diagnostics_free(&diagnostics);
 }
@@ -261,20 +270,20 @@ static void memory_may_run_out_anywhere(void **state) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK && n < 5000; n++) {
-    strut_scene s;
+    strut_setup s;
     strut_diagnostics diagnostics = {0};
     strut_fail_allocation_after(n);
-    status = strut_scene_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
-    char *written = status == STRUT_OK ? strut_scene_write(&s) : NULL;
+    status = strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    char *written = status == STRUT_OK ? strut_setup_write(&s) : NULL;
     strut_fail_allocation_after(-1);
     if (status != STRUT_OK) {
       assert_int_equal(status, STRUT_NO_MEMORY);
-      assert_null(s.nodes);
+      assert_null(s.scene.nodes);
     } else if (!written) {
       status = STRUT_NO_MEMORY;
     }
     strut_release(written);
-    strut_scene_free(&s);
+    strut_setup_free(&s);
     strut_diagnostics_free(&diagnostics);
   }
   assert_int_equal(status, STRUT_OK);
@@ -288,12 +297,12 @@ static void memory_may_run_out_in_a_bad_file(void **state) {
   char *text = read_path(STRUT_TESTS_DIR "/language/bad/many-errors.yaml", &length);
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
-    strut_scene s;
+    strut_setup s;
     strut_diagnostics diagnostics = {0};
     strut_fail_allocation_after(n);
-    status = strut_scene_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    status = strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
     strut_fail_allocation_after(-1);
-    assert_null(s.nodes);
+    assert_null(s.scene.nodes);
     strut_diagnostics_free(&diagnostics);
   }
   assert_int_equal(status, STRUT_BAD_SCENE);
@@ -321,24 +330,24 @@ static void the_locale_does_not_matter(void **state) {
   snprintf(command, sizeof command, "rm -rf '%s'", folder);
   if (system(command) != 0 || !german) skip();
   char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
-  strut_scene s;
+  strut_setup s;
   read_good(&s, text, NULL, 0);
-  assert_true(s.nodes[1].position[0] == 0.101);
-  char *here = strut_scene_write(&s);
+  assert_true(s.scene.nodes[1].position[0] == 0.101);
+  char *here = strut_setup_write(&s);
   setlocale(LC_ALL, "C");
-  char *there = strut_scene_write(&s);
+  char *there = strut_setup_write(&s);
   assert_string_equal(here, there);
   strut_diagnostics diagnostics = {0};
   setlocale(LC_ALL, "de_DE.UTF-8");
-  strut_scene refused;
-  strut_scene_read(&refused, "f", bad, strlen(bad), NULL, 0, STRUT_FOR_RUN, &diagnostics);
+  strut_setup refused;
+  strut_setup_read(&refused, "f", bad, strlen(bad), NULL, 0, STRUT_FOR_RUN, &diagnostics);
   setlocale(LC_ALL, "C");
   assert_non_null(strstr(diagnostics.items[0].message, "-1.5"));
   strut_diagnostics_free(&diagnostics);
   strut_release(here);
   strut_release(there);
   strut_release(text);
-  strut_scene_free(&s);
+  strut_setup_free(&s);
 }
 
 /* A chain of n members; `spoilt`: every member has a misspelt node. */
@@ -363,14 +372,14 @@ static char *chain(int n, bool spoilt, size_t *length) {
 static double seconds_to_read(int n, bool spoilt, strut_status expected) {
   size_t length;
   char *text = chain(n, spoilt, &length);
-  strut_scene s;
+  strut_setup s;
   strut_diagnostics diagnostics = {0};
   clock_t begin = clock();
-  assert_int_equal(strut_scene_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics),
+  assert_int_equal(strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics),
                    expected);
   double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
   assert_int_equal(diagnostics.count + diagnostics.unstored, spoilt ? n : 0);
-  strut_scene_free(&s);
+  strut_setup_free(&s);
   strut_diagnostics_free(&diagnostics);
   free(text);
   return seconds;
@@ -397,14 +406,14 @@ static void other_spellings(void **state) {
       "ground: {height: -1, stiffness: 10, damping_law: printed}\n"
       "solver: {step: 1 ms}\n"
       "run: {periods: 9, of: d, measure: {steady: {floor: 1e-3, successive: 3}}}\n";
-  strut_scene s;
+  strut_setup s;
   strut_diagnostics diagnostics = {0};
   assert_int_equal(
-      strut_scene_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
+      strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
       STRUT_OK);
-  assert_int_equal(s.members[0].kind, STRUT_CABLE);
-  assert_int_equal(s.members[1].kind, STRUT_BAR);
-  assert_int_equal(s.ground.damping_law, STRUT_DAMPING_APPROACH);
+  assert_int_equal(s.scene.members[0].kind, STRUT_CABLE);
+  assert_int_equal(s.scene.members[1].kind, STRUT_BAR);
+  assert_int_equal(s.scene.ground.damping_law, STRUT_DAMPING_APPROACH);
   assert_true(s.experiment.steady.floor == 1e-3 && s.experiment.steady.successive == 3);
   const char *notes = strut_diagnostics_render_notes(&diagnostics);
   assert_non_null(strstr(notes, "test.yaml:6:50: note: 'printed' is now called 'approach_only'\n"));
@@ -414,7 +423,7 @@ static void other_spellings(void **state) {
       strstr(notes, "test.yaml:8:58: note: 'successive' is now called 'repetitions'\n"));
   assert_int_equal(diagnostics.note_count, 3);
   strut_diagnostics_free(&diagnostics);
-  strut_scene_free(&s);
+  strut_setup_free(&s);
 }
 
 /* A key by both of its names is given twice. */
@@ -427,10 +436,10 @@ static void both_spellings_of_a_key(void **state) {
       "actuators: {d: {member: m, signal: {sine: {amplitude: 1e-3, frequency: 1}}}}\n"
       "solver: {step: 1 ms}\n"
       "run: {periods: 9, of: d, measure: {steady: {floor: 1e-3, absolute_tolerance: 1e-3}}}\n";
-  strut_scene s;
+  strut_setup s;
   strut_diagnostics diagnostics = {0};
   assert_int_equal(
-      strut_scene_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
+      strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics),
       STRUT_BAD_SCENE);
   assert_non_null(strstr(strut_diagnostics_render(&diagnostics, 9),
                          "the steady state gives both 'floor' and 'absolute_tolerance', expected "

@@ -12,7 +12,7 @@
 #include "tests/support/structures.h"
 #include "tests/unit/scratch.h"
 
-static strut_scene scene;
+static strut_setup setup;
 static strut_model *model;
 static strut_summary summary;
 static strut_trajectory taken;
@@ -21,16 +21,16 @@ static const strut_trajectory *beside; /* another motion, dashed over it */
 static int set_up(void **unused) {
   (void)unused;
   scratch_make();
-  strut_scene_init(&scene);
-  structure_crawler(&scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&scene, 1e-4, 0.2);
-  scene.experiment.output_every = 5e-3;
-  scene.name = "crawler";
-  model = motion_compile(&scene);
+  strut_setup_init(&setup);
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&setup, 1e-4, 0.2);
+  setup.experiment.output_every = 5e-3;
+  setup.scene.name = "crawler";
+  model = motion_compile(&setup.scene);
   strut_error error = {0};
-  strut_sink *sink = strut_trajectory_sink(&taken, &scene, 63, STRUT_TRAJECTORY_ROOM);
+  strut_sink *sink = strut_trajectory_sink(&taken, &setup.scene, 63, STRUT_TRAJECTORY_ROOM);
   strut_run_options options = {.sinks = &sink, .sink_count = 1};
-  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_OK);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, &error), STRUT_OK);
   strut_trajectory_sink_free(sink);
   assert_int_equal(taken.frames, 41);
   return 0;
@@ -41,7 +41,7 @@ static int tear_down(void **unused) {
   strut_trajectory_free(&taken);
   strut_summary_free(&summary);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   scratch_remove();
   return 0;
 }

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 static void near(double found, double expected, double tolerance) {
   if (!(fabs(found - expected) <= tolerance))
@@ -20,35 +20,36 @@ static void near(double found, double expected, double tolerance) {
 static strut_node nodes[2] = {{.name = "a", .position = {1, 1}}, {.name = "b", .position = {4, 5}}};
 
 static bool resolve(strut_member member, strut_rest *rest) {
-  strut_scene scene;
-  strut_scene_init(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
   member.node[0] = 0, member.node[1] = 1;
-  scene.nodes = nodes, scene.node_count = 2;
-  scene.members = &member, scene.member_count = 1;
-  return strut_member_rest(&scene, 0, rest);
+  setup.scene.nodes = nodes, setup.scene.node_count = 2;
+  setup.scene.members = &member, setup.scene.member_count = 1;
+  return strut_member_rest(&setup.scene, 0, rest);
 }
 
 static void defaults(void **state) {
   (void)state;
-  strut_scene scene;
-  memset(&scene, 0x55, sizeof scene);
-  strut_scene_init(&scene);
-  assert_string_equal(scene.name, "");
-  assert_string_equal(scene.experiment.integrator, "rk4");
-  assert_int_equal(scene.experiment.channels,
+  strut_setup setup;
+  memset(&setup, 0x55, sizeof setup);
+  strut_setup_init(&setup);
+  assert_string_equal(setup.scene.name, "");
+  assert_string_equal(setup.experiment.integrator, "rk4");
+  assert_int_equal(setup.experiment.channels,
                    STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE);
-  assert_int_equal(scene.experiment.period_signal, -1);
-  assert_int_equal(scene.experiment.measure_node, -1);
-  assert_true(!scene.settle.wanted && scene.settle.speed == 1e-8 &&
-              scene.settle.acceleration == 1e-8 && scene.settle.limit == 100);
-  assert_int_equal(scene.node_count + scene.member_count + scene.contact_count, 0);
+  assert_int_equal(setup.experiment.period_signal, -1);
+  assert_int_equal(setup.experiment.measure_node, -1);
+  assert_true(!setup.experiment.settle.wanted && setup.experiment.settle.speed == 1e-8 &&
+              setup.experiment.settle.acceleration == 1e-8 && setup.experiment.settle.limit == 100);
+  assert_int_equal(setup.scene.node_count + setup.scene.member_count + setup.scene.contact_count,
+                   0);
   strut_member member = strut_member_default();
   assert_true(member.node[0] == -1 && member.node[1] == -1);
   assert_true(member.rest_kind == STRUT_REST_RATIO && member.rest_value == 1);
   assert_int_equal(strut_contact_default().node, -1);
   assert_true(strut_node_default().mass == 0);
-  strut_scene_free(&scene);
-  assert_null(scene.nodes);
+  strut_setup_free(&setup);
+  assert_null(setup.scene.nodes);
 }
 
 /* Each of the four ways leads to the other three, for a stiffness and for EA. */
@@ -134,28 +135,28 @@ static void impossible_rests_are_refused(void **state) {
 
 static void a_span_in_seconds(void **state) {
   (void)state;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  scene.experiment.duration = 8;
-  strut_span span = strut_scene_span(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  setup.experiment.duration = 8;
+  strut_span span = strut_experiment_span(&setup.experiment, &setup.scene);
   assert_true(span.duration == 8 && span.period == 0 && span.window_start == 0);
   assert_true(span.record_start == 0 && span.record_every == 0.008);
-  scene.experiment.measure_last = 2, scene.experiment.output_last = 3;
-  scene.experiment.output_every = 0.25;
-  span = strut_scene_span(&scene);
+  setup.experiment.measure_last = 2, setup.experiment.output_last = 3;
+  setup.experiment.output_every = 0.25;
+  span = strut_experiment_span(&setup.experiment, &setup.scene);
   assert_true(span.window_start == 6 && span.record_start == 5 && span.record_every == 0.25);
 }
 
 static void a_span_in_periods(void **state) {
   (void)state;
   strut_signal signal = strut_signal_default(STRUT_SINE);
-  strut_scene scene;
-  strut_scene_init(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
   signal.frequency = 4;
-  scene.signals = &signal, scene.signal_count = 1;
-  scene.experiment.periods = 100, scene.experiment.period_signal = 0;
-  scene.experiment.measure_last = 20, scene.experiment.output_last = 40;
-  strut_span span = strut_scene_span(&scene);
+  setup.scene.signals = &signal, setup.scene.signal_count = 1;
+  setup.experiment.periods = 100, setup.experiment.period_signal = 0;
+  setup.experiment.measure_last = 20, setup.experiment.output_last = 40;
+  strut_span span = strut_experiment_span(&setup.experiment, &setup.scene);
   assert_true(span.duration == 25 && span.period == 0.25);
   assert_true(span.window_start == 20 && span.record_start == 15 && span.record_every == 0.01);
 }

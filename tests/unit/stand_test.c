@@ -17,7 +17,7 @@
 static const double G = 9.81;
 
 typedef struct found {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_equilibria all;
 } found;
@@ -25,14 +25,15 @@ typedef struct found {
 static void search(found *f) {
   strut_error error = {0};
   strut_equilibria_options options = {.starts = 60};
-  f->model = motion_compile(&f->scene);
-  if (strut_equilibria_find(f->model, &options, &f->all, &error)) fail_msg("%s", error.message);
+  f->model = motion_compile(&f->setup.scene);
+  if (strut_equilibria_find(f->model, &f->setup.experiment, &options, &f->all, &error))
+    fail_msg("%s", error.message);
 }
 
 static void done(found *f) {
   strut_equilibria_free(&f->all);
   strut_model_free(f->model);
-  strut_scene_free(&f->scene);
+  strut_setup_free(&f->setup);
 }
 
 static int32_t count(const found *f, strut_outcome fate) {
@@ -53,23 +54,23 @@ static void assert_says(const char *text, const char *part) {
 }
 
 /* A triangle of bars, 1 kg/m, every node a contact; n3 above at x. */
-static void triangle(strut_scene *scene, double x) {
+static void triangle(strut_setup *setup, double x) {
   double at[3][2] = {{0, 0}, {1, 0}, {x, 1}};
-  strut_scene_init(scene);
-  for (int i = 0; i < 3; i++) build_node(scene, at[i][0], at[i][1]);
+  strut_setup_init(setup);
+  for (int i = 0; i < 3; i++) build_node(&setup->scene, at[i][0], at[i][1]);
   for (int i = 0; i < 3; i++) {
     int k = (i + 1) % 3;
     double length = hypot(at[k][0] - at[i][0], at[k][1] - at[i][1]);
-    build_member(scene, STRUT_BAR, i, k, 1e6, 10, length);
+    build_member(&setup->scene, STRUT_BAR, i, k, 1e6, 10, length);
   }
-  for (int i = 0; i < 3; i++) build_contact(scene, i, 1e5, 100);
-  scene->gravity[1] = -G;
+  for (int i = 0; i < 3; i++) build_contact(&setup->scene, i, 1e5, 100);
+  setup->scene.gravity[1] = -G;
 }
 
 static void test_a_triangle_stands_on_every_side(void **unused) {
   (void)unused;
   found f;
-  triangle(&f.scene, 0.4);
+  triangle(&f.setup, 0.4);
   search(&f);
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 3);
@@ -94,7 +95,7 @@ static void test_a_triangle_stands_on_every_side(void **unused) {
 static void test_it_tips_over_its_foot(void **unused) {
   (void)unused;
   found f;
-  triangle(&f.scene, 2.5);
+  triangle(&f.setup, 2.5);
   search(&f);
   const strut_equilibrium *e = first(&f, STRUT_OUTCOME_TIPS);
   assert_int_equal(e->supports->node[0], 0);
@@ -109,19 +110,19 @@ static void test_it_tips_over_its_foot(void **unused) {
 }
 
 /* Two bars over a span, held at both ends: nothing else is needed to hold it. */
-static void truss(strut_scene *scene) {
-  strut_scene_init(scene);
-  build_support(scene, 0, 0);
-  build_mass(scene, 1, 0.3, 1);
-  build_support(scene, 2, 0);
-  build_member(scene, STRUT_BAR, 0, 1, 1000, 0, 0);
-  build_member(scene, STRUT_BAR, 1, 2, 1000, 0, 0);
+static void truss(strut_setup *setup) {
+  strut_setup_init(setup);
+  build_support(&setup->scene, 0, 0);
+  build_mass(&setup->scene, 1, 0.3, 1);
+  build_support(&setup->scene, 2, 0);
+  build_member(&setup->scene, STRUT_BAR, 0, 1, 1000, 0, 0);
+  build_member(&setup->scene, STRUT_BAR, 1, 2, 1000, 0, 0);
 }
 
 static void test_a_truss_snaps(void **unused) {
   (void)unused;
   found f;
-  truss(&f.scene);
+  truss(&f.setup);
   search(&f);
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 2);
   double flat = 1000 * pow(hypot(1, 0.3) - 1, 2);
@@ -140,12 +141,12 @@ static void test_a_truss_snaps(void **unused) {
 static void test_one_motion_needs_one_support(void **unused) {
   (void)unused;
   found f;
-  strut_scene_init(&f.scene);
-  build_support(&f.scene, 0, 0.6);
-  build_node(&f.scene, 0.7, 0.1);
-  build_sized(&f.scene, STRUT_BAR, 0, 1, 1e6, 10, 2, 1);
-  build_contact(&f.scene, 1, 1e5, 100);
-  f.scene.gravity[1] = -G;
+  strut_setup_init(&f.setup);
+  build_support(&f.setup.scene, 0, 0.6);
+  build_node(&f.setup.scene, 0.7, 0.1);
+  build_sized(&f.setup.scene, STRUT_BAR, 0, 1, 1e6, 10, 2, 1);
+  build_contact(&f.setup.scene, 1, 1e5, 100);
+  f.setup.scene.gravity[1] = -G;
   search(&f);
   const strut_equilibrium *e = first(&f, STRUT_OUTCOME_STANDS);
   assert_int_equal(e->supports->count, 1);
@@ -162,15 +163,17 @@ static void test_what_falls(void **unused) {
   strut_arena arena = {0};
   strut_rest_state stand;
   strut_error error = {0};
-  strut_scene_init(&f.scene);
-  build_node(&f.scene, 0, 0);
-  build_node(&f.scene, 1, 0);
-  build_member(&f.scene, STRUT_BAR, 0, 1, 1000, 0, 1);
-  f.scene.gravity[1] = -G;
+  strut_setup_init(&f.setup);
+  build_node(&f.setup.scene, 0, 0);
+  build_node(&f.setup.scene, 1, 0);
+  build_member(&f.setup.scene, STRUT_BAR, 0, 1, 1000, 0, 1);
+  f.setup.scene.gravity[1] = -G;
   search(&f);
   assert_int_equal(f.all.count, 0);
   assert_string_equal(f.all.remark, "nothing holds the structure: it falls freely, all nodes");
-  assert_int_equal(strut_rest_state_find(f.model, NULL, &arena, &stand, &error), STRUT_NOT_SETTLED);
+  assert_int_equal(
+      strut_rest_state_find(f.model, &f.setup.experiment, NULL, &arena, &stand, &error),
+      STRUT_NOT_SETTLED);
   assert_says(error.message, "it falls freely, all nodes");
   strut_arena_free(&arena);
   done(&f);
@@ -179,9 +182,9 @@ static void test_what_falls(void **unused) {
 static void test_a_part_that_falls(void **unused) {
   (void)unused;
   found f;
-  truss(&f.scene);
-  build_mass(&f.scene, 5, 5, 1);
-  f.scene.gravity[1] = -G;
+  truss(&f.setup);
+  build_mass(&f.setup.scene, 5, 5, 1);
+  f.setup.scene.gravity[1] = -G;
   search(&f);
   assert_int_equal(f.all.count, 0);
   assert_says(f.all.remark, "a part of the structure");
@@ -192,12 +195,12 @@ static void test_a_part_that_falls(void **unused) {
 static void test_a_mechanism(void **unused) {
   (void)unused;
   found f;
-  strut_scene_init(&f.scene);
-  build_support(&f.scene, 0, 0);
-  build_support(&f.scene, 1, 0);
-  build_mass(&f.scene, 1.1, 1, 1);
-  build_mass(&f.scene, 0.1, 1, 1);
-  for (int i = 1; i < 4; i++) build_member(&f.scene, STRUT_BAR, i, (i + 1) % 4, 1000, 0, 0);
+  strut_setup_init(&f.setup);
+  build_support(&f.setup.scene, 0, 0);
+  build_support(&f.setup.scene, 1, 0);
+  build_mass(&f.setup.scene, 1.1, 1, 1);
+  build_mass(&f.setup.scene, 0.1, 1, 1);
+  for (int i = 1; i < 4; i++) build_member(&f.setup.scene, STRUT_BAR, i, (i + 1) % 4, 1000, 0, 0);
   search(&f);
   assert_true(f.all.count > 0);
   const strut_equilibrium *e = first(&f, STRUT_OUTCOME_FLOPPY);
@@ -211,9 +214,9 @@ static void test_a_mechanism(void **unused) {
 static void test_a_push_along_the_ground(void **unused) {
   (void)unused;
   found f;
-  triangle(&f.scene, 0.4);
+  triangle(&f.setup, 0.4);
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
-  build_load(&f.scene, 2, 2.5 * weight, 0, -1);
+  build_load(&f.setup.scene, 2, 2.5 * weight, 0, -1);
   search(&f);
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 0);
   assert_says(f.all.remark, "a coefficient of at least 2.5 holds it");
@@ -223,21 +226,22 @@ static void test_a_push_along_the_ground(void **unused) {
 /* One node has no extent to measure distances by; it rests all the same. */
 static void test_one_node(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_arena arena = {0};
   strut_rest_state stand;
   strut_error error = {0};
-  strut_scene_init(&scene);
-  build_node(&scene, 0, 0);
-  scene.nodes[0].mass = 1;
-  build_contact(&scene, 0, 1e5, 10);
-  scene.gravity[1] = -G;
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_rest_state_find(model, "start", &arena, &stand, &error), STRUT_OK);
+  strut_setup_init(&setup);
+  build_node(&setup.scene, 0, 0);
+  setup.scene.nodes[0].mass = 1;
+  build_contact(&setup.scene, 0, 1e5, 10);
+  setup.scene.gravity[1] = -G;
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, "start", &arena, &stand, &error),
+                   STRUT_OK);
   assert_near(stand.q[1], -G / 1e5, 1e-15);
   strut_arena_free(&arena);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A slope is level ground with gravity turned: the same solutions, but nothing rests. */
@@ -245,14 +249,14 @@ static void test_a_slope(void **unused) {
   (void)unused;
   const double slope = 0.1, c = cos(slope), s = sin(slope);
   found level, steep;
-  triangle(&level.scene, 0.4);
-  level.scene.gravity[0] = -G * s, level.scene.gravity[1] = -G * c;
-  triangle(&steep.scene, 0.4);
-  steep.scene.ground.slope = slope;
+  triangle(&level.setup, 0.4);
+  level.setup.scene.gravity[0] = -G * s, level.setup.scene.gravity[1] = -G * c;
+  triangle(&steep.setup, 0.4);
+  steep.setup.scene.ground.slope = slope;
   for (int i = 0; i < 3; i++) {
-    double *p = steep.scene.nodes[i].position, x = p[0], y = p[1];
+    double *p = steep.setup.scene.nodes[i].position, x = p[0], y = p[1];
     p[0] = c * x - s * y, p[1] = s * x + c * y;
-    memcpy(steep.scene.nodes[i].start, p, 2 * sizeof *p);
+    memcpy(steep.setup.scene.nodes[i].start, p, 2 * sizeof *p);
   }
   search(&level);
   search(&steep);
@@ -276,49 +280,54 @@ static void test_a_slope(void **unused) {
 
 static void test_supports_must_touch(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_equilibria all;
   strut_error error = {0};
-  triangle(&scene, 0.4);
-  scene.contact_count = 2;
+  triangle(&setup, 0.4);
+  setup.scene.contact_count = 2;
   int32_t nodes[2] = {0, 2};
   strut_node_set set = {2, nodes};
   strut_equilibria_options options = {.supports = &set};
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_equilibria_find(model, &options, &all, &error), STRUT_USAGE);
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, &error),
+                   STRUT_USAGE);
   assert_says(error.message, "node 'n3' cannot touch the ground");
   strut_equilibria_free(&all);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* The crawler's drawn state I as a configuration; II by its contacts alone. */
-static void with_configurations(strut_scene *scene) {
+static void with_configurations(strut_setup *setup) {
   static int32_t one[2] = {0, 3}, two[2] = {1, 3};
   static strut_node_set on_one = {2, one}, on_two = {2, two};
   static strut_configuration both[2];
   static double drawn[5][2];
-  strut_scene_init(scene);
-  structure_crawler(scene, 10, 1e-4, 0.1, false);
-  for (int i = 0; i < 5; i++) memcpy(drawn[i], scene->nodes[i].position, sizeof drawn[i]);
+  strut_setup_init(setup);
+  structure_crawler(&setup->scene, 10, 1e-4, 0.1, false);
+  for (int i = 0; i < 5; i++) memcpy(drawn[i], setup->scene.nodes[i].position, sizeof drawn[i]);
   both[0] = (strut_configuration){"I", true, drawn, 1, &on_one};
   both[1] = (strut_configuration){"II", false, drawn, 1, &on_two};
-  scene->configurations = both;
-  scene->configuration_count = 2;
+  setup->scene.configurations = both;
+  setup->scene.configuration_count = 2;
 }
 
 static void test_stands(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_arena arena = {0};
   strut_rest_state drawn, start, one, two;
   strut_error error = {0};
-  with_configurations(&scene);
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_rest_state_find(model, "drawn", &arena, &drawn, &error), STRUT_OK);
-  assert_int_equal(strut_rest_state_find(model, NULL, &arena, &start, &error), STRUT_OK);
-  assert_int_equal(strut_rest_state_find(model, "I", &arena, &one, &error), STRUT_OK);
-  assert_int_equal(strut_rest_state_find(model, "II", &arena, &two, &error), STRUT_OK);
+  with_configurations(&setup);
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, "drawn", &arena, &drawn, &error),
+                   STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, NULL, &arena, &start, &error),
+                   STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, "I", &arena, &one, &error),
+                   STRUT_OK);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, "II", &arena, &two, &error),
+                   STRUT_OK);
   assert_false(drawn.at_rest); /* nothing carries it where it is drawn */
   assert_near(drawn.q[2], 0.0965109, 0);
   assert_near(drawn.scale, 0.14 * G, 1e-12);
@@ -333,75 +342,78 @@ static void test_stands(void **unused) {
   assert_near(one.normal[0], two.normal[0], 1e-8);
   assert_near(two.q[3], one.q[1], 1e-12);
   assert_true(one.residual < 1e-10 * one.scale);
-  assert_int_equal(strut_rest_state_find(model, "III", &arena, &two, &error), STRUT_USAGE);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, "III", &arena, &two, &error),
+                   STRUT_USAGE);
   assert_says(error.message, "choose among: start, drawn, I, II");
   strut_arena_free(&arena);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_a_run_wants_it_resolved(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
   strut_summary summary;
   strut_run_options options = {0};
-  with_configurations(&scene);
-  motion_experiment(&scene, 1e-4, 0.01);
-  scene.start_equilibrium = 1;
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_simulate(model, &options, &summary, &error), STRUT_USAGE);
+  with_configurations(&setup);
+  motion_experiment(&setup, 1e-4, 0.01);
+  setup.scene.start_equilibrium = 1;
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, &error),
+                   STRUT_USAGE);
   assert_says(error.message, "'II'");
   strut_summary_free(&summary);
   strut_model_free(model);
-  assert_int_equal(strut_resolve_start_equilibrium(&scene, &error), STRUT_OK);
-  assert_int_equal(scene.start_equilibrium, -1);
-  assert_true(fabs(scene.nodes[1].start[1]) < 1e-4 && scene.nodes[0].start[1] > 0.02);
-  assert_int_equal(strut_resolve_start_equilibrium(&scene, &error), STRUT_OK);
-  for (size_t i = 0; i < scene.actuator_count; i++) scene.signals[0].amplitude = 0;
-  summary = motion_simulate(&scene);
+  assert_int_equal(strut_resolve_start_equilibrium(&setup, &error), STRUT_OK);
+  assert_int_equal(setup.scene.start_equilibrium, -1);
+  assert_true(fabs(setup.scene.nodes[1].start[1]) < 1e-4 && setup.scene.nodes[0].start[1] > 0.02);
+  assert_int_equal(strut_resolve_start_equilibrium(&setup, &error), STRUT_OK);
+  for (size_t i = 0; i < setup.scene.actuator_count; i++) setup.scene.signals[0].amplitude = 0;
+  summary = motion_simulate(&setup);
   for (size_t k = 0; k < 10; k++) /* it stays */
-    assert_near(summary.positions[k], scene.nodes[k / 2].start[k % 2], 1e-11);
+    assert_near(summary.positions[k], setup.scene.nodes[k / 2].start[k % 2], 1e-11);
   strut_summary_free(&summary);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_no_such_equilibrium(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_arena arena = {0};
   strut_rest_state stand;
   strut_error error = {0};
-  with_configurations(&scene);
+  with_configurations(&setup);
   int32_t nodes[2] = {2, 3}; /* it does not stand on these two */
-  scene.configurations[1].sets[0].node = nodes;
-  strut_model *model = motion_compile(&scene);
-  assert_int_equal(strut_rest_state_find(model, "II", &arena, &stand, &error), STRUT_NOT_SETTLED);
+  setup.scene.configurations[1].sets[0].node = nodes;
+  strut_model *model = motion_compile(&setup.scene);
+  assert_int_equal(strut_rest_state_find(model, &setup.experiment, "II", &arena, &stand, &error),
+                   STRUT_NOT_SETTLED);
   assert_says(error.message, "no equilibrium fits configuration 'II'");
   strut_arena_free(&arena);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_refused_memory(void **unused) {
   (void)unused;
-  strut_scene scene;
+  strut_setup setup;
   strut_equilibria_options options = {.starts = 4};
-  triangle(&scene, 2.5);
-  strut_model *model = motion_compile(&scene);
+  triangle(&setup, 2.5);
+  strut_model *model = motion_compile(&setup.scene);
   int64_t n = 0, step = 1;
   for (strut_status status = STRUT_NO_MEMORY; status != STRUT_OK; n += step, step += 1 + n / 20) {
     strut_equilibria all;
     strut_error error = {0};
     strut_fail_allocation_after(n);
-    status = strut_equilibria_find(model, &options, &all, &error);
+    status = strut_equilibria_find(model, &setup.experiment, &options, &all, &error);
     strut_fail_allocation_after(-1);
     if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
     strut_equilibria_free(&all);
   }
   assert_true(n > 100);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

@@ -54,9 +54,10 @@ static void test_modes(void **state) {
   strut_modes modes = {0};
   strut_error error = {0};
   model_read(&run, "basics/x-frame", set_none);
-  assert_int_equal(strut_model_compile(&run.scene, &run.model, &error), STRUT_OK);
-  assert_int_equal(strut_modes_find(run.model, &(strut_modes_options){0}, &modes, &error),
-                   STRUT_OK);
+  assert_int_equal(strut_model_compile(&run.setup.scene, &run.model, &error), STRUT_OK);
+  assert_int_equal(
+      strut_modes_find(run.model, &run.setup.experiment, &(strut_modes_options){0}, &modes, &error),
+      STRUT_OK);
   fails_cleanly(draw_modes, run.model, &modes);
   strut_modes_free(&modes);
   model_run_free(&run);
@@ -68,8 +69,10 @@ static void test_path(void **state) {
   strut_path path = {0};
   strut_error error = {0};
   model_read(&run, "basics/von-mises-truss", set_to("load=12"));
-  assert_int_equal(strut_model_compile(&run.scene, &run.model, &error), STRUT_OK);
-  assert_int_equal(strut_path_follow(run.model, &(strut_path_options){0}, &path, &error), STRUT_OK);
+  assert_int_equal(strut_model_compile(&run.setup.scene, &run.model, &error), STRUT_OK);
+  assert_int_equal(
+      strut_path_follow(run.model, &run.setup.experiment, &(strut_path_options){0}, &path, &error),
+      STRUT_OK);
   fails_cleanly(draw_path, run.model, &path);
   strut_path_free(&path);
   model_run_free(&run);

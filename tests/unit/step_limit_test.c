@@ -33,9 +33,9 @@ static void test_limits_of_damped_modes(void **unused) {
   }
 }
 
-static strut_step_limit limit_of(const strut_scene *scene) {
+static strut_step_limit limit_of(const strut_setup *setup) {
   strut_step_limit limit;
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   assert_int_equal(strut_step_limit_estimate(model, &limit, NULL), STRUT_OK);
   strut_model_free(model);
   return limit;
@@ -49,19 +49,20 @@ static void test_limit_of_a_damped_oscillator(void **unused) {
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
     for (int grounded = 0; grounded < 2; grounded++) {
       const double k = 900, mass = 4, omega = 15;
-      strut_scene scene;
-      strut_scene_init(&scene);
-      build_mass(&scene, 1, 0.5, mass);
+      strut_setup setup;
+      strut_setup_init(&setup);
+      build_mass(&setup.scene, 1, 0.5, mass);
       double damping = known[i][0] * 2 * sqrt(k * mass);
       if (grounded)
-        build_contact(&scene, 0, k, damping);
+        build_contact(&setup.scene, 0, k, damping);
       else
-        build_member(&scene, STRUT_SPRING, build_support(&scene, 0, 0), 0, k, damping, 0);
-      strut_step_limit limit = limit_of(&scene);
+        build_member(&setup.scene, STRUT_SPRING, build_support(&setup.scene, 0, 0), 0, k, damping,
+                     0);
+      strut_step_limit limit = limit_of(&setup);
       assert_true(limit.exact);
       assert_relative(limit.largest_frequency, omega, 1e-9);
       assert_relative(limit.limit * omega, known[i][1], 1e-4);
-      strut_scene_free(&scene);
+      strut_setup_free(&setup);
     }
 }
 
@@ -74,11 +75,11 @@ static void test_limit_of_each_method_on_damped_ground(void **unused) {
   for (int z = 0; z < 2; z++)
     for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
       double zeta = zetas[z], limit, expected = INFINITY;
-      strut_scene scene;
-      strut_scene_init(&scene);
-      build_mass(&scene, 0, 0.5, mass);
-      build_contact(&scene, 0, k, zeta * 2 * sqrt(k * mass));
-      strut_model *model = motion_compile(&scene);
+      strut_setup setup;
+      strut_setup_init(&setup);
+      build_mass(&setup.scene, 0, 0.5, mass);
+      build_contact(&setup.scene, 0, k, zeta * 2 * sqrt(k * mass));
+      strut_model *model = motion_compile(&setup.scene);
       assert_int_equal(strut_step_limit_for_method(model, method, &limit, NULL), STRUT_OK);
       if (method->region == STRUT_REGION_RK4) expected = rk4[z] / omega;
       if (method->region == STRUT_REGION_EULER) expected = 2 / omega * (hypot(zeta, 1) - zeta);
@@ -90,20 +91,20 @@ static void test_limit_of_each_method_on_damped_ground(void **unused) {
       else
         assert_relative(limit, expected, 1e-4);
       strut_model_free(model);
-      strut_scene_free(&scene);
+      strut_setup_free(&setup);
     }
 }
 
 /* Each number that a limit depends on, changed a little; false: there are no more. */
-static bool change(strut_scene *s, int which) {
-  double *const numbers[] = {&s->nodes[1].mass,         &s->members[0].stiffness,
-                             &s->members[0].damping,    &s->members[0].mass,
-                             &s->contacts[0].stiffness, &s->contacts[0].damping,
-                             &s->members[0].rest_value, &s->ground.slope};
+static bool change(strut_setup *s, int which) {
+  double *const numbers[] = {&s->scene.nodes[1].mass,         &s->scene.members[0].stiffness,
+                             &s->scene.members[0].damping,    &s->scene.members[0].mass,
+                             &s->scene.contacts[0].stiffness, &s->scene.contacts[0].damping,
+                             &s->scene.members[0].rest_value, &s->scene.ground.slope};
   const int count = sizeof numbers / sizeof numbers[0];
-  if (which == count) s->mass_model = STRUT_MASS_LUMPED;
-  if (which == count + 1) s->nodes[1].fixed[0] = true;
-  if (which == count + 2) s->nodes[1].start[1] += 0.1;
+  if (which == count) s->scene.mass_model = STRUT_MASS_LUMPED;
+  if (which == count + 1) s->scene.nodes[1].fixed[0] = true;
+  if (which == count + 2) s->scene.nodes[1].start[1] += 0.1;
   if (which >= count) return which <= count + 2;
   *numbers[which] = *numbers[which] * 1.25 + (*numbers[which] == 0.0 ? 0.1 : 0.0);
   return true;
@@ -117,17 +118,17 @@ static void test_limits_are_recalled_for_the_same_model_only(void **unused) {
                          *euler = strut_integrator_find("euler");
   double first = 0, limit, own;
   for (int which = -1;; which++) {
-    strut_scene scene;
-    strut_scene_init(&scene);
-    build_support(&scene, 0, 1);
-    build_mass(&scene, 0.6, 0.2, 2);
-    build_sized(&scene, STRUT_SPRING, 0, 1, 400, 20, 1, 0.8);
-    build_contact(&scene, 1, 900, 40);
-    if (which >= 0 && !change(&scene, which)) {
-      strut_scene_free(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    build_support(&setup.scene, 0, 1);
+    build_mass(&setup.scene, 0.6, 0.2, 2);
+    build_sized(&setup.scene, STRUT_SPRING, 0, 1, 400, 20, 1, 0.8);
+    build_contact(&setup.scene, 1, 900, 40);
+    if (which >= 0 && !change(&setup, which)) {
+      strut_setup_free(&setup);
       break;
     }
-    strut_model *model = motion_compile(&scene);
+    strut_model *model = motion_compile(&setup.scene);
     assert_int_equal(strut_step_limit_cached(model, rk4, &kept, &limit, NULL), STRUT_OK);
     assert_int_equal(strut_step_limit_for_method(model, rk4, &own, NULL), STRUT_OK);
     assert_same_bits(limit, own);
@@ -145,28 +146,29 @@ static void test_limits_are_recalled_for_the_same_model_only(void **unused) {
       assert_same_bits(limit, own);
     }
     strut_model_free(model);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 static void test_nothing_limits_free_masses(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  build_mass(&scene, 0, 0, 1);
-  strut_step_limit limit = limit_of(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  build_mass(&setup.scene, 0, 0, 1);
+  strut_step_limit limit = limit_of(&setup);
   assert_true(isinf(limit.limit) && limit.largest_frequency == 0);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* A row of bars between supports that can only move along itself: its frequencies are known. */
-static void row_of_bars(strut_scene *scene, int bars, strut_mass_model mass_model, double damping) {
-  strut_scene_init(scene);
-  scene->mass_model = mass_model;
-  for (int i = 0; i <= bars; i++) build_node(scene, i, 0);
-  for (int i = 0; i <= bars; i++) scene->nodes[i].fixed[1] = true;
-  scene->nodes[0].fixed[0] = scene->nodes[bars].fixed[0] = true;
-  for (int i = 0; i < bars; i++) build_member(scene, STRUT_BAR, i, i + 1, 1e4, damping, 0.2);
+static void row_of_bars(strut_setup *setup, int bars, strut_mass_model mass_model, double damping) {
+  strut_setup_init(setup);
+  setup->scene.mass_model = mass_model;
+  for (int i = 0; i <= bars; i++) build_node(&setup->scene, i, 0);
+  for (int i = 0; i <= bars; i++) setup->scene.nodes[i].fixed[1] = true;
+  setup->scene.nodes[0].fixed[0] = setup->scene.nodes[bars].fixed[0] = true;
+  for (int i = 0; i < bars; i++)
+    build_member(&setup->scene, STRUT_BAR, i, i + 1, 1e4, damping, 0.2);
 }
 
 static double highest(int bars, strut_mass_model mass_model) {
@@ -181,9 +183,9 @@ static void test_limit_of_rows_of_bars(void **unused) {
   static const int sizes[] = {5, 30, 61, 62, 200, 2000};
   for (int s = 0; s < 12; s++) {
     strut_mass_model mass_model = s % 2 ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
-    strut_scene scene;
-    row_of_bars(&scene, sizes[s / 2], mass_model, 0);
-    strut_step_limit limit = limit_of(&scene);
+    strut_setup setup;
+    row_of_bars(&setup, sizes[s / 2], mass_model, 0);
+    strut_step_limit limit = limit_of(&setup);
     double omega = highest(sizes[s / 2], mass_model), expected = IMAGINARY / omega;
     assert_int_equal(limit.exact, sizes[s / 2] <= 61);
     if (limit.exact)
@@ -191,7 +193,7 @@ static void test_limit_of_rows_of_bars(void **unused) {
     else
       assert_within(limit.limit, 0.99 * expected, expected);
     assert_within(limit.largest_frequency, 0.9999 * omega, 1.01 * omega);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
@@ -200,31 +202,31 @@ static void test_limit_of_damped_rows(void **unused) {
   (void)unused;
   static const int sizes[] = {20, 100};
   for (int s = 0; s < 2; s++) {
-    strut_scene scene;
+    strut_setup setup;
     double omega = highest(sizes[s], STRUT_MASS_CONSISTENT), zeta = 3;
-    row_of_bars(&scene, sizes[s], STRUT_MASS_CONSISTENT, 2 * zeta * 1e4 / omega);
+    row_of_bars(&setup, sizes[s], STRUT_MASS_CONSISTENT, 2 * zeta * 1e4 / omega);
     double expected = 2.7852935634 / (omega * (zeta + sqrt(zeta * zeta - 1)));
-    strut_step_limit limit = limit_of(&scene);
+    strut_step_limit limit = limit_of(&setup);
     if (limit.exact)
       assert_relative(limit.limit, expected, 1e-6);
     else
       assert_within(limit.limit, 0.99 * expected, 1.001 * expected);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 /* Kinetic energy of small motions about the start after many steps, as a factor. */
-static double growth(const strut_scene *scene, const char *method, double step, int64_t steps) {
+static double growth(const strut_setup *setup, const char *method, double step, int64_t steps) {
   motion m;
   double before = 0, after = 0;
-  motion_begin_by(&m, scene, method, step);
-  for (size_t i = 0; i < 2 * scene->node_count; i++) {
-    if (scene->nodes[i / 2].fixed[i % 2]) continue;
+  motion_begin_by(&m, setup, method, step);
+  for (size_t i = 0; i < 2 * setup->scene.node_count; i++) {
+    if (setup->scene.nodes[i / 2].fixed[i % 2]) continue;
     m.state->v[i] = 1e-9 * sin(1.3 * (double)i + 1);
     before += m.state->v[i] * m.state->v[i];
   }
   motion_steps(&m, steps);
-  for (size_t i = 0; i < 2 * scene->node_count; i++) after += m.state->v[i] * m.state->v[i];
+  for (size_t i = 0; i < 2 * setup->scene.node_count; i++) after += m.state->v[i] * m.state->v[i];
   motion_end(&m);
   return after / before;
 }
@@ -244,32 +246,32 @@ static void test_the_limit_is_where_motions_begin_to_grow(void **unused) {
     const strut_integrator *method = strut_integrator_at((size_t)(i / 2));
     int lumped = i % 2;
     if (!method || method->region == STRUT_REGION_ALL) continue;
-    strut_scene scene;
-    strut_scene_init(&scene);
-    scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
-    structure_x_frame(&scene, &frame);
-    for (int j = 0; j < 4; j++) scene.members[j].kind = STRUT_SPRING;
-    strut_step_limit all = limit_of(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    setup.scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+    structure_x_frame(&setup.scene, &frame);
+    for (int j = 0; j < 4; j++) setup.scene.members[j].kind = STRUT_SPRING;
+    strut_step_limit all = limit_of(&setup);
     double limit = strut_step_limit_of_method(&all, method);
-    double below = growth(&scene, method->name, 0.99 * limit, 2000);
-    double above = growth(&scene, method->name, 1.01 * limit, 2000);
+    double below = growth(&setup, method->name, 0.99 * limit, 2000);
+    double above = growth(&setup, method->name, 1.01 * limit, 2000);
     print_message("%s: %.3g below the limit, %.3g above\n", method->name, below, above);
     assert_true(below < 100);
     assert_true(above > 1e4);
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
 }
 
 static void test_the_crawler(void **unused) {
   (void)unused;
-  strut_scene scene;
-  strut_scene_init(&scene);
-  structure_crawler(&scene, 10, 1e-4, 0.1, false);
-  strut_step_limit limit = limit_of(&scene);
+  strut_setup setup;
+  strut_setup_init(&setup);
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  strut_step_limit limit = limit_of(&setup);
   assert_true(limit.exact);
   assert_within(limit.limit, 1.2e-4, 1.45e-4); /* the paper's step of 1e-4 s is just below it */
   assert_within(limit.largest_frequency, 1.95e4, 2.3e4);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 /* Above 60 coordinates the estimate, below all eigenvalues: two copies of a scene tell them apart. */
@@ -277,15 +279,17 @@ static void test_the_estimate_is_within_a_percent(void **unused) {
   (void)unused;
   int compared = 0;
   for (uint64_t seed = 1; seed <= 150; seed++) {
-    strut_scene scene;
-    random_scene(&scene, seed);
-    strut_step_limit exact = limit_of(&scene);
+    strut_setup setup;
+    strut_setup_init(&setup);
+    random_scene(&setup.scene, seed);
+    strut_step_limit exact = limit_of(&setup);
     if (!exact.exact || isinf(exact.limit)) {
-      strut_scene_free(&scene);
+      strut_setup_free(&setup);
       continue;
     }
-    for (int i = 0; i < 61; i++) build_mass(&scene, i, 50, 1); /* free, they only add coordinates */
-    strut_step_limit estimate = limit_of(&scene);
+    for (int i = 0; i < 61; i++)
+      build_mass(&setup.scene, i, 50, 1); /* free, they only add coordinates */
+    strut_step_limit estimate = limit_of(&setup);
     assert_false(estimate.exact);
     for (int region = STRUT_REGION_RK4; region < STRUT_REGIONS; region++) {
       assert_within(estimate.of[region], 0.99 * exact.of[region], 1.002 * exact.of[region]);
@@ -294,7 +298,7 @@ static void test_the_estimate_is_within_a_percent(void **unused) {
                       1.002 * exact.of_implicit[region]);
     }
     compared++;
-    strut_scene_free(&scene);
+    strut_setup_free(&setup);
   }
   assert_true(compared > 50);
 }

@@ -39,10 +39,10 @@ typedef struct log {
   int file; /* -1: none */
 } log_t;
 
-static strut_status no_scene(void *context, const strut_study_value *values, strut_scene *scene,
+static strut_status no_scene(void *context, const strut_study_value *values, strut_setup *setup,
                              strut_error *error) {
   log_t *log = context;
-  (void)scene;
+  (void)setup;
   if (log->file >= 0) {
     int32_t point = (int32_t)values[0].number;
     struct timespec pause = {0, 500000};

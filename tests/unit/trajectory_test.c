@@ -13,24 +13,24 @@
 
 enum { ALL = 63 };
 
-static void crawler(strut_scene *scene, double every) {
-  strut_scene_init(scene);
-  structure_crawler(scene, 10, 1e-4, 0.1, false);
-  motion_experiment(scene, 1e-4, 0.1);
-  scene->experiment.output_every = every;
-  scene->experiment.channels = ALL;
+static void crawler(strut_setup *setup, double every) {
+  strut_setup_init(setup);
+  structure_crawler(&setup->scene, 10, 1e-4, 0.1, false);
+  motion_experiment(setup, 1e-4, 0.1);
+  setup->experiment.output_every = every;
+  setup->experiment.channels = ALL;
 }
 
 /* Runs with a file in the scratch directory where `file` says so, and fills the trajectory. */
-static strut_status record(const strut_scene *scene, unsigned channels, size_t room, bool file,
+static strut_status record(const strut_setup *setup, unsigned channels, size_t room, bool file,
                            strut_trajectory *t) {
-  strut_sink *sinks[2] = {strut_trajectory_sink(t, scene, channels, room)};
+  strut_sink *sinks[2] = {strut_trajectory_sink(t, &setup->scene, channels, room)};
   if (file) sinks[1] = strut_hdf5_create(scratch_path(""), "strut: 1\n");
-  strut_model *model = motion_compile(scene);
+  strut_model *model = motion_compile(&setup->scene);
   strut_run_options options = {.sinks = sinks, .sink_count = file ? 2 : 1, .force = true};
   strut_summary summary = {0};
   strut_error error = {0};
-  strut_status status = strut_simulate(model, &options, &summary, &error);
+  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
   strut_summary_free(&summary);
   strut_model_free(model);
   strut_trajectory_sink_free(sinks[0]);
@@ -65,11 +65,11 @@ static void assert_same_motion(const strut_trajectory *a, const strut_trajectory
 static void test_the_file_gives_back_what_the_run_had(void **unused) {
   (void)unused;
   strut_trajectory taken = {0}, read = {0};
-  strut_scene scene;
+  strut_setup setup;
   strut_error error = {0};
   scratch_make();
-  crawler(&scene, 1e-3);
-  assert_int_equal(record(&scene, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  crawler(&setup, 1e-3);
+  assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
   assert_int_equal(taken.frames, 101);
   assert_int_equal(taken.recorded, 101);
   assert_int_equal(taken.every, 1);
@@ -77,12 +77,12 @@ static void test_the_file_gives_back_what_the_run_had(void **unused) {
   assert_int_equal(taken.contact_node[3], 3);
   assert_near(taken.time[100], 0.1, 1e-12);
   assert_int_equal(
-      strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read, &error),
+      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, &error),
       STRUT_OK);
   assert_same_motion(&taken, &read);
   strut_trajectory_free(&read);
   strut_trajectory_free(&taken);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   scratch_remove();
 }
 
@@ -90,21 +90,21 @@ static void test_the_file_gives_back_what_the_run_had(void **unused) {
 static void test_channels_of_its_own(void **unused) {
   (void)unused;
   strut_trajectory taken = {0}, read = {0};
-  strut_scene scene;
+  strut_setup setup;
   scratch_make();
-  crawler(&scene, 1e-3);
-  scene.experiment.channels = STRUT_CHANNEL_LENGTH;
+  crawler(&setup, 1e-3);
+  setup.experiment.channels = STRUT_CHANNEL_LENGTH;
   unsigned wanted = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_ENERGY;
-  assert_int_equal(record(&scene, wanted, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  assert_int_equal(record(&setup, wanted, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
   assert_true(taken.position && taken.energy && taken.time);
   assert_true(!taken.length && !taken.force && !taken.velocity && !taken.contact);
   assert_int_equal(
-      strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
+      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
       STRUT_OK);
   assert_true(read.length && !read.position && !read.energy);
   strut_trajectory_free(&read);
   strut_trajectory_free(&taken);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   scratch_remove();
 }
 
@@ -130,56 +130,57 @@ static void test_thinned_to_the_room(void **unused) {
   (void)unused;
   static const size_t rooms[] = {200, 1000, 5000, 12345, 19000};
   strut_trajectory all = {0};
-  strut_scene scene;
+  strut_setup setup;
   scratch_make();
-  crawler(&scene, 1e-4);
-  scene.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE;
-  assert_int_equal(record(&scene, 0, STRUT_TRAJECTORY_ROOM, true, &all), STRUT_OK);
+  crawler(&setup, 1e-4);
+  setup.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE;
+  assert_int_equal(record(&setup, 0, STRUT_TRAJECTORY_ROOM, true, &all), STRUT_OK);
   assert_int_equal(all.frames, 1001);
   for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
     strut_trajectory few = {0};
-    assert_int_equal(record(&scene, 0, rooms[i], false, &few), STRUT_OK);
+    assert_int_equal(record(&setup, 0, rooms[i], false, &few), STRUT_OK);
     check_thinned(&few, &all, rooms[i]);
     strut_trajectory_free(&few);
-    assert_int_equal(strut_trajectory_read(scratch_path(""), &scene, rooms[i], &few, NULL),
+    assert_int_equal(strut_trajectory_read(scratch_path(""), &setup.scene, rooms[i], &few, NULL),
                      STRUT_OK);
     check_thinned(&few, &all, rooms[i]);
     strut_trajectory_free(&few);
   }
   strut_trajectory_free(&all);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   scratch_remove();
 }
 
 static void test_a_run_that_diverged_is_marked(void **unused) {
   (void)unused;
   strut_trajectory taken = {0}, read = {0};
-  strut_scene scene;
+  strut_setup setup;
   scratch_make();
-  strut_scene_init(&scene);
-  build_support(&scene, 0, 0);
-  build_mass(&scene, 1.1, 0, 1);
-  build_sized(&scene, STRUT_BAR, 0, 1, 2e5, 1, 0, 1);
-  motion_experiment(&scene, 0.01, 10); /* w dt = 4.5 */
-  scene.experiment.output_every = 0.01;
-  assert_int_equal(record(&scene, 0, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_DIVERGED);
+  strut_setup_init(&setup);
+  build_support(&setup.scene, 0, 0);
+  build_mass(&setup.scene, 1.1, 0, 1);
+  build_sized(&setup.scene, STRUT_BAR, 0, 1, 2e5, 1, 0, 1);
+  motion_experiment(&setup, 0.01, 10); /* w dt = 4.5 */
+  setup.experiment.output_every = 0.01;
+  assert_int_equal(record(&setup, 0, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_DIVERGED);
   assert_int_equal(taken.status, STRUT_DIVERGED);
   assert_true(taken.frames > 1);
   assert_int_equal(
-      strut_trajectory_read(scratch_path(""), &scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
+      strut_trajectory_read(scratch_path(""), &setup.scene, STRUT_TRAJECTORY_ROOM, &read, NULL),
       STRUT_OK);
   assert_same_motion(&taken, &read);
   strut_trajectory_free(&read);
   strut_trajectory_free(&taken);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   scratch_remove();
 }
 
-static void refused(const strut_scene *scene, const char *directory, const char *why) {
+static void refused(const strut_setup *setup, const char *directory, const char *why) {
   strut_trajectory t = {0};
   strut_error error = {0};
-  assert_int_equal(strut_trajectory_read(directory, scene, STRUT_TRAJECTORY_ROOM, &t, &error),
-                   STRUT_FILE_TROUBLE);
+  assert_int_equal(
+      strut_trajectory_read(directory, &setup->scene, STRUT_TRAJECTORY_ROOM, &t, &error),
+      STRUT_FILE_TROUBLE);
   if (!strstr(error.message, why)) fail_msg("'%s' does not say '%s'", error.message, why);
   assert_non_null(strstr(error.message, "trajectory.h5"));
   strut_trajectory_free(&t);
@@ -188,47 +189,48 @@ static void refused(const strut_scene *scene, const char *directory, const char 
 static void test_refusals(void **unused) {
   (void)unused;
   strut_trajectory taken = {0};
-  strut_scene scene;
+  strut_setup setup;
   scratch_make();
-  crawler(&scene, 1e-3);
-  refused(&scene, scratch_path("nowhere"), "No such file");
-  assert_int_equal(record(&scene, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
-  const char *name = scene.nodes[2].name;
-  scene.nodes[2].name = "another";
-  refused(&scene, scratch_path(""), "another structure");
-  scene.nodes[2].name = name;
-  name = scene.members[8].name;
-  scene.members[8].name = "another";
-  refused(&scene, scratch_path(""), "another structure");
-  scene.members[8].name = name;
-  scene.contact_count--;
-  refused(&scene, scratch_path(""), "another structure");
-  scene.contact_count++;
-  scene.node_count--;
-  refused(&scene, scratch_path(""), "another structure");
-  scene.node_count++;
+  crawler(&setup, 1e-3);
+  refused(&setup, scratch_path("nowhere"), "No such file");
+  assert_int_equal(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken), STRUT_OK);
+  const char *name = setup.scene.nodes[2].name;
+  setup.scene.nodes[2].name = "another";
+  refused(&setup, scratch_path(""), "another structure");
+  setup.scene.nodes[2].name = name;
+  name = setup.scene.members[8].name;
+  setup.scene.members[8].name = "another";
+  refused(&setup, scratch_path(""), "another structure");
+  setup.scene.members[8].name = name;
+  setup.scene.contact_count--;
+  refused(&setup, scratch_path(""), "another structure");
+  setup.scene.contact_count++;
+  setup.scene.node_count--;
+  refused(&setup, scratch_path(""), "another structure");
+  setup.scene.node_count++;
   FILE *file = fopen(scratch_path("trajectory.h5"), "r+b"); /* its first bytes */
   assert_true(file && fputs("this is no HDF5 file", file) > 0 && fclose(file) == 0);
-  refused(&scene, scratch_path(""), "not an HDF5 file");
+  refused(&setup, scratch_path(""), "not an HDF5 file");
   strut_trajectory_free(&taken);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   scratch_remove();
 }
 
 static void test_every_allocation_may_fail(void **unused) {
   (void)unused;
-  strut_scene scene;
-  crawler(&scene, 1e-4);
-  strut_model *model = motion_compile(&scene);
+  strut_setup setup;
+  crawler(&setup, 1e-4);
+  strut_model *model = motion_compile(&setup.scene);
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status != STRUT_OK; n++) {
     strut_trajectory t = {0};
     strut_summary summary = {0};
     strut_error error = {0};
     strut_fail_allocation_after(n);
-    strut_sink *sink = strut_trajectory_sink(&t, &scene, ALL, 20000);
+    strut_sink *sink = strut_trajectory_sink(&t, &setup.scene, ALL, 20000);
     strut_run_options options = {.sinks = &sink, .sink_count = 1, .force = true};
-    status = sink ? strut_simulate(model, &options, &summary, &error) : STRUT_NO_MEMORY;
+    status = sink ? strut_simulate(model, &setup.experiment, &options, &summary, &error)
+                  : STRUT_NO_MEMORY;
     strut_fail_allocation_after(-1);
     if (status != STRUT_OK) assert_int_equal(status, STRUT_NO_MEMORY);
     strut_summary_free(&summary);
@@ -237,7 +239,7 @@ static void test_every_allocation_may_fail(void **unused) {
     assert_true(n < 1000);
   }
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {

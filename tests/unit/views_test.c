@@ -32,7 +32,7 @@ static const char text[] =
     "ground: {stiffness: 1000}\n";
 
 typedef struct things {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model;
   strut_trajectory motion;
   double time[FRAMES], position[FRAMES][6], force[FRAMES][2], contact[FRAMES][6];
@@ -43,11 +43,11 @@ typedef struct things {
 static void make(things *t) {
   strut_diagnostics diagnostics = {0};
   memset(t, 0, sizeof *t);
-  assert_int_equal(strut_scene_read(&t->scene, "views", text, sizeof text - 1, NULL, 0,
+  assert_int_equal(strut_setup_read(&t->setup, "views", text, sizeof text - 1, NULL, 0,
                                     STRUT_FOR_ANY, &diagnostics),
                    STRUT_OK);
   strut_diagnostics_free(&diagnostics);
-  assert_int_equal(strut_model_compile(&t->scene, &t->model, NULL), STRUT_OK);
+  assert_int_equal(strut_model_compile(&t->setup.scene, &t->model, NULL), STRUT_OK);
   for (int i = 0; i < FRAMES; i++) {
     t->time[i] = 0.05 * i;
     for (int k = 0; k < 6; k++) t->position[i][k] = t->model->start[k] + 0.1 * i;
@@ -70,7 +70,7 @@ static void make(things *t) {
 
 static void drop(things *t) {
   strut_model_free(t->model);
-  strut_scene_free(&t->scene);
+  strut_setup_free(&t->setup);
 }
 
 static void test_sketch_without_memory(void **unused) {

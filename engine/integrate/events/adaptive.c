@@ -231,8 +231,9 @@ static void adaptive_trial(const strut_model *model, strut_state *state, strut_e
 static const strut_step_formula stepper = {
     .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true};
 
-static void *create(const strut_model *model, strut_state *state) {
-  return strut_event_stepper_create(model, state, &stepper);
+static void *create(const strut_model *model, strut_state *state,
+                    const strut_integrator_settings *settings) {
+  return strut_event_stepper_create(model, state, &stepper, settings);
 }
 
 const strut_integrator strut_integrator_adaptive = {

@@ -84,6 +84,7 @@ static strut_status find_bodies(const strut_model *model, strut_event_stepper *l
 }
 
 strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
+                                         const strut_integrator_settings *e,
                                          strut_event_stepper *l) {
   const strut_contact_table *c = &model->contacts;
   double *x = l->next->q, *y = l->next->v;
@@ -97,8 +98,8 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
     fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
   }
-  const strut_experiment *e = &model->scene->experiment;
   double wanted = ceil(fastest * e->step / e->refine_rate);
+  l->wanted_step = e->step;
   l->refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
   l->refine_time = e->refine_time;
   l->refine_memory = e->refine_memory;

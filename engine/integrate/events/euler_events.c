@@ -26,9 +26,10 @@ static void euler_events_trial(const strut_model *model, strut_state *state, str
 
 static const strut_step_formula stepper = {.trial = euler_events_trial};
 
-static void *create(const strut_model *model, strut_state *state) {
-  strut_event_stepper *l = strut_event_stepper_create(model, state, &stepper);
-  if (l && !(model->scene->experiment.refine > 0.0)) l->refine = 1.0;
+static void *create(const strut_model *model, strut_state *state,
+                    const strut_integrator_settings *settings) {
+  strut_event_stepper *l = strut_event_stepper_create(model, state, &stepper, settings);
+  if (l && !(settings->refine > 0.0)) l->refine = 1.0;
   return l;
 }
 

@@ -23,7 +23,7 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     if (l->pulling[i]) return end->tension[i];
     /* It pulls where stretch and tension are positive; the lesser decides, both in newtons. */
     double k = model->members.stiffness[l->cable[i]], d = model->members.damping[l->cable[i]];
-    double elastic = (k > 0.0 ? k : d / model->scene->experiment.step) * end->stretch[i];
+    double elastic = (k > 0.0 ? k : d / l->wanted_step) * end->stretch[i];
     return elastic < end->tension[i] ? -elastic : -end->tension[i];
   }
   const strut_contact_entry *e = &model->contacts.entry[i];

@@ -70,17 +70,18 @@ static bool make_held(const strut_model *model, strut_state *state) {
 }
 
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
-                                 const strut_step_formula *stepper) {
+                                 const strut_step_formula *stepper,
+                                 const strut_integrator_settings *settings) {
   strut_event_stepper *l = strut_arena_allocate(&state->arena, 1, sizeof *l);
   if (!l) return NULL;
   l->stepper = stepper;
   l->now = &l->end[0], l->next = &l->end[1];
   l->now->q = state->q, l->now->v = state->v;
-  l->tolerance = model->scene->experiment.tolerance;
+  l->tolerance = settings->tolerance;
   if (!make_end(model, &state->arena, l->now, true) ||
       !make_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
       !list_cables(model, state, l) || !make_held(model, state) ||
-      strut_event_stepper_prepare(model, state, l))
+      strut_event_stepper_prepare(model, state, settings, l))
     return NULL;
   return l;
 }

@@ -10,7 +10,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 
-#include "engine/forces/forces.h"
+#include "engine/integrate/integrator.h"
 
 /** Modes of a contact. u: sliding speed; N: normal force; s: the side, +-1. */
 typedef enum strut_contact_mode {
@@ -112,6 +112,7 @@ struct strut_event_stepper {
   int32_t *cable, cable_count; /* members with a slack test */
   uint8_t *pulling;            /* (cables) */
   double *scatter;             /* (length) scratch, zero between uses */
+  double wanted_step;          /* of the settings [s] */
   double refine, refine_time, refine_memory; /* [1], [s], [1] */
   double *settling_time;               /* (contacts) relaxation time of a closed contact [s] */
   double longest;                      /* adaptive: the longest step, a step of the grid [s] */
@@ -131,7 +132,8 @@ struct strut_event_stepper {
 
 /** Workspace for a method with `stepper`; NULL: out of memory. */
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
-                                 const strut_step_formula *stepper);
+                                 const strut_step_formula *stepper,
+                                 const strut_integrator_settings *settings);
 /** Makes the modes anew from q and v. */
 void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
                                  double dt);
@@ -146,6 +148,7 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
 
 /** Responses, settling times, refinement. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
+                                         const strut_integrator_settings *settings,
                                          strut_event_stepper *l);
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l);

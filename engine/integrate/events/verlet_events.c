@@ -134,8 +134,9 @@ static const strut_step_formula stepper = {.trial = verlet_events_trial,
                                            .predict = predict,
                                            .advance_until_event = verlet_advance_until_event};
 
-static void *create(const strut_model *model, strut_state *state) {
-  return strut_event_stepper_create(model, state, &stepper);
+static void *create(const strut_model *model, strut_state *state,
+                    const strut_integrator_settings *settings) {
+  return strut_event_stepper_create(model, state, &stepper, settings);
 }
 
 const strut_integrator strut_integrator_verlet_events = {

@@ -33,8 +33,8 @@ unsigned strut_run_figure_channels(strut_run_view view) {
 
 strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_model *model,
                                     strut_error *error) {
-  strut_span span = strut_scene_span(model->scene);
-  double every = fmax(span.record_every, model->scene->experiment.step), slack = 0.5 * every;
+  strut_span span = strut_experiment_span(figure->experiment, model->scene);
+  double every = fmax(span.record_every, figure->experiment->step), slack = 0.5 * every;
   double from = span.record_start - slack, to = span.duration + slack;
   for (size_t i = 0; i < figure->time_count; i++)
     if (!(figure->times[i] >= from && figure->times[i] <= to))
@@ -82,7 +82,7 @@ void strut_run_count_frames(strut_run_scene *run) {
   const strut_trajectory *m = run->motion;
   while (run->frames < m->frames && is_shape(run, run->frames)) run->frames++;
   run->force_limit = largest(m->force, run->frames * m->member_count);
-  double period = strut_scene_span(run->model->scene).period;
+  double period = strut_experiment_span(run->figure->experiment, run->model->scene).period;
   double all = run->frames ? strut_run_time_from(run, 0) : 0;
   bool fine = (double)(run->frames - 1) * period >= LEAST_SAMPLES * all * (1 - 1e-9);
   if (run->frames > 1 && fine && period > 0) run->period = period;
@@ -134,7 +134,7 @@ size_t strut_run_since(const strut_run_scene *run, double duration) {
 
 double strut_run_measured(const strut_run_scene *run, size_t frame, int axis) {
   const double *q = strut_run_positions(run, frame);
-  int32_t node = run->model->scene->experiment.measure_node;
+  int32_t node = run->figure->experiment->measure_node;
   if (node >= 0) return q[2 * node + axis];
   double sum = 0, mass = 0;
   for (int32_t i = 0; i < run->model->node_count; i++) {
@@ -145,7 +145,7 @@ double strut_run_measured(const strut_run_scene *run, size_t frame, int axis) {
 }
 
 const char *strut_run_measured_name(const strut_run_scene *run) {
-  int32_t node = run->model->scene->experiment.measure_node;
+  int32_t node = run->figure->experiment->measure_node;
   return node >= 0 ? run->model->scene->nodes[node].name : "centre of mass";
 }
 

@@ -9,6 +9,7 @@
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 typedef enum strut_run_view {
   STRUT_RUN_OVERVIEW,  /* the last shape, the paths to it, and curves of the last periods */
@@ -18,6 +19,7 @@ typedef enum strut_run_view {
 } strut_run_view;
 
 typedef struct strut_run_figure {
+  const strut_experiment *experiment; /* of the run */
   strut_run_view view;
   const char *title;   /* NULL: the scene's name */
   double width;        /* [pt] */

@@ -100,7 +100,10 @@ static void find_scales(making *m) {
   const strut_trajectory *motion = m->motion;
   const double *time = motion->time;
   size_t members = motion->member_count, last = m->shown - 1;
-  *s = (strut_view_frame){.model = m->model, .camera = &m->camera, .shown = m->made->shown};
+  *s = (strut_view_frame){.model = m->model,
+                          .camera = &m->camera,
+                          .shown = m->made->shown,
+                          .measured_node = m->film->experiment->measure_node};
   strut_view_frame_fit(s, (strut_box){0, 0, PAGE_WIDTH, PAGE_WIDTH * HEIGHT / WIDTH});
   strut_view_frame_speed(s, m->film->speed);
   if (m->moment.force) s->most_force = largest(motion->force, members * m->shown);
@@ -109,10 +112,10 @@ static void find_scales(making *m) {
   s->end_time = time[last];
   m->moment.frame = 0;
   strut_moment_at(&m->moment, motion, m->shown, time[last]);
-  double end = strut_moment_travel(&m->moment, m->model);
+  double end = strut_moment_travel(&m->moment, m->model, s->measured_node);
   m->moment.frame = 0;
   strut_moment_at(&m->moment, motion, m->shown, time[0]);
-  s->travelled_from = strut_moment_travel(&m->moment, m->model);
+  s->travelled_from = strut_moment_travel(&m->moment, m->model, s->measured_node);
   if (time[last] > time[0]) s->mean_velocity = (end - s->travelled_from) / (time[last] - time[0]);
   s->travels = true;
   for (size_t i = 0; i < m->model->scene->node_count; i++)

@@ -10,6 +10,7 @@
 
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
+#include "engine/scene/experiment.h"
 
 /** Channels that a film needs from strut_trajectory_sink. */
 #define STRUT_FILM_CHANNELS                                                                        \
@@ -19,6 +20,7 @@
 enum { STRUT_FILM_LONGEST = 1800, STRUT_FILM_FPS = 30, STRUT_FILM_GIF_FPS = 25 };
 
 typedef struct strut_film {
+  const strut_experiment *experiment; /* of the run: whose travel is shown */
   const char *path; /* .mp4, .webm (1280 x 720 pixels) or .gif (640 x 360); NULL: no film */
   double speed;     /* 1: real time, 0.1: ten times slower */
   double fps;       /* frames per second; 0: default of the format */

@@ -126,8 +126,7 @@ void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_
     interpolate_rows(moment->contact, motion->contact, 2 * motion->contact_count, i, j, part);
 }
 
-double strut_moment_travel(const strut_moment *moment, const strut_model *model) {
-  int32_t node = model->scene->experiment.measure_node;
+double strut_moment_travel(const strut_moment *moment, const strut_model *model, int32_t node) {
   double sum = 0, weight = 0;
   if (node >= 0) return moment->q[2 * node];
   for (int32_t i = 0; i < model->node_count; i++) {
@@ -284,7 +283,7 @@ static void draw_words(const strut_view_frame *s, strut_canvas *canvas,
   strut_draw_text(canvas, page.width - EDGE, EDGE + 12, s->speed,
                   (strut_font){.size = 8.5, .across = 1, .colour = grey});
   if (!s->travels) return;
-  double moved = strut_moment_travel(moment, s->model) - s->travelled_from;
+  double moved = strut_moment_travel(moment, s->model, s->measured_node) - s->travelled_from;
   if (fabs(moved) < 1e-9 * s->model->size) moved = 0;
   snprintf(text, sizeof text, "moved %s", strut_drawn_quantity(moved, DIGITS, "m").text);
   strut_draw_text(canvas, EDGE, page.height - 36, text, (strut_font){.size = 9});

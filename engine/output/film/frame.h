@@ -42,7 +42,7 @@ bool strut_moment_create(strut_moment *moment, const strut_model *model,
 void strut_moment_at(strut_moment *moment, const strut_trajectory *motion, size_t frames,
                      double time);
 /** x of the measured point, a node or the centre of mass [m]. */
-double strut_moment_travel(const strut_moment *moment, const strut_model *model);
+double strut_moment_travel(const strut_moment *moment, const strut_model *model, int32_t node);
 
 /** Shared by the pictures of a film. */
 typedef struct strut_view_frame {
@@ -53,6 +53,7 @@ typedef struct strut_view_frame {
   double most_contact; /* largest contact force [N] */
   double step;         /* between marks of the ground [m] */
   double start_time, end_time, travelled_from; /* [s], [s], [m] */
+  int32_t measured_node;                       /* that travels; -1: the centre of mass */
   double mean_velocity;                        /* [m/s] */
   double shown;                                /* time between two pictures [s] */
   bool travels;                                /* free in x: its travel is shown */

@@ -223,8 +223,8 @@ static void add_ground(strut_json *json, const strut_scene *scene) {
 }
 
 /* Parameters as they were used, with the method and step of a run. */
-static void add_parameters(strut_json *json, const strut_scene *scene, bool run) {
-  const strut_experiment *experiment = &scene->experiment;
+static void add_parameters(strut_json *json, const strut_scene *scene,
+                           const strut_experiment *experiment, bool run) {
   struct cJSON *rows = strut_json_array(json, json->root, "parameters");
   for (size_t i = 0; i < scene->parameter_count; i++)
     add_row(json, rows, scene->parameters[i].name, scene->parameters[i].text);
@@ -272,9 +272,9 @@ static char *still_data(const strut_page *page) {
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);
   if (!add_equilibria(&json, page)) json.failed = true;
-  add_parameters(&json, scene, page->motion != NULL);
+  add_parameters(&json, scene, page->experiment, page->motion != NULL);
   struct cJSON *rows = strut_json_array(&json, json.root, "summary");
-  strut_summary_rows(&json, rows, page->summary, scene);
+  strut_summary_rows(&json, rows, page->summary, page->experiment, scene);
   if (!add_yaml(&json, page->yaml)) json.failed = true;
   strut_json_text(&json, json.root, "study", NULL);
   return strut_json_end(&json);

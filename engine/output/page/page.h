@@ -39,11 +39,13 @@
 
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
+#include "engine/scene/experiment.h"
 #include "engine/statics/equilibria/equilibria.h"
 
 /** What a page shows. Nothing is owned. */
 typedef struct strut_page {
   const strut_model *model;
+  const strut_experiment *experiment; /* that `motion` is of */
   const strut_trajectory *motion;     /* NULL: nothing moves */
   const strut_equilibria *equilibria; /* NULL: none are shown */
   const char *remark;                 /* why no equilibria are shown, or NULL */

@@ -231,7 +231,7 @@ static void find_rows(motion *m) {
 
 static double time_quantum(const motion *m) {
   const strut_rows *time = &m->rows[TIME];
-  double step = m->page->model->scene->experiment.step;
+  double step = m->page->experiment->step;
   if (strut_rows_multiples(time, step)) return step;
   double span = time->values[m->frames - 1] - time->values[0];
   return strut_round_quantum(TIME_QUANTUM * span, strut_rows_largest(time));
@@ -332,7 +332,7 @@ static void add_head(strut_buffer *buffer, const motion *m) {
   strut_buffer_add(buffer, "{\"frames\":%zu,\"recorded\":%zu,\"every\":%zu",
                    strut_rows_taken(&m->rows[TIME]), t->recorded, t->every * m->rows[TIME].every);
   strut_buffer_add(buffer, ",\"status\":\"%s\",\"track\":", strut_status_text(status));
-  int32_t track = m->page->model->scene->experiment.measure_node;
+  int32_t track = m->page->experiment->measure_node;
   if (track >= 0)
     strut_buffer_add(buffer, "%d", (int)track);
   else

@@ -14,7 +14,8 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-static void add_head(strut_buffer *table, const strut_form *form, const strut_scene *scene) {
+static void add_head(strut_buffer *table, const strut_form *form, const strut_setup *setup) {
+  const strut_scene *scene = &setup->scene;
   strut_buffer_add(table, "%s%sform by %s\n", scene->name, *scene->name ? ": " : "",
                    strut_form_source_name(form->from));
   strut_buffer_add(table, "  displacement      at most %s from the drawn positions\n",
@@ -27,8 +28,8 @@ static void add_head(strut_buffer *table, const strut_form *form, const strut_sc
   strut_buffer_add(table, "  residual force    %s at the start\n", in(form->residual, "N").text);
   if (form->run_added)
     strut_buffer_add(table, "  run added         %s with a step of %s\n",
-                     in(scene->experiment.duration, "s").text,
-                     in(scene->experiment.step, "s").text);
+                     in(setup->experiment.duration, "s").text,
+                     in(setup->experiment.step, "s").text);
   if (form->massless) strut_buffer_add(table, "  no run            a free node has no mass\n");
   if (form->driven)
     strut_buffer_add(table, "  drives            at rest here; running the model moves them\n");
@@ -51,11 +52,12 @@ static pose pose_of(const strut_scene *scene, size_t j) {
   return p;
 }
 
-char *strut_form_table(const strut_form *form, const strut_scene *scene) {
+char *strut_form_table(const strut_form *form, const strut_setup *setup) {
+  const strut_scene *scene = &setup->scene;
   static const char *const kinds[] = {"bar", "spring", "cable"};
   strut_buffer table = {0};
   strut_c_locale locale = strut_c_locale_enter();
-  add_head(&table, form, scene);
+  add_head(&table, form, setup);
   strut_buffer_add(&table, "\n  %-12s %-6s %14s %14s %14s %14s\n", "member", "kind", "length",
                    "rest length", "force", "force density");
   for (size_t j = 0; j < scene->member_count && j < MOST_MEMBERS; j++) {

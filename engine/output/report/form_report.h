@@ -9,6 +9,6 @@
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. The scene is the one found. */
 STRUT_API char *strut_form_json(const strut_form *form, const strut_scene *scene);
-STRUT_API char *strut_form_table(const strut_form *form, const strut_scene *scene);
+STRUT_API char *strut_form_table(const strut_form *form, const strut_setup *setup);
 
 #endif

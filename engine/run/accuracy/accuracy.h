@@ -8,26 +8,29 @@
 #include "engine/run/simulate.h"
 
 /**
- * Runs the scene's experiment so that the measured velocity is within experiment.accuracy, relative
+ * Runs an experiment so that the measured velocity is within experiment.accuracy, relative
  * to it or, where it is small, to a thousandth of the structure's size per period (or per run).
  *
- * The velocity is the mean over the scene's window, or, with experiment.steady, that of the steady
+ * The velocity is the mean over the experiment's window, or, with experiment.steady, that of the steady
  * motion. A run by periods whose motion becomes steady long before its window is made with the
  * cheapest method, and its orbit is then corrected by an accurate one (orbit.h). Any other run is made
  * with the cheapest method and with one of error control, then with ever smaller tolerances, until two
  * agree; rigid bars with ever smaller steps. Where there is no ground and stiff members hold explicit
  * steps far below the motion, implicit midpoint comes first (accuracy_midpoint.c). summary->accuracy says what was done, why, what it cost
- * to check, and the error to expect; `kept` is false where the accuracy was not reached. The scene's
- * own method and step are not used. Results and errors as strut_simulate.
+ * to check, and the error to expect; `kept` is false where the accuracy was not reached. The
+ * experiment's own method and step are not used. Results and errors as strut_simulate.
  */
-STRUT_API strut_status strut_simulate_accurately(const strut_scene *scene,
+STRUT_API strut_status strut_simulate_accurately(const strut_model *model,
+                                                 const strut_experiment *experiment,
                                                  const strut_run_options *options,
                                                  strut_summary *summary, strut_error *error);
 
 /* accuracy_midpoint.c, accuracy_orbit.c, accuracy_plain.c: the ways. Share what follows. */
 
 typedef struct strut_accuracy {
-  const strut_scene *scene;
+  const strut_model *model;    /* of the settled start */
+  const strut_scene *scene;    /* model->scene */
+  strut_experiment experiment; /* wanted, but that it does not settle */
   const strut_run_options *options;
   strut_experiment cheap; /* the cheapest method with the largest step it should take */
   double wanted, scale;   /* [1], [m/s] */

@@ -103,7 +103,7 @@ static strut_status check_tolerance(strut_orbit_solve *w) {
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
   double size = strut_accuracy_scale(a, w->orbit.velocity), half = 0.5 * a->wanted * size;
   const strut_orbit_solve_cost before = {w->cheap.evaluations, w->cheap.events, w->cheap.applied};
-  strut_status status = strut_period_map_create(a->scene, &finer, w->cheap.repeats, &map, a->error);
+  strut_status status = strut_period_map_create(a->model, &finer, w->cheap.repeats, &map, a->error);
   if (status) return status;
   map.interrupt = w->cheap.interrupt, map.time = w->cheap.time;
   map.most_evaluations = strut_accuracy_left(a);

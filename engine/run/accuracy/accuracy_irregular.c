@@ -30,7 +30,7 @@ static void answer(strut_orbit_solve *w, strut_orbit_solve_end end, double error
  * are fewer of them.
  */
 static double scatter(const strut_orbit_solve *w, double interval, double periods) {
-  const strut_experiment *e = &w->a->scene->experiment;
+  const strut_experiment *e = &w->a->experiment;
   if (e->steady.wanted || !(e->measure_last < periods)) return interval;
   return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
 }

@@ -52,7 +52,7 @@ typedef struct ladder {
   int means;
   double expected; /* error of the latest run, relative */
   bool same_motion, kept, spent;
-  strut_model *model;
+  const strut_model *model;
   strut_arena arena;
 } ladder;
 
@@ -61,7 +61,7 @@ typedef struct ladder {
  * largest of some parts of the run that meets the window's start; `*meets` is false where none does.
  */
 static double unit_of(const strut_accuracy *a, bool *meets) {
-  strut_span span = strut_scene_span(a->scene);
+  strut_span span = strut_experiment_span(&a->experiment, a->scene);
   *meets = true;
   if (span.period > 0.0) {
     double phase = span.window_start / span.period;
@@ -94,7 +94,7 @@ static strut_experiment experiment_of(const ladder *l, int k) {
     e.tolerance = fmin(1e-4, 1e-2 * a->wanted) * pow(FINER_TOLERANCE, k - 1);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance);
   }
-  strut_span span = strut_scene_span(a->scene);
+  strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double kept = (MOST_MOMENTS - 1) * l->moment;
   e.output_every = l->moment;
   e.output_last = kept < span.duration ? kept / (span.period > 0.0 ? span.period : 1.0) : 0.0;
@@ -108,7 +108,7 @@ static double size_of(const ladder *l, double velocity) {
 /* What quantity i may be off by [its unit]; relative wishes are to its size, or to a thousandth of what it is
    made of where that is larger. */
 static double allowed_of(const ladder *l, const strut_measured *m, size_t i) {
-  const strut_quantity_definition *d = &l->a->scene->experiment.quantities[i];
+  const strut_quantity_definition *d = &l->a->experiment.quantities[i];
   if (d->accuracy_absolute > 0.0) return d->accuracy_absolute;
   double part = d->accuracy > 0.0 ? d->accuracy : l->a->wanted;
   return part * fmax(fabs(m->value), STANDING_QUANTITY * m->scale);
@@ -164,7 +164,8 @@ static strut_status climb(ladder *l) {
   l->apart = l->distance = HUGE_VAL;
   if (status && status != STRUT_DIVERGED) return status;
   if (status || l->runs == 1 || l->before->s.status) return STRUT_OK;
-  double period = next->e.steady.wanted ? strut_scene_span(l->a->scene).period : 0.0;
+  double period =
+      next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
   l->apart = differ(l, &next->s, &l->before->s);
   l->distance = strut_track_distance(&next->track, &l->before->track, period);
   if (l->runs > 1 && l->means < MOST_RUNS) l->mean[l->means++] = next->s.velocity;
@@ -241,8 +242,8 @@ static bool may_go_on(const ladder *l) {
 
 static strut_status create(strut_accuracy *a, ladder *l) {
   bool meets = true;
-  strut_status status = strut_model_compile(a->scene, &l->model, a->error);
-  if (status) return status;
+  strut_status status = STRUT_OK;
+  l->model = a->model;
   l->unit = unit_of(a, &meets);
   l->moment = l->unit / (STEPS_OF_PERIOD / STEPS_OF_MOMENT);
   double signals = strut_accuracy_signal_time(a->scene);
@@ -252,7 +253,7 @@ static strut_status create(strut_accuracy *a, ladder *l) {
   size_t moments = room < 2.0 ? 2 : room < MOST_MOMENTS ? (size_t)room : MOST_MOMENTS;
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
-  size_t quantities = a->scene->experiment.quantity_count;
+  size_t quantities = a->experiment.quantity_count;
   if (!status && !(l->difference = strut_arena_allocate(&l->arena, quantities, sizeof(double))))
     status = STRUT_NO_MEMORY;
   return status ? strut_fail(a->error, status, "out of memory") : STRUT_OK;
@@ -346,8 +347,8 @@ static strut_status answer(ladder *l) {
   strut_experiment e = l->now->e;
   strut_accuracy_begin_phase(a, "recording the answer");
   a->allowed = INT64_MAX; /* as much as the same run took before */
-  e.output_every = a->scene->experiment.output_every;
-  e.output_last = a->scene->experiment.output_last;
+  e.output_every = a->experiment.output_every;
+  e.output_last = a->experiment.output_last;
   return strut_accuracy_run(a, &e, a->options, a->summary);
 }
 
@@ -364,7 +365,6 @@ strut_status strut_accuracy_by_repetition(strut_accuracy *a) {
   if (!status) status = answer(&l);
   if (!status) tell(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);
-  strut_model_free(l.model);
   strut_arena_free(&l.arena);
   return status;
 }

@@ -98,12 +98,12 @@ double strut_accuracy_signal_time(const strut_scene *scene) {
 }
 
 /* The first step: with the window's begin on the grid where that can be, else between two points. */
-static double first_step(const strut_scene *scene, double cheap_step) {
-  strut_span span = strut_scene_span(scene);
+static double first_step(const strut_accuracy *a) {
+  strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = IN_SIGNAL * unit / strut_accuracy_signal_time(scene);
+  double signals = IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene);
   double least = fmax(span.period > 0.0 ? IN_PERIOD : IN_RUN, ceil(signals));
-  if (!(unit / least > cheap_step)) return 0.0;
+  if (!(unit / least > a->cheap.step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
     double at = span.window_start / unit * n;
     if (fabs(at - round(at)) < 1e-9 * n) return unit / n;
@@ -139,7 +139,7 @@ static double apart(const halving *h) {
 /* One more run, with half the step if it is not the first. *kept: the two last agree. */
 static strut_status run_finer(halving *h, bool *kept) {
   strut_accuracy *a = h->a;
-  strut_span span = strut_scene_span(a->scene);
+  strut_span span = strut_experiment_span(&a->experiment, a->scene);
   strut_sink sink = {&h->watch, begin_watch, watch_rows, end_watch, STRUT_CHANNEL_VELOCITY};
   strut_sink *sinks[] = {&sink};
   strut_run_options quiet = *a->options;
@@ -191,8 +191,8 @@ static strut_status answer(halving *h) {
     h->now = (strut_summary){0};
     return STRUT_OK;
   }
-  h->e.output_every = a->scene->experiment.output_every;
-  h->e.output_last = a->scene->experiment.output_last;
+  h->e.output_every = a->experiment.output_every;
+  h->e.output_last = a->experiment.output_last;
   return strut_accuracy_run(a, &h->e, a->options, a->summary);
 }
 
@@ -208,7 +208,7 @@ static double dearer(const strut_model *model) {
 
 static strut_status halve_until_kept(halving *h, bool *done) {
   strut_status status = STRUT_OK;
-  strut_span span = strut_scene_span(h->a->scene);
+  strut_span span = strut_experiment_span(&h->a->experiment, h->a->scene);
   double mostly =
       span.period > 0.0 ? fmin(span.duration, MOST_PERIODS * span.period) : span.duration;
   double explicit_evaluations = mostly / h->a->cheap.step;
@@ -227,16 +227,15 @@ static strut_status halve_until_kept(halving *h, bool *done) {
 strut_status strut_accuracy_by_midpoint(strut_accuracy *a, bool *done) {
   const strut_scene *scene = a->scene;
   halving h = {.a = a, .e = a->cheap, .change = HUGE_VAL, .moved = HUGE_VAL};
-  strut_model *model = NULL;
   *done = false;
   h.e.integrator = strut_integrator_for(STRUT_ROLE_STIFF)->name;
-  h.e.step = first_step(scene, a->cheap.step);
-  bool fits = scene->contact_count == 0 && !a->halving && !scene->settle.wanted &&
-              !scene->experiment.steady.wanted && !jumps(scene) && h.e.step > 0.0;
+  h.e.step = first_step(a);
+  bool fits = scene->contact_count == 0 && !a->halving && !a->experiment.steady.wanted &&
+              !jumps(scene) && h.e.step > 0.0;
   if (!fits) return STRUT_OK;
-  strut_status status = strut_model_compile(scene, &model, a->error);
+  strut_status status = STRUT_OK;
   size_t both = 2 * scene->node_count;
-  h.watch.model = model;
+  h.watch.model = a->model;
   for (int k = 0; k < 2 && !status; k++)
     if (!(h.watch.before[k] = strut_arena_allocate(&h.arena, both, sizeof(double))))
       status = strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
@@ -244,6 +243,5 @@ strut_status strut_accuracy_by_midpoint(strut_accuracy *a, bool *done) {
   strut_summary_free(&h.now);
   strut_summary_free(&h.before);
   strut_arena_free(&h.arena);
-  strut_model_free(model);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }

@@ -48,13 +48,10 @@ static strut_status allocate(strut_orbit_solve *w, const strut_model *model) {
  */
 static strut_status run_cheap(strut_orbit_solve *w, bool *steady) {
   strut_accuracy *a = w->a;
-  strut_model *model = NULL;
   double periods = strut_accuracy_periods(a), first = fmin(FIRST, periods);
-  strut_status status = strut_model_compile(a->scene, &model, a->error);
-  if (!status) status = allocate(w, model);
+  strut_status status = allocate(w, a->model);
   /* without ground transients may well be slow, with it motions may be irregular */
-  bool may_be_slow = !status && model->contacts.count == 0;
-  strut_model_free(model);
+  bool may_be_slow = a->model->contacts.count == 0;
   if (status) return status;
   strut_accuracy_begin_phase(a, "waiting for steady motion");
   status =
@@ -88,10 +85,10 @@ static strut_status make_maps(strut_orbit_solve *w, int32_t repeats) {
   w->accurate = a->cheap;
   w->accurate.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
   w->accurate.tolerance = fmin(2.5e-6, fmax(1e-12, a->wanted * STRUT_TOLERANCE_PER_ERROR));
-  w->accurate.step = strut_scene_span(a->scene).period / 50.0;
-  strut_status status = strut_period_map_create(a->scene, &a->cheap, repeats, &w->cheap, a->error);
+  w->accurate.step = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
+  strut_status status = strut_period_map_create(a->model, &a->cheap, repeats, &w->cheap, a->error);
   if (!status)
-    status = strut_period_map_create(a->scene, &w->accurate, repeats, &w->fine, a->error);
+    status = strut_period_map_create(a->model, &w->accurate, repeats, &w->fine, a->error);
   if (status) return status;
   w->cheap.interrupt = w->fine.interrupt = a->options->interrupt;
   w->cheap.most_evaluations = w->fine.most_evaluations = strut_accuracy_left(a);
@@ -260,7 +257,7 @@ static strut_status find_orbit(strut_orbit_solve *w, bool steady) {
 static bool answers(const strut_orbit_solve *w) {
   const strut_accuracy *a = w->a;
   strut_steady_summary steady = w->last.steady;
-  if (a->scene->experiment.steady.wanted) return true;
+  if (a->experiment.steady.wanted) return true;
   double periods = (double)(w->run.steady.periods + steady.periods);
   if (periods > 2.0 * strut_accuracy_periods(a)) return false;
   steady.periods = 0;
@@ -275,9 +272,9 @@ static bool answers(const strut_orbit_solve *w) {
 static strut_status check_window(strut_orbit_solve *w) {
   strut_accuracy *a = w->a;
   bool of_orbit = w->found >= STRUT_WAY_CHEAP && w->found <= STRUT_WAY_STUCK;
-  double periods = a->scene->experiment.periods, before = (double)w->run.steady.periods;
+  double periods = a->experiment.periods, before = (double)w->run.steady.periods;
   double work = (double)w->run.force_evaluations / fmax(1.0, before) * periods;
-  if (!of_orbit || a->scene->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
+  if (!of_orbit || a->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
     return STRUT_OK;
   strut_experiment whole = a->cheap;
   strut_summary run = {0};
@@ -320,7 +317,7 @@ static strut_status confirm(strut_orbit_solve *w, strut_summary *orbit) {
 strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
   strut_orbit_solve w = {.a = a};
   *done = false;
-  bool steady_wanted = a->scene->experiment.steady.wanted;
+  bool steady_wanted = a->experiment.steady.wanted;
   if (strut_accuracy_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
   bool steady = false;
   strut_summary orbit = {0};

@@ -7,6 +7,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/model/state.h"
+#include "engine/scene/quantity.h"
 
 /** Different columns, each once, and their values now and over the window. */
 typedef struct strut_columns {

@@ -46,10 +46,12 @@ void strut_measure_window(const strut_model *model, strut_state *state, double b
   strut_measure_begin(model, state, m);
 }
 
-strut_status strut_measure_create(const strut_model *model, const strut_time_grid *grid,
-                                  double begin, size_t room, strut_measurement *m) {
-  *m = (strut_measurement){.grid = *grid, .node = model->scene->experiment.measure_node};
-  strut_span span = strut_scene_span(model->scene);
+strut_status strut_measure_create(const strut_model *model, const strut_experiment *experiment,
+                                  const strut_time_grid *grid, double begin, size_t room,
+                                  strut_measurement *m) {
+  *m = (strut_measurement){.grid = *grid, .node = experiment->measure_node};
+  strut_span span = strut_experiment_span(experiment, model->scene);
+  m->by_periods = span.period > 0;
   double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
   size_t contacts = (size_t)model->contacts.count;
   m->marks = periods < 1.5 ? 2 : (size_t)ceil(periods - 1e-9) + 1;
@@ -58,8 +60,8 @@ strut_status strut_measure_create(const strut_model *model, const strut_time_gri
   m->x = strut_arena_allocate(&m->arena, m->room, sizeof *m->x);
   m->contact_steps = strut_arena_allocate(&m->arena, contacts, sizeof *m->contact_steps);
   m->max_height = strut_arena_allocate(&m->arena, contacts, sizeof *m->max_height);
-  bool wanted = model->scene->experiment.quantity_count > 0;
-  if (wanted) m->quantities = strut_quantities_create(model, grid->step, &m->arena);
+  bool wanted = experiment->quantity_count > 0;
+  if (wanted) m->quantities = strut_quantities_create(model, experiment, grid->step, &m->arena);
   if (!m->time || !m->x || !m->contact_steps || !m->max_height || (wanted && !m->quantities)) {
     strut_measure_free(m);
     return STRUT_NO_MEMORY;
@@ -152,8 +154,7 @@ bool strut_measure_is_zero(const strut_measurement *m, double velocity) {
   return fabs(velocity) <= CANCELLED * m->fastest;
 }
 
-void strut_measure_finish(const strut_model *model, const strut_measurement *m,
-                          strut_summary *summary) {
+void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {
   size_t passed = m->next;
   if (m->quantities) strut_quantities_finish(m->quantities, summary);
   summary->velocity = summary->velocity_spread = (double)NAN;
@@ -165,8 +166,7 @@ void strut_measure_finish(const strut_model *model, const strut_measurement *m,
       double d = (m->x[i] - m->x[i - 1]) / (m->time[i] - m->time[i - 1]) - summary->velocity;
       sum += d * d;
     }
-    bool by_periods = strut_scene_span(model->scene).period > 0;
-    if (by_periods && passed > 2) summary->velocity_spread = sqrt(sum / (count - 1.0));
+    if (m->by_periods && passed > 2) summary->velocity_spread = sqrt(sum / (count - 1.0));
   }
   for (size_t i = 0; i < summary->contact_count; i++) {
     strut_contact_summary *c = &summary->contacts[i];

@@ -19,6 +19,7 @@ typedef struct strut_measurement {
   strut_time_grid grid;
   int32_t node;          /* tracked node, or -1: centre of mass */
   double total_mass;     /* [kg] */
+  bool by_periods;       /* the run is given in periods of a drive */
   size_t marks, next;    /* number of marks; the next one to pass */
   size_t room;           /* marks that there is memory for */
   double *time;          /* (marks) [s] */
@@ -36,8 +37,9 @@ typedef struct strut_measurement {
  * Prepares for a run that begins at the time `begin`, less the grid's offset [s]; room: marks that a later window may need.
  * STRUT_OK or STRUT_NO_MEMORY.
  */
-strut_status strut_measure_create(const strut_model *model, const strut_time_grid *grid,
-                                  double begin, size_t room, strut_measurement *measure);
+strut_status strut_measure_create(const strut_model *model, const strut_experiment *experiment,
+                                  const strut_time_grid *grid, double begin, size_t room,
+                                  strut_measurement *measure);
 /** x [m] and velocity [m/s] of the tracked point. */
 void strut_measure_track(const strut_model *model, const strut_state *state,
                          const strut_measurement *measure, double *x, double *v);
@@ -55,8 +57,7 @@ void strut_measure_step(const strut_model *model, const strut_state *state,
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
                                    strut_measurement *measure);
 /** Fills velocity, quantities, spread, window and contacts of the summary from the marks passed so far. */
-void strut_measure_finish(const strut_model *model, const strut_measurement *measure,
-                          strut_summary *summary);
+void strut_measure_finish(const strut_measurement *measure, strut_summary *summary);
 /** Is a mean velocity nothing but rounding, as of a symmetric motion? */
 bool strut_measure_is_zero(const strut_measurement *measure, double velocity);
 void strut_measure_free(strut_measurement *measure);

@@ -84,9 +84,8 @@ static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, 
   return true;
 }
 
-strut_quantities *strut_quantities_create(const strut_model *model, double step,
-                                          strut_arena *arena) {
-  const strut_experiment *e = &model->scene->experiment;
+strut_quantities *strut_quantities_create(const strut_model *model, const strut_experiment *e,
+                                          double step, strut_arena *arena) {
   size_t columns = 0, depth = 1;
   strut_quantities *q = strut_arena_allocate(arena, 1, sizeof *q);
   if (!q) return NULL;
@@ -95,7 +94,7 @@ strut_quantities *strut_quantities_create(const strut_model *model, double step,
     if (e->quantities[i].depth > depth) depth = e->quantities[i].depth;
   }
   q->count = e->quantity_count;
-  q->by_periods = strut_scene_span(model->scene).period > 0.0;
+  q->by_periods = strut_experiment_span(e, model->scene).period > 0.0;
   q->meters = strut_arena_allocate(arena, q->count, sizeof *q->meters);
   q->last = strut_arena_allocate(arena, q->count, sizeof *q->last);
   q->stack = strut_arena_allocate(arena, depth, sizeof *q->stack);
@@ -108,8 +107,7 @@ strut_quantities *strut_quantities_create(const strut_model *model, double step,
   return fine ? q : NULL;
 }
 
-bool strut_quantities_need_ledger(const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+bool strut_quantities_need_ledger(const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++)
     for (size_t k = 0; k < e->quantities[i].length; k++) {
       const strut_instruction *p = &e->quantities[i].program[k];

@@ -14,6 +14,7 @@
 
 #include "engine/model/state.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 typedef struct strut_quantities strut_quantities;
 
@@ -26,10 +27,11 @@ typedef struct strut_marks {
 } strut_marks;
 
 /** All memory for the scene's quantities, in the arena; NULL: memory is out. */
-strut_quantities *strut_quantities_create(const strut_model *model, double step,
+strut_quantities *strut_quantities_create(const strut_model *model,
+                                          const strut_experiment *experiment, double step,
                                           strut_arena *arena);
 /** Does some quantity of the scene need works or losses, which only the ledger knows? */
-bool strut_quantities_need_ledger(const strut_scene *scene);
+bool strut_quantities_need_ledger(const strut_experiment *experiment);
 /** Takes the values before the first step of a window. */
 void strut_quantities_begin(strut_quantities *quantities, const strut_marks *marks,
                             strut_state *state);

@@ -130,8 +130,9 @@ typedef struct strut_summary {
   const char **node_names;         /* (node_count) names owned by the scene */
   double *positions;               /* (node_count, 2) at the end [m] */
   strut_contact_summary *contacts; /* (contact_count) */
+  const char *measured_node;       /* whose velocity it is; NULL: the centre of mass's */
   size_t measured_count;
-  strut_measured *measured; /* (measured_count) in the scene's order */
+  strut_measured *measured; /* (measured_count) in the experiment's order */
   strut_energy energy;
   strut_balance balance;
   strut_steady_summary steady;

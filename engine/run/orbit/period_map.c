@@ -9,19 +9,19 @@
 /* Members and nodes times steps between two looks at the interrupt flag. */
 static const int64_t STRETCH = 200000;
 
-strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
+strut_status strut_period_map_create(const strut_model *model, const strut_experiment *experiment,
                                      int32_t repeats, strut_period_map *map, strut_error *error) {
-  *map = (strut_period_map){.scene = *scene, .repeats = repeats};
-  map->scene.experiment = *experiment;
-  map->period = strut_scene_span(&map->scene).period;
+  *map = (strut_period_map){.model = model, .repeats = repeats};
+  map->period = strut_experiment_span(experiment, model->scene).period;
   map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
   map->dt = map->period / (double)map->steps;
   const strut_time_grid grid = {.step = map->dt, .last = -1};
   map->method = strut_integrator_find(experiment->integrator);
-  strut_status status = strut_model_compile(&map->scene, &map->model, error);
-  if (!status) status = strut_state_create(map->model, &map->state, error);
-  if (!status) map->workspace = map->method->create(map->model, map->state);
-  if (!status && (!map->workspace || strut_measure_create(map->model, &grid, 0, 0, &map->measure)))
+  const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
+  strut_status status = strut_state_create(model, &map->state, error);
+  if (!status) map->workspace = map->method->create(model, map->state, &settings);
+  if (!status &&
+      (!map->workspace || strut_measure_create(model, experiment, &grid, 0, 0, &map->measure)))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (status) {
     strut_period_map_free(map);
@@ -123,6 +123,5 @@ void strut_period_map_subtract(const strut_period_map *map, const double *from, 
 void strut_period_map_free(strut_period_map *map) {
   strut_measure_free(&map->measure);
   strut_state_free(map->state);
-  strut_model_free(map->model);
   *map = (strut_period_map){.model = NULL};
 }

@@ -15,8 +15,7 @@
 #include "engine/run/measure/measure.h"
 
 typedef struct strut_period_map {
-  strut_scene scene; /* shares all but the experiment with the one it came from */
-  strut_model *model;
+  const strut_model *model; /* not its own */
   strut_state *state;
   const strut_integrator *method;
   void *workspace;
@@ -33,7 +32,7 @@ typedef struct strut_period_map {
 } strut_period_map;
 
 /** With the method and step of `experiment`; the step is made to divide the period. */
-strut_status strut_period_map_create(const strut_scene *scene, const strut_experiment *experiment,
+strut_status strut_period_map_create(const strut_model *model, const strut_experiment *experiment,
                                      int32_t repeats, strut_period_map *map, strut_error *error);
 /**
  * y becomes the state `repeats` drive periods later, brought back along the ground. Returns how far

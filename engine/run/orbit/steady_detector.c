@@ -47,9 +47,8 @@ static bool drives_repeat(const strut_steady_detector *w, int32_t n) {
   return true;
 }
 
-strut_status strut_steady_detector_create(const strut_model *model, double period, double begin,
-                                          strut_steady_detector *w) {
-  const strut_steady *wanted = &model->scene->experiment.steady;
+strut_status strut_steady_detector_create(const strut_model *model, const strut_steady *wanted,
+                                          double period, double begin, strut_steady_detector *w) {
   size_t both = 2 * (size_t)model->length;
   *w = (strut_steady_detector){
       .model = model,

@@ -15,6 +15,7 @@
 #include "engine/model/state.h"
 #include "engine/run/measure/measure.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 enum { STRUT_RING = 32, STRUT_REPEATS = 6, STRUT_LONGEST_REPEAT = 8, STRUT_MARKS = 129 };
 
@@ -46,7 +47,8 @@ typedef struct strut_steady_detector {
 } strut_steady_detector;
 
 /** For a run from `begin` [s] by periods of `period` [s]. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_steady_detector_create(const strut_model *model, double period, double begin,
+strut_status strut_steady_detector_create(const strut_model *model, const strut_steady *wanted,
+                                          double period, double begin,
                                           strut_steady_detector *watch);
 /** Within a period, once: how far the shape moves. */
 void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *watch);

@@ -71,7 +71,7 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
   size_t shapes = h->flat.scene.configuration_count, length = (size_t)h->model->length;
   const double **extra = strut_arena_allocate(arena, shapes + 1, sizeof *extra);
   if (!extra) return no_memory(h);
-  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->flat.scene.search.starts,
+  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
                                   .seed = h->out->seed,
                                   .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,
@@ -253,15 +253,15 @@ static strut_status make_world(strut_equilibrium_search *h, bool ground) {
 
 static strut_status prepare(strut_equilibrium_search *h, const strut_model *original) {
   const strut_equilibria_options *o = h->options;
-  h->out->seed = o->seed ? *o->seed : original->scene->search.seed;
+  h->out->seed = o->seed ? *o->seed : h->experiment->search.seed;
   strut_status status = strut_level_frame_create(original->scene, &h->flat, h->error);
   if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
   if (!status) status = make_world(h, h->model && h->model->contacts.count > 0);
   if (!status && h->on_ground && !is_pressed(h)) status = make_world(h, false);
   if (status) return status;
   if (h->on_ground && h->flat.askew < 0)
-    status =
-        strut_supports_choose(&h->flat.scene, o->supports, &h->out->arena, &h->supports, h->error);
+    status = strut_supports_choose(&h->flat.scene, &h->experiment->search, o->supports,
+                                   &h->out->arena, &h->supports, h->error);
   else if (o->supports)
     status = strut_fail(h->error, STRUT_USAGE,
                         h->flat.askew >= 0
@@ -280,7 +280,8 @@ static strut_status search(strut_equilibrium_search *h) {
   }
   h->unrest = strut_equilibrium_search_instability(h);
   if (h->unrest == STRUT_INSTABILITY_FALLS) return STRUT_OK;
-  strut_status status = strut_relaxer_create(h->world, &h->relaxer, h->error);
+  strut_status status =
+      strut_relaxer_create(h->world, h->experiment->settle.limit, &h->relaxer, h->error);
   if (!status) status = search_all_sets(h);
   if (!status) status = strut_equilibrium_search_follow(h);
   if (!status && h->explored) status = add_ground(h);
@@ -308,11 +309,11 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   double *q, time;
   strut_error trouble = {0};
   h->out->start = -1;
-  if (!model->scene->settle.wanted || !model->mass || h->options->standing_only) return STRUT_OK;
+  if (!h->experiment->settle.wanted || !model->mass || h->options->standing_only) return STRUT_OK;
   q = strut_arena_allocate(&h->out->arena, (size_t)model->length, sizeof *q);
   if (!q) return no_memory(h);
-  strut_status status = strut_settle_experiment(model, NULL, h->options->interrupt, q, &time,
-                                                &h->out->settle, &trouble);
+  strut_status status = strut_settle_experiment(model, h->experiment, NULL, h->options->interrupt,
+                                                q, &time, &h->out->settle, &trouble);
   if (!status) h->out->start = find_nearest(model, h->out, q);
   if (!status) return STRUT_OK;
   if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)
@@ -321,11 +322,12 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   return STRUT_OK; /* the list stands without it */
 }
 
-strut_status strut_equilibria_find(const strut_model *model,
+strut_status strut_equilibria_find(const strut_model *model, const strut_experiment *experiment,
                                    const strut_equilibria_options *options,
                                    strut_equilibria *equilibria, strut_error *error) {
   memset(equilibria, 0, sizeof *equilibria);
-  strut_equilibrium_search h = {.options = options, .out = equilibria, .error = error};
+  strut_equilibrium_search h = {
+      .experiment = experiment, .options = options, .out = equilibria, .error = error};
   strut_status status = prepare(&h, model);
   if (!status) status = search(&h);
   if (!status) status = finish(&h);

@@ -9,6 +9,7 @@
 #include <signal.h>
 
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 #include "engine/statics/search/critical.h"
 
 typedef enum strut_outcome {
@@ -73,15 +74,16 @@ typedef struct strut_equilibria {
 } strut_equilibria;
 
 typedef struct strut_equilibria_options {
-  int64_t starts;                 /* 0: as the scene says */
-  const uint64_t *seed;           /* NULL: as the scene says */
-  const strut_node_set *supports; /* NULL: as the scene says */
+  int64_t starts;                 /* 0: as the experiment says */
+  const uint64_t *seed;           /* NULL: as the experiment says */
+  const strut_node_set *supports; /* NULL: as the experiment says */
   bool standing_only;             /* no saddles and no barriers: what stands, and where */
   const volatile sig_atomic_t *interrupt;
 } strut_equilibria_options;
 
 /** strut_equilibria_free releases it, after a failure too. The model must outlive it. */
 STRUT_API strut_status strut_equilibria_find(const strut_model *model,
+                                             const strut_experiment *experiment,
                                              const strut_equilibria_options *options,
                                              strut_equilibria *equilibria, strut_error *error);
 STRUT_API void strut_equilibria_free(strut_equilibria *equilibria);

@@ -29,6 +29,7 @@ typedef struct strut_candidate_equilibrium {
 } strut_candidate_equilibrium;
 
 typedef struct strut_equilibrium_search {
+  const strut_experiment *experiment;
   const strut_equilibria_options *options;
   strut_equilibria *out;
   strut_error *error;

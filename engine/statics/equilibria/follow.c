@@ -55,7 +55,7 @@ static strut_status explore(strut_equilibrium_search *h) {
     if (e->rest) extra[extras++] = e->rest;
   }
   if (status) strut_fail(h->error, status, "out of memory");
-  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->flat.scene.search.starts,
+  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
                                   .seed = h->out->seed,
                                   .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,

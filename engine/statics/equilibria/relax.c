@@ -26,6 +26,7 @@ static const double GROWN = 1e-6;
 enum { HALVINGS = 6 };
 
 struct strut_relaxer {
+  double limit; /* [s] */
   const strut_potential *potential;
   const strut_model *model;
   strut_minimiser *minimiser;
@@ -57,16 +58,18 @@ static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
   r->step = CAREFUL * limit.limit;
   r->method = strut_integrator_for(STRUT_ROLE_PLAIN);
   if ((status = strut_state_create(r->model, &r->state, error))) return status;
-  r->workspace = r->method->create(r->model, r->state);
+  const strut_integrator_settings settings = {.step = r->step};
+  r->workspace = r->method->create(r->model, r->state, &settings);
   return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
-strut_status strut_relaxer_create(const strut_potential *potential, strut_relaxer **result,
-                                  strut_error *error) {
+strut_status strut_relaxer_create(const strut_potential *potential, double limit,
+                                  strut_relaxer **result, strut_error *error) {
   strut_relaxer *r = *result = strut_allocate(1, sizeof *r);
   if (!r) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   size_t length = (size_t)potential->model->length;
   r->potential = potential;
+  r->limit = limit;
   r->model = potential->model;
   r->quenched = strut_arena_allocate(&r->arena, length, sizeof(double));
   r->last = strut_arena_allocate(&r->arena, length, sizeof(double));
@@ -166,8 +169,7 @@ static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, con
   memset(r->state->v, 0, bytes);
   double first = total_energy(r), look = (double)FIRST_LOOK;
   if (decided(r, first, r->state->q, passes, context, &v)) return DECIDED;
-  while (r->state->step < MOST_STEPS &&
-         (double)r->state->step * step < r->model->scene->settle.limit) {
+  while (r->state->step < MOST_STEPS && (double)r->state->step * step < r->limit) {
     if (interrupt && *interrupt) return STOPPED;
     r->method->advance(r->model, r->state, r->workspace, step, (int64_t)look);
     double energy = total_energy(r);

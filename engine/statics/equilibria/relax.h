@@ -21,7 +21,7 @@ typedef double (*strut_pass_of)(const void *context, const double *q);
 typedef enum strut_relaxed_end {
   STRUT_RELAXED_RESTS,
   STRUT_RELAXED_LEAVES, /* moves off without end: falls, slides, is lifted */
-  STRUT_RELAXED_MOVES   /* still moves after the scene's initial.settle.limit, or 1e7 steps */
+  STRUT_RELAXED_MOVES   /* still moves after the experiment's settle.limit, or 1e7 steps */
 } strut_relaxed_end;
 
 typedef struct strut_relaxed {
@@ -36,11 +36,11 @@ typedef struct strut_relaxed {
 typedef struct strut_relaxer strut_relaxer;
 /**
  * potential: of a model without actuators, friction and loads on a signal, its ground included. It
- * must outlive the relaxer. Simulated are models with mass, some damping and up to
+ * must outlive the relaxer. limit: of the time that a relaxation simulates [s]. Simulated are models with mass, some damping and up to
  * STRUT_DENSE_STATICS free coordinates; others go downhill from where they are.
  */
-strut_status strut_relaxer_create(const strut_potential *potential, strut_relaxer **relaxer,
-                                  strut_error *error);
+strut_status strut_relaxer_create(const strut_potential *potential, double limit,
+                                  strut_relaxer **relaxer, strut_error *error);
 void strut_relaxer_free(strut_relaxer *relaxer);
 
 /** Whether it has a motion to simulate. */

@@ -71,7 +71,8 @@ static strut_status prepare(strut_equilibrium_search *h, const strut_model *mode
   }
   if (!status && strut_equilibrium_search_instability(h) != STRUT_INSTABILITY_NONE)
     status = strut_fail(h->error, STRUT_NOT_SETTLED, "%s", h->out->remark);
-  if (!status && h->world->n > 0) status = strut_relaxer_create(h->world, &h->relaxer, h->error);
+  if (!status && h->world->n > 0)
+    status = strut_relaxer_create(h->world, h->experiment->settle.limit, &h->relaxer, h->error);
   return status;
 }
 
@@ -159,11 +160,12 @@ static strut_status from_shape(strut_equilibrium_search *h, const strut_configur
   return status;
 }
 
-static strut_status take_named(const strut_model *model, const strut_node_set *set,
-                               const char *name, double *q, bool *found, strut_error *error) {
+static strut_status take_named(const strut_model *model, const strut_experiment *experiment,
+                               const strut_node_set *set, const char *name, double *q, bool *found,
+                               strut_error *error) {
   strut_equilibria_options options = {.standing_only = true, .supports = set};
   strut_equilibria all;
-  strut_status status = strut_equilibria_find(model, &options, &all, error);
+  strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   for (size_t i = 0; i < all.count && !status && !*found; i++) {
     const strut_equilibrium *e = &all.list[i];
     if (e->fate != STRUT_OUTCOME_STANDS || strcmp(e->name, name) != 0) continue;
@@ -175,15 +177,16 @@ static strut_status take_named(const strut_model *model, const strut_node_set *s
 }
 
 /* On its contact sets in turn, else on all supports. In the original's coordinates. */
-static strut_status by_search(const strut_model *model, const strut_configuration *c, double *q,
+static strut_status by_search(const strut_model *model, const strut_experiment *experiment,
+                              const strut_configuration *c, double *q,
                               const strut_node_set *rests_on, strut_error *error) {
   bool found = false;
   strut_status status = STRUT_OK;
   for (size_t k = 0; k < c->set_count && !status && !found; k++)
-    status =
-        take_named(model, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q, &found, error);
+    status = take_named(model, experiment, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q,
+                        &found, error);
   if (!status && !found && c->set_count == 0)
-    status = take_named(model, NULL, c->name, q, &found, error);
+    status = take_named(model, experiment, NULL, c->name, q, &found, error);
   if (status || found) return status;
   char instead[200] = "";
   size_t used = 0;
@@ -221,11 +224,12 @@ static strut_status unknown(const strut_scene *scene, const char *name, strut_er
 }
 
 /* The equilibrium of that name in the list that the scene's own search makes. */
-static strut_status from_list(const strut_model *model, const char *name, strut_arena *arena,
-                              strut_rest_state *stand, strut_error *error) {
+static strut_status from_list(const strut_model *model, const strut_experiment *experiment,
+                              const char *name, strut_arena *arena, strut_rest_state *stand,
+                              strut_error *error) {
   strut_equilibria_options options = {0};
   strut_equilibria all;
-  strut_status status = strut_equilibria_find(model, &options, &all, error);
+  strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   bool found = false;
   for (size_t i = 0; i < all.count && !status && !found; i++) {
     const strut_equilibrium *e = &all.list[i];
@@ -243,10 +247,10 @@ static strut_status from_list(const strut_model *model, const char *name, strut_
                     name);
 }
 
-static strut_status seek(const strut_model *model, const strut_configuration *c, double *q,
-                         strut_error *error) {
+static strut_status seek(const strut_model *model, const strut_experiment *experiment,
+                         const strut_configuration *c, double *q, strut_error *error) {
   strut_equilibria scratch = {0};
-  strut_equilibrium_search h = {.out = &scratch, .error = error};
+  strut_equilibrium_search h = {.experiment = experiment, .out = &scratch, .error = error};
   strut_node_set rests_on = {0};
   bool found = !c, turned = true;
   strut_status status = prepare(&h, model);
@@ -256,7 +260,7 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
                         &found, &rests_on);
   if (!status && !found) {
     turned = false;
-    status = by_search(model, c, q, &rests_on, error);
+    status = by_search(model, experiment, c, q, &rests_on, error);
   }
   if (!status && turned) strut_level_frame_to_original(&h.flat, (size_t)model->node_count, q);
   clean_up(&h);
@@ -264,18 +268,19 @@ static strut_status seek(const strut_model *model, const strut_configuration *c,
 }
 
 /* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
-static strut_status from_settling(const strut_model *model, strut_arena *arena,
-                                  strut_rest_state *stand, strut_error *error) {
+static strut_status from_settling(const strut_model *model, const strut_experiment *experiment,
+                                  strut_arena *arena, strut_rest_state *stand, strut_error *error) {
   double time;
-  strut_status status =
-      strut_settle_experiment(model, NULL, NULL, stand->q, &time, &stand->settle, error);
+  strut_status status = strut_settle_experiment(model, experiment, NULL, NULL, stand->q, &time,
+                                                &stand->settle, error);
   if (!status) status = judge(model, arena, stand, error);
-  if (!model->scene->settle.friction) stand->at_rest = true;
+  if (!experiment->settle.friction) stand->at_rest = true;
   return status;
 }
 
-strut_status strut_rest_state_find(const strut_model *model, const char *name, strut_arena *arena,
-                                   strut_rest_state *stand, strut_error *error) {
+strut_status strut_rest_state_find(const strut_model *model, const strut_experiment *experiment,
+                                   const char *name, strut_arena *arena, strut_rest_state *stand,
+                                   strut_error *error) {
   const strut_scene *scene = model->scene;
   const strut_configuration *c = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
@@ -285,7 +290,7 @@ strut_status strut_rest_state_find(const strut_model *model, const char *name, s
   if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
   if (!c && !start && !drawn) {
     if (!strut_is_listed_name(scene, name)) return unknown(scene, name, error);
-    strut_status status = from_list(model, name, arena, stand, error);
+    strut_status status = from_list(model, experiment, name, arena, stand, error);
     return status ? status : judge(model, arena, stand, error);
   }
   if (!c && start && scene->start_equilibrium >= 0)
@@ -296,21 +301,24 @@ strut_status strut_rest_state_find(const strut_model *model, const char *name, s
       memcpy(stand->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
     return judge(model, arena, stand, error);
   }
-  if (!c && scene->settle.wanted && model->mass) return from_settling(model, arena, stand, error);
-  strut_status status = seek(model, c, stand->q, error);
+  if (!c && experiment->settle.wanted && model->mass)
+    return from_settling(model, experiment, arena, stand, error);
+  strut_status status = seek(model, experiment, c, stand->q, error);
   if (!status) status = judge(model, arena, stand, error);
   stand->at_rest = true;
   return status;
 }
 
-strut_status strut_resolve_start_equilibrium(strut_scene *scene, strut_error *error) {
+strut_status strut_resolve_start_equilibrium(strut_setup *setup, strut_error *error) {
+  strut_scene *scene = &setup->scene;
   if (scene->start_equilibrium < 0) return STRUT_OK;
   const char *name = scene->configurations[scene->start_equilibrium].name;
   strut_model *model = NULL;
   strut_arena arena = {0};
   strut_rest_state stand;
   strut_status status = strut_model_compile(scene, &model, error);
-  if (!status) status = strut_rest_state_find(model, name, &arena, &stand, error);
+  if (!status)
+    status = strut_rest_state_find(model, &setup->experiment, name, &arena, &stand, error);
   for (size_t i = 0; i < scene->node_count && !status; i++)
     for (size_t c = 0; c < 2; c++)
       if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = stand.q[2 * i + c];

@@ -7,6 +7,7 @@
 
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 typedef struct strut_rest_state {
   const char *name; /* "drawn", "start", a configuration's, or one that the list of all gives */
@@ -30,7 +31,8 @@ typedef struct strut_rest_state {
  * name, STRUT_NOT_SETTLED where there is no such equilibrium, with a sentence that says which nodes
  * move, STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_rest_state_find(const strut_model *model, const char *name,
+STRUT_API strut_status strut_rest_state_find(const strut_model *model,
+                                             const strut_experiment *experiment, const char *name,
                                              strut_arena *arena, strut_rest_state *stand,
                                              strut_error *error);
 
@@ -38,6 +40,6 @@ STRUT_API strut_status strut_rest_state_find(const strut_model *model, const cha
  * Puts the equilibrium that the scene wants to start from into its nodes' start positions, and
  * start_equilibrium to -1. Does nothing where the scene wants none. The scene is compiled in between.
  */
-STRUT_API strut_status strut_resolve_start_equilibrium(strut_scene *scene, strut_error *error);
+STRUT_API strut_status strut_resolve_start_equilibrium(strut_setup *setup, strut_error *error);
 
 #endif

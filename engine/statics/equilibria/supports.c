@@ -96,9 +96,9 @@ static bool leaves_motion(const strut_scene *scene, size_t held) {
   return coordinates > held;
 }
 
-strut_status strut_supports_choose(const strut_scene *flat, const strut_node_set *wanted,
-                                   strut_arena *arena, strut_supports *supports,
-                                   strut_error *error) {
+strut_status strut_supports_choose(const strut_scene *flat, const strut_search *search,
+                                   const strut_node_set *wanted, strut_arena *arena,
+                                   strut_supports *supports, strut_error *error) {
   *supports = (strut_supports){.loose = holds_nothing(flat)};
   if (!flat->ground.present || flat->contact_count == 0) {
     if (!wanted) return STRUT_OK;
@@ -107,9 +107,9 @@ strut_status strut_supports_choose(const strut_scene *flat, const strut_node_set
   }
   supports->pin = !held_along_x(flat);
   if (wanted) return take_wanted(flat, wanted, arena, supports, error);
-  if (flat->search.support_count) {
-    supports->sets = flat->search.supports;
-    supports->count = flat->search.support_count;
+  if (search->support_count) {
+    supports->sets = search->supports;
+    supports->count = search->support_count;
     return STRUT_OK;
   }
   int motions = rank_of_rigid(flat, false) - rank_of_rigid(flat, true);

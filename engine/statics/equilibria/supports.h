@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_SUPPORTS_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_SUPPORTS_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 /** More sets than this are not tried unless the scene names them. */
 enum { STRUT_MOST_SUPPORTS = 120 };
@@ -26,9 +26,9 @@ typedef struct strut_supports {
  * Arrays in the arena. STRUT_OK, STRUT_NO_MEMORY, or STRUT_USAGE for a wanted node that cannot
  * touch.
  */
-strut_status strut_supports_choose(const strut_scene *flat, const strut_node_set *wanted,
-                                   strut_arena *arena, strut_supports *supports,
-                                   strut_error *error);
+strut_status strut_supports_choose(const strut_scene *flat, const strut_search *search,
+                                   const strut_node_set *wanted, strut_arena *arena,
+                                   strut_supports *supports, strut_error *error);
 
 /** Sets held (2 node_count and more) to 1 where a set holds a coordinate, else leaves it. */
 void strut_supports_hold(const strut_supports *supports, const strut_node_set *set, uint8_t *held);

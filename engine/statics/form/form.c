@@ -36,10 +36,10 @@ static strut_form_source choose(const strut_scene *scene, strut_form_source want
 }
 
 /* The start of a scene that has just got a form; what would move it is not wanted. */
-static void quieten(strut_scene *scene) {
+static void quieten(strut_scene *scene, strut_experiment *experiment) {
   for (size_t i = 0; i < scene->node_count; i++)
     scene->nodes[i].velocity[0] = scene->nodes[i].velocity[1] = 0.0;
-  scene->settle.wanted = false;
+  experiment->settle.wanted = false;
   scene->start_equilibrium = -1;
 }
 
@@ -181,7 +181,7 @@ static double round_down(double x) {
 
 /* A step that the new shape bears, and a run where the scene has none. */
 static strut_status add_run(strut_former *f, strut_error *error) {
-  strut_experiment *e = &f->scene->experiment;
+  strut_experiment *e = f->experiment;
   strut_model *model = NULL;
   strut_step_limit limit = {0};
   strut_status status = strut_model_compile(f->scene, &model, error);
@@ -208,7 +208,7 @@ static strut_status find(strut_former *f, strut_error *error) {
   if (f->form->from == STRUT_FORM_PRESTRESS) status = strut_form_prestress(f, error);
   if (status != STRUT_OK) return status;
   fix_lengths(scene);
-  quieten(scene);
+  quieten(scene, f->experiment);
   status = check_lengths(f, error);
   if (status == STRUT_OK) status = polish(f, error);
   return status == STRUT_OK ? add_run(f, error) : status;
@@ -233,12 +233,14 @@ static void drop_shapes(strut_scene *scene) {
   }
 }
 
-strut_status strut_form_find(strut_scene *scene, const strut_form_options *options,
+strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                              strut_form *form, strut_error *error) {
+  strut_scene *scene = &setup->scene;
   strut_model *model = NULL;
   strut_potential *potential = NULL;
   *form = (strut_form){.from = choose(scene, options->from)};
-  strut_former f = {.scene = scene, .options = options, .form = form};
+  strut_former f = {
+      .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
   strut_status status = drawn ? strut_model_compile(scene, &model, error)
                               : strut_fail(error, STRUT_NO_MEMORY, "out of memory");

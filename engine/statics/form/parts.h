@@ -11,6 +11,7 @@
 /** A scene on its way to a form. */
 typedef struct strut_former {
   strut_scene *scene;
+  strut_experiment *experiment;
   const strut_form_options *options;
   strut_form *form;
   const strut_model *model;         /* the scene as it was, compiled */

@@ -229,12 +229,14 @@ static int32_t wanted_of(const strut_modes_options *options, bool dense) {
   return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
 }
 
-strut_status strut_modes_find(const strut_model *model, const strut_modes_options *options,
-                              strut_modes *modes, strut_error *error) {
+strut_status strut_modes_find(const strut_model *model, const strut_experiment *experiment,
+                              const strut_modes_options *options, strut_modes *modes,
+                              strut_error *error) {
   strut_rest_state stand = {0};
   *modes = (strut_modes){0};
   strut_modes_work work = {.arena = &modes->arena};
-  strut_status status = strut_modes_shape(model, options->at, &modes->arena, &stand, error);
+  strut_status status =
+      strut_modes_shape(model, experiment, options->at, &modes->arena, &stand, error);
   if (status != STRUT_OK) return status;
   modes->at = stand.name;
   modes->q = stand.q;

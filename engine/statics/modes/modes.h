@@ -14,6 +14,7 @@
 
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
+#include "engine/scene/experiment.h"
 
 enum { STRUT_DENSE_MODES = 400, STRUT_SPARSE_MODES = 10, STRUT_DAMPED_MODES = 160 };
 
@@ -72,6 +73,7 @@ typedef struct strut_modes_options {
  * strut_modes_free releases it, after a failure too. The model must outlive it.
  */
 STRUT_API strut_status strut_modes_find(const strut_model *model,
+                                        const strut_experiment *experiment,
                                         const strut_modes_options *options, strut_modes *modes,
                                         strut_error *error);
 STRUT_API void strut_modes_free(strut_modes *modes);

@@ -75,12 +75,12 @@ static bool refuse(strut_path_parameter *p, double value, const strut_error *why
 }
 
 static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_terms *terms) {
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = p->options->scene_at(p->options->context, value, &scene, &error);
+  strut_status status = p->options->scene_at(p->options->context, value, &setup, &error);
   if (status != STRUT_OK) return refuse(p, value, &error);
-  status = strut_model_compile(&scene, &model, &error);
+  status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK && !is_same_structure(p->model, model))
     status = strut_fail(&error, STRUT_USAGE,
                         "%s changes what the structure is made of (nodes, members, supports or "
@@ -88,7 +88,7 @@ static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_t
                         p->options->name);
   if (status == STRUT_OK) read_terms(model, terms);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
   return status == STRUT_OK || refuse(p, value, &error);
 }
 

@@ -78,7 +78,7 @@ static strut_status choose_loads(const strut_scene *scene, const char *name, dou
 typedef struct beginning {
   const strut_path_options *options;
   const strut_model *drawn; /* the model that was given */
-  strut_scene scene; /* where the parameter is `from`; its arena is its own only if `owned` */
+  strut_setup setup; /* where the parameter is `from`; its arena is its own only if `owned` */
   bool owned;
   strut_model *model; /* of that scene */
   double *load, *q;   /* (length) loads at factor 1 [N]; the equilibrium [m] */
@@ -91,7 +91,7 @@ static bool scale_loads(beginning *b) {
   const strut_scene *drawn = b->drawn->scene;
   strut_load *loads = strut_arena_allocate(&b->arena, drawn->load_count, sizeof *loads);
   if (!loads) return false;
-  b->scene.loads = loads;
+  b->setup.scene.loads = loads;
   for (size_t i = 0; i < drawn->load_count; i++) {
     loads[i] = drawn->loads[i];
     if (!is_followed(&loads[i], b->options->load)) continue;
@@ -108,7 +108,7 @@ static strut_status lengthen_member(beginning *b, strut_error *error) {
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
   if (!members) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   memcpy(members, drawn->members, drawn->member_count * sizeof *members);
-  b->scene.members = members;
+  b->setup.scene.members = members;
   members[driven].stiffness = b->drawn->members.stiffness[driven];
   members[driven].axial_stiffness = 0;
   members[driven].rest_kind = STRUT_REST_LENGTH;
@@ -125,7 +125,7 @@ static bool move_support(beginning *b) {
   strut_node *nodes = strut_arena_allocate(&b->arena, drawn->node_count, sizeof *nodes);
   if (!nodes) return false;
   memcpy(nodes, drawn->nodes, drawn->node_count * sizeof *nodes);
-  b->scene.nodes = nodes;
+  b->setup.scene.nodes = nodes;
   if (nodes[at / 2].fixed[at % 2]) nodes[at / 2].start[at % 2] += b->options->from;
   return true;
 }
@@ -135,16 +135,16 @@ static strut_status make_model(beginning *b, strut_error *error) {
   const strut_path_options *o = b->options;
   strut_status status = STRUT_OK;
   bool made = true;
-  b->scene = *b->drawn->scene;
+  b->setup.scene = *b->drawn->scene;
   if (o->over == STRUT_PATH_OVER_LOAD) made = scale_loads(b);
   if (o->over == STRUT_PATH_OVER_COORDINATE) made = move_support(b);
   if (o->over == STRUT_PATH_OVER_ACTUATOR) status = lengthen_member(b, error);
   if (!made) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (o->over == STRUT_PATH_OVER_SCENE) {
-    status = o->scene_at(o->context, o->from, &b->scene, error);
+    status = o->scene_at(o->context, o->from, &b->setup, error);
     b->owned = status == STRUT_OK;
   }
-  return status ? status : strut_model_compile(&b->scene, &b->model, error);
+  return status ? status : strut_model_compile(&b->setup.scene, &b->model, error);
 }
 
 /* q goes downhill to an equilibrium, with `held` coordinates where they are. */
@@ -176,7 +176,8 @@ static strut_status descend(const strut_model *model, const uint8_t *held, bool 
 /* The equilibrium of that name. */
 static strut_status begin_at_name(beginning *b, strut_error *error) {
   strut_rest_state stand;
-  strut_status status = strut_rest_state_find(b->model, b->options->at, &b->arena, &stand, error);
+  strut_status status = strut_rest_state_find(b->model, &b->setup.experiment, b->options->at,
+                                              &b->arena, &stand, error);
   if (status) return status;
   if (!stand.at_rest)
     return strut_fail(error, STRUT_NOT_SETTLED,
@@ -273,14 +274,15 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
   return path->name ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
-strut_status strut_path_follow(const strut_model *model, const strut_path_options *options,
-                               strut_path *path, strut_error *error) {
+strut_status strut_path_follow(const strut_model *model, const strut_experiment *experiment,
+                               const strut_path_options *options, strut_path *path,
+                               strut_error *error) {
   size_t length = (size_t)model->length;
   bool over_load = options->over == STRUT_PATH_OVER_LOAD;
   bool unsaid = over_load && options->until == 0 && options->from == 0;
   double until = unsaid ? 1.0 : options->until;
   int32_t steps = options->steps > 0 ? options->steps : DEFAULT_STEPS;
-  beginning b = {.options = options, .drawn = model};
+  beginning b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it begins, at %.6g", until);
@@ -300,7 +302,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_path_option
              (int)steps, over_load ? "the factor" : path->name,
              path->points[path->point_count - 1].factor, *path->unit ? " " : "", path->unit);
   strut_model_free(b.model);
-  if (b.owned) strut_scene_free(&b.scene);
+  if (b.owned) strut_setup_free(&b.setup);
   strut_arena_free(&b.arena);
   return status;
 }

@@ -13,6 +13,7 @@
 #define STRUT_ENGINE_STATICS_PATH_PATH_H
 
 #include "engine/model/model.h"
+#include "engine/scene/experiment.h"
 
 /** Free coordinates that a path is followed with at most: its matrices are dense. */
 enum { STRUT_PATH_COORDINATES = 600 };
@@ -88,8 +89,8 @@ typedef struct strut_path {
   strut_arena arena;
 } strut_path;
 
-/** The scene where the parameter has a value; `scene` is freed by who asks. */
-typedef strut_status (*strut_path_scene_at)(void *context, double value, strut_scene *scene,
+/** The scene, and its experiment, where the parameter has a value; the caller frees `setup`. */
+typedef strut_status (*strut_path_scene_at)(void *context, double value, strut_setup *setup,
                                             strut_error *error);
 
 typedef struct strut_path_options {
@@ -119,6 +120,7 @@ typedef struct strut_path_options {
  * scene_at fails with at `from`.
  */
 STRUT_API strut_status strut_path_follow(const strut_model *model,
+                                         const strut_experiment *experiment,
                                          const strut_path_options *options, strut_path *path,
                                          strut_error *error);
 STRUT_API void strut_path_free(strut_path *path);

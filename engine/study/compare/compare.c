@@ -47,7 +47,7 @@ static void put_friction(strut_compare_work *work, const strut_scene *scene) {
 
 /* The drive: the signal that defines the period, else that of the only actuator. */
 static void put_drive(strut_compare_work *work, const strut_scene *scene) {
-  int32_t signal = scene->experiment.period_signal;
+  int32_t signal = work->column->input->setup->experiment.period_signal;
   if (signal < 0 && scene->actuator_count == 1) signal = scene->actuators[0].signal;
   if (signal < 0) {
     strut_compare_leave(work, STRUT_COMPARE_DRIVE_FREQUENCY, STRUT_COMPARE_DRIVE_AMPLITUDE,
@@ -165,7 +165,8 @@ strut_status strut_compare_leave_failed(strut_compare_work *work, strut_compare_
 static strut_status find_rest(strut_compare_work *work, const strut_model *model) {
   strut_error error = {0};
   strut_compare_column *column = work->column;
-  strut_status status = strut_rest_state_find(model, NULL, work->arena, &work->rest, &error);
+  strut_status status = strut_rest_state_find(model, &work->column->input->setup->experiment, NULL,
+                                              work->arena, &work->rest, &error);
   if (status == STRUT_OK) {
     column->shape = work->rest.name;
     column->q = work->rest.q;
@@ -213,14 +214,14 @@ static strut_status evaluate_rest(strut_compare_work *work, const strut_model *m
 
 /* Resolves the equilibrium that the scene starts from, then evaluates the motion. */
 static strut_status evaluate_motion(strut_compare_work *work) {
-  strut_scene *scene = work->column->input->scene;
+  strut_setup *setup = work->column->input->setup;
   strut_error error = {0};
-  strut_status status = strut_resolve_start_equilibrium(scene, &error);
+  strut_status status = strut_resolve_start_equilibrium(setup, &error);
   bool resolved = status == STRUT_OK;
   if (!resolved)
     status = strut_compare_leave_failed(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, &error,
                                         status, true);
-  if (status == STRUT_OK) status = strut_model_compile(scene, &work->column->model, &error);
+  if (status == STRUT_OK) status = strut_model_compile(&setup->scene, &work->column->model, &error);
   if (status == STRUT_OK) status = find_limit(work, work->column->model);
   if (status == STRUT_OK && resolved) status = strut_compare_motion(work, work->column->model);
   return status;
@@ -233,7 +234,7 @@ static strut_status fill_column(const strut_compare_input *input,
   strut_model *model = NULL;
   *column = (strut_compare_column){.input = input, .softest = {-1, -1}};
   strut_compare_leave(&work, 0, STRUT_COMPARE_QUANTITIES - 1, "not computed");
-  strut_status status = strut_model_compile(input->scene, &model, error);
+  strut_status status = strut_model_compile(&input->setup->scene, &model, error);
   if (status == STRUT_OK) status = evaluate_rest(&work, model);
   strut_model_free(model);
   if (status == STRUT_OK) status = evaluate_motion(&work);

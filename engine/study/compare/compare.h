@@ -14,6 +14,7 @@
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/difference.h"
+#include "engine/scene/experiment.h"
 
 enum { STRUT_COMPARE_MOST = 100, STRUT_COMPARE_FREQUENCIES = 3 };
 
@@ -89,7 +90,7 @@ typedef struct strut_compare_barrier {
 /** What is compared. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
 typedef struct strut_compare_input {
   const char *label;                   /* unique */
-  strut_scene *scene;                  /* its start is resolved here, and its accuracy is set */
+  strut_setup *setup;                  /* its start is resolved here, and its accuracy is set */
   const strut_difference *differences; /* (difference_count) from the first input */
   size_t difference_count;
   const char *const *without; /* (without_count) parameters that were set and it does not have */

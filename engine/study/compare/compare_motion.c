@@ -23,30 +23,26 @@ static const char *word_of(strut_motion kind) {
 static strut_status run_window(const strut_compare_work *work, const strut_summary *run,
                                const strut_snapshot *end, double *seconds, strut_summary *window,
                                strut_error *error) {
-  strut_scene scene = *work->column->input->scene;
-  strut_experiment *e = &scene.experiment;
-  strut_model *model = NULL;
-  double period = strut_scene_span(&scene).period;
+  const strut_model *model = work->column->model;
+  strut_experiment e = work->column->input->setup->experiment;
+  double period = strut_experiment_span(&e, model->scene).period;
   bool periodic = run->steady.kind == STRUT_MOTION_PERIODIC;
-  if (scene.bar_model == STRUT_BARS_RIGID) { /* which error control does not support */
-    e->step = run->step;
+  if (model->scene->bar_model == STRUT_BARS_RIGID) { /* which error control does not support */
+    e.step = run->step;
   } else {
-    e->integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-    e->tolerance = WINDOW_TOLERANCE;
-    e->step = period / STEPS;
+    e.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
+    e.tolerance = WINDOW_TOLERANCE;
+    e.step = period / STEPS;
   }
-  e->accuracy = 0.0;
-  e->refine = e->refine_time = 0.0;
-  e->steady.wanted = false;
-  e->periods = periodic ? run->steady.repeats : LONG_WINDOW;
-  e->measure_last = 0.0;
-  e->output_last = 0.0;
-  *seconds = e->periods * period;
+  e.accuracy = 0.0;
+  e.refine = e.refine_time = 0.0;
+  e.steady.wanted = false;
+  e.periods = periodic ? run->steady.repeats : LONG_WINDOW;
+  e.measure_last = 0.0;
+  e.output_last = 0.0;
+  *seconds = e.periods * period;
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .from = end};
-  strut_status status = strut_model_compile(&scene, &model, error);
-  if (status == STRUT_OK) status = strut_simulate(model, &wanted, window, error);
-  strut_model_free(model);
-  return status;
+  return strut_simulate(model, &e, &wanted, window, error);
 }
 
 static strut_status put_contacts(strut_compare_work *work, const strut_summary *s) {
@@ -69,7 +65,7 @@ static strut_status put_contacts(strut_compare_work *work, const strut_summary *
 /* Drive energy and cost of transport. */
 static void put_energy(strut_compare_work *work, double drive_work, double seconds, double period) {
   const strut_compare_cell *cell = work->column->cell;
-  const strut_scene *scene = work->column->input->scene;
+  const strut_scene *scene = &work->column->input->setup->scene;
   if (scene->actuator_count == 0) {
     strut_compare_leave(work, STRUT_COMPARE_DRIVE_ENERGY, STRUT_COMPARE_TRANSPORT,
                         "there is no drive");
@@ -114,7 +110,8 @@ static strut_status put_motion(strut_compare_work *work, const strut_summary *ru
                                const strut_snapshot *end, double cpu) {
   strut_compare_column *c = work->column;
   strut_error error = {0};
-  double period = strut_scene_span(c->input->scene).period, seconds = run->duration;
+  double period = strut_experiment_span(&c->input->setup->experiment, c->model->scene).period,
+         seconds = run->duration;
   c->motion = word_of(run->steady.kind);
   c->repeats = run->steady.kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
   c->how = strut_arena_format(work->arena, "%s", run->accuracy.why);
@@ -139,8 +136,7 @@ static strut_status put_motion(strut_compare_work *work, const strut_summary *ru
 }
 
 strut_status strut_compare_motion(strut_compare_work *work, const strut_model *model) {
-  strut_scene *scene = work->column->input->scene;
-  strut_experiment *e = &scene->experiment;
+  strut_experiment *e = &work->column->input->setup->experiment;
   const char *none = work->options->no_motion               ? "not asked for"
                      : !(e->duration > 0 || e->periods > 0) ? "the model says nothing of a run"
                                                             : NULL;
@@ -158,7 +154,7 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
   e->steady.wanted = e->periods > 0.0;
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};
   double began = strut_tradeoff_cpu_clock();
-  strut_status status = strut_simulate_accurately(scene, &wanted, &summary, &error);
+  strut_status status = strut_simulate_accurately(model, e, &wanted, &summary, &error);
   double cpu = strut_tradeoff_cpu_clock() - began;
   if (status == STRUT_OK)
     status = put_motion(work, &summary, &end, cpu);

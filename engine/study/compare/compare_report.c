@@ -92,13 +92,13 @@ static void add_scene_names(strut_buffer *to, const strut_compare *r) {
   int width = 0;
   for (size_t i = 0; i < r->count; i++) {
     int here = letters(r->columns[i].input->label);
-    if (*r->columns[i].input->scene->name && here > width) width = here;
+    if (*r->columns[i].input->setup->scene.name && here > width) width = here;
   }
   for (size_t i = 0; i < r->count; i++) {
     const strut_compare_input *in = r->columns[i].input;
-    if (*in->scene->name)
+    if (*in->setup->scene.name)
       strut_buffer_add(to, "%s:%*s %s\n", in->label, width - letters(in->label), "",
-                       in->scene->name);
+                       in->setup->scene.name);
   }
   if (width > 0) strut_buffer_add(to, "\n");
 }
@@ -238,7 +238,7 @@ char *strut_compare_csv(const strut_compare *r) {
     const strut_compare_column *c = &r->columns[i];
     add_quoted(&csv, c->input->label);
     strut_buffer_add(&csv, ",");
-    add_quoted(&csv, c->input->scene->name);
+    add_quoted(&csv, c->input->setup->scene.name);
     for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
       char text[STRUT_NUMBER_TEXT] = "";
       if (isfinite(c->cell[row].value)) strut_number_text(c->cell[row].value, text);
@@ -293,7 +293,7 @@ static void put_states(strut_json *json, struct cJSON *to, const strut_compare_c
 }
 
 static void put_shape(strut_json *json, struct cJSON *to, const strut_compare_column *c) {
-  const strut_scene *scene = c->input->scene;
+  const strut_scene *scene = &c->input->setup->scene;
   strut_json_text(json, to, "shape", c->shape);
   struct cJSON *nodes = strut_json_object(json, to, "nodes");
   for (size_t i = 0; c->q && i < scene->node_count; i++) {
@@ -355,10 +355,10 @@ char *strut_compare_json(const strut_compare *r) {
     const strut_compare_column *c = &r->columns[i];
     struct cJSON *model = strut_json_object(&json, models, NULL);
     strut_json_text(&json, model, "model", c->input->label);
-    strut_json_text(&json, model, "name", c->input->scene->name);
+    strut_json_text(&json, model, "name", c->input->setup->scene.name);
     strut_json_text(&json, model, "status", strut_status_text(c->status));
     strut_json_text(&json, model, "reason", c->status == STRUT_OK ? NULL : c->message);
-    put_parameters(&json, model, c->input->scene);
+    put_parameters(&json, model, &c->input->setup->scene);
     put_cells(&json, model, c);
     put_states(&json, model, c);
     put_shape(&json, model, c);

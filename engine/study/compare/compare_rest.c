@@ -43,7 +43,8 @@ static strut_status evaluate_drawn(strut_compare_work *work, const strut_model *
   strut_arena scratch = {0};
   strut_rest_state drawn;
   strut_rigidity r = {0};
-  strut_status status = strut_rest_state_find(model, "drawn", &scratch, &drawn, &error);
+  strut_status status = strut_rest_state_find(model, &work->column->input->setup->experiment,
+                                              "drawn", &scratch, &drawn, &error);
   if (status == STRUT_OK) status = strut_rigidity_find(model, drawn.q, &r, &error);
   if (status == STRUT_OK)
     put_counts(work, &r);
@@ -155,7 +156,8 @@ strut_status strut_compare_states(strut_compare_work *work, const strut_model *m
     strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not asked for");
     return STRUT_OK;
   }
-  strut_status status = strut_equilibria_find(model, &wanted, &all, &error);
+  strut_status status =
+      strut_equilibria_find(model, &work->column->input->setup->experiment, &wanted, &all, &error);
   if (status == STRUT_OK) {
     status = keep_states(work, &all);
     if (status == STRUT_OK) put_states(work, start_name(work, model, &all), &all);
@@ -173,7 +175,8 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
   const strut_modes_options wanted = {.at = NULL};
   strut_error error = {0};
   strut_modes modes = {0};
-  strut_status status = strut_modes_find(model, &wanted, &modes, &error);
+  strut_status status =
+      strut_modes_find(model, &work->column->input->setup->experiment, &wanted, &modes, &error);
   if (status == STRUT_OK) {
     int found = 0;
     strut_compare_leave(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,

@@ -98,9 +98,11 @@ static void add_forces(structure *s, const strut_scene *scene) {
   }
 }
 
-static void add_rest(structure *s, const strut_scene *scene) {
+static void add_rest(structure *s, const strut_setup *setup) {
+  const strut_scene *scene = &setup->scene;
+  const strut_search *search = &setup->experiment.search;
   const strut_ground *g = &scene->ground;
-  const strut_settle *settle = &scene->settle;
+  const strut_settle *settle = &setup->experiment.settle;
   const double values[] = {scene->mass_model,
                            scene->bar_model,
                            scene->gravity[0],
@@ -117,10 +119,10 @@ static void add_rest(structure *s, const strut_scene *scene) {
                            settle->evaluations,
                            settle->step,
                            settle->perturb,
-                           (double)scene->search.starts,
-                           (double)scene->search.seed};
+                           (double)search->starts,
+                           (double)search->seed};
   add_all(s, values, sizeof values / sizeof values[0]);
-  for (size_t i = 0; i < scene->search.support_count; i++) add_set(s, &scene->search.supports[i]);
+  for (size_t i = 0; i < search->support_count; i++) add_set(s, &search->supports[i]);
 }
 
 static void free_structure(structure *s) {
@@ -132,13 +134,14 @@ static void free_structure(structure *s) {
 }
 
 /* NULL: memory is out. */
-static structure *describe(const strut_scene *scene) {
+static structure *describe(const strut_setup *setup) {
+  const strut_scene *scene = &setup->scene;
   structure *s = strut_allocate(1, sizeof *s);
   if (!s) return NULL;
   s->count = scene->configuration_count;
   add_nodes(s, scene);
   add_forces(s, scene);
-  add_rest(s, scene);
+  add_rest(s, setup);
   if (!s->failed) s->configurations = strut_allocate(s->count, sizeof *s->configurations);
   if (s->configurations && pthread_mutex_init(&s->lock, NULL) == 0) return s;
   strut_release(s->configurations);
@@ -153,9 +156,9 @@ static bool alike(const structure *a, const structure *b) {
 }
 
 /* The structure of a scene, kept or new; *own: the caller frees it. NULL: memory is out. */
-static structure *structure_of(strut_equilibrium_cache *standing, const strut_scene *scene,
+static structure *structure_of(strut_equilibrium_cache *standing, const strut_setup *setup,
                                bool *own) {
-  structure *s = describe(scene), *same = NULL;
+  structure *s = describe(setup), *same = NULL;
   *own = false;
   if (!s) return NULL;
   pthread_mutex_lock(&standing->lock);
@@ -170,7 +173,8 @@ static structure *structure_of(strut_equilibrium_cache *standing, const strut_sc
   return same ? same : s;
 }
 
-static void find_equilibrium(const strut_scene *scene, size_t configuration, found *f) {
+static void find_equilibrium(const strut_setup *setup, size_t configuration, found *f) {
+  const strut_scene *scene = &setup->scene;
   strut_model *model = NULL;
   strut_arena arena = {0};
   strut_rest_state stand;
@@ -178,8 +182,9 @@ static void find_equilibrium(const strut_scene *scene, size_t configuration, fou
   f->known = true;
   f->status = strut_model_compile(scene, &model, &f->error);
   if (!f->status)
-    f->status = strut_rest_state_find(model, scene->configurations[configuration].name, &arena,
-                                      &stand, &f->error);
+    f->status =
+        strut_rest_state_find(model, &setup->experiment, scene->configurations[configuration].name,
+                              &arena, &stand, &f->error);
   if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
     f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
   if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
@@ -188,11 +193,11 @@ static void find_equilibrium(const strut_scene *scene, size_t configuration, fou
   strut_model_free(model);
 }
 
-/* The equilibrium of a configuration, valid as long as the structure. */
-static const found *find(structure *s, const strut_scene *scene, size_t configuration) {
+/* The equilibrium of a configuration; valid as long as the structure. */
+static const found *find(structure *s, const strut_setup *setup, size_t configuration) {
   found *f = &s->configurations[configuration];
   pthread_mutex_lock(&s->lock);
-  if (!f->known) find_equilibrium(scene, configuration, f);
+  if (!f->known) find_equilibrium(setup, configuration, f);
   pthread_mutex_unlock(&s->lock);
   return f;
 }
@@ -211,13 +216,14 @@ void strut_equilibrium_cache_free(strut_equilibrium_cache *standing) {
   strut_release(standing);
 }
 
-strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_scene *scene,
+strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_setup *setup,
                                              strut_error *error) {
+  strut_scene *scene = &setup->scene;
   bool own;
   if (scene->start_equilibrium < 0) return STRUT_OK;
-  structure *s = structure_of(standing, scene, &own);
+  structure *s = structure_of(standing, setup, &own);
   if (!s) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  const found *f = find(s, scene, (size_t)scene->start_equilibrium);
+  const found *f = find(s, setup, (size_t)scene->start_equilibrium);
   strut_status status = f->status;
   if (status) strut_fail(error, status, "%s", f->error.message);
   for (size_t i = 0; i < scene->node_count && !status; i++)
@@ -237,13 +243,14 @@ static double extent(const double *q, size_t nodes) {
   return fmax(high[0] - low[0], high[1] - low[1]);
 }
 
-static int32_t nearest(structure *s, const strut_scene *scene, const double *positions) {
+static int32_t nearest(structure *s, const strut_setup *setup, const double *positions) {
+  const strut_scene *scene = &setup->scene;
   const strut_model shape = {.node_count =
                                  (int32_t)scene->node_count}; /* all fields that are read */
   double least = HUGE_VAL;
   int32_t index = -1;
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    const found *f = find(s, scene, i);
+    const found *f = find(s, setup, i);
     if (f->status) continue;
     double d =
         strut_shape_distance(&shape, f->q, positions, !scene->configurations[i].shaped, NULL);
@@ -256,22 +263,24 @@ static int32_t nearest(structure *s, const strut_scene *scene, const double *pos
 
 /* The nearest configuration must not depend on the start of the run. */
 strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
-                                             const strut_scene *scene, const double *positions,
+                                             const strut_setup *setup, const double *positions,
                                              int32_t *index, strut_error *error) {
   bool own = false;
-  strut_scene drawn = *scene;
+  const strut_scene *scene = &setup->scene;
+  strut_setup drawn = *setup; /* shares all but its nodes */
   *index = -1;
   if (scene->configuration_count == 0) return STRUT_OK;
-  drawn.start_equilibrium = -1;
-  drawn.nodes = strut_allocate(scene->node_count, sizeof *drawn.nodes);
-  for (size_t i = 0; drawn.nodes && i < scene->node_count; i++) {
-    drawn.nodes[i] = scene->nodes[i];
+  drawn.scene.start_equilibrium = -1;
+  drawn.scene.nodes = strut_allocate(scene->node_count, sizeof *drawn.scene.nodes);
+  for (size_t i = 0; drawn.scene.nodes && i < scene->node_count; i++) {
+    drawn.scene.nodes[i] = scene->nodes[i];
     for (size_t c = 0; c < 2; c++)
-      if (!drawn.nodes[i].fixed[c]) drawn.nodes[i].start[c] = drawn.nodes[i].position[c];
+      if (!drawn.scene.nodes[i].fixed[c])
+        drawn.scene.nodes[i].start[c] = drawn.scene.nodes[i].position[c];
   }
-  structure *s = drawn.nodes ? structure_of(standing, &drawn, &own) : NULL;
+  structure *s = drawn.scene.nodes ? structure_of(standing, &drawn, &own) : NULL;
   if (s) *index = nearest(s, &drawn, positions);
-  strut_release(drawn.nodes);
+  strut_release(drawn.scene.nodes);
   if (own) free_structure(s);
   return s ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }

@@ -9,7 +9,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_EQUILIBRIUM_CACHE_H
 #define STRUT_ENGINE_STUDY_SWEEP_EQUILIBRIUM_CACHE_H
 
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 
 /** Safe from several threads. */
 typedef struct strut_equilibrium_cache strut_equilibrium_cache;
@@ -19,7 +19,7 @@ strut_equilibrium_cache *strut_equilibrium_cache_create(void);
 void strut_equilibrium_cache_free(strut_equilibrium_cache *standing); /* NULL is allowed */
 
 /** As strut_resolve_start_equilibrium. */
-strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_scene *scene,
+strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_setup *setup,
                                              strut_error *error);
 
 /**
@@ -28,7 +28,7 @@ strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, 
  * within a tenth of the structure's size. STRUT_OK, STRUT_NO_MEMORY.
  */
 strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
-                                             const strut_scene *scene, const double *positions,
+                                             const strut_setup *setup, const double *positions,
                                              int32_t *index, strut_error *error);
 
 #endif

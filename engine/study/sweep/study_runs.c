@@ -67,9 +67,10 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
   if (!file) return no_memory(error);
   if (stat(file, &found) != 0) return STRUT_OK; /* it failed before recording anything */
-  status = plan->scenes.scene(plan->scenes.context, o->values, &o->scene, error);
+  status = plan->scenes.setup(plan->scenes.context, o->values, &o->setup, error);
   if (!status)
-    status = strut_trajectory_read(folder, &o->scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
+    status =
+        strut_trajectory_read(folder, &o->setup.scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
   if (!status && !o->motion.position)
     status = strut_fail(error, STRUT_USAGE,
                         "figure '%.60s' of the study: the runs recorded no "
@@ -78,7 +79,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   o->run = (strut_study_run){.point = point,
                              .values = o->values,
                              .texts = o->texts,
-                             .scene = &o->scene,
+                             .scene = &o->setup.scene,
                              .motion = &o->motion};
   *there = !status && o->motion.frames > 0;
   return status;
@@ -86,7 +87,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
 
 void strut_study_run_close(strut_study_opened *o) {
   strut_trajectory_free(&o->motion);
-  strut_scene_free(&o->scene);
+  strut_setup_free(&o->setup);
   strut_arena_free(&o->arena);
   *o = (strut_study_opened){.motion = {0}};
 }
@@ -270,6 +271,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
                          strut_error *error) {
   strut_model *model = NULL;
   const strut_run_figure picture = {
+      .experiment = &o->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
       .width = width,
       .scale = {figure->scale[0], figure->scale[1]},
@@ -279,7 +281,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
       .other_name = other_name};
   const char *path = file_of(plan, directory, figure, o);
   if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
-  strut_status status = strut_model_compile(&o->scene, &model, error);
+  strut_status status = strut_model_compile(&o->setup.scene, &model, error);
   if (!status) status = strut_run_figure_draw(path, &picture, model, &o->motion, NULL, error);
   strut_model_free(model);
   return status;

@@ -44,7 +44,7 @@ typedef struct strut_study_opened {
   strut_study_run run;
   strut_study_value *values;
   const char **texts;
-  strut_scene scene;
+  strut_setup setup;
   strut_trajectory motion;
   strut_arena arena;
 } strut_study_opened;

@@ -23,7 +23,7 @@ typedef struct desk {
   const strut_sweep_queue *queue;
   strut_sweep_job *jobs; /* (lanes) */
   int32_t lanes;
-  strut_scene scene; /* of the example */
+  strut_setup setup; /* of the example */
   strut_model *example;
   int unlike;
 } desk;
@@ -50,10 +50,10 @@ static void finish_alone(desk *d, strut_sweep_job *job) {
 
 /* Can its run be in lanes at all? Leaves it with a model then. */
 static bool suits_lanes(strut_sweep_job *job) {
-  const strut_experiment *e = &job->scene.experiment;
+  const strut_experiment *e = &job->setup.experiment;
   const strut_integrator *method = strut_integrator_find(e->integrator);
   if (e->accuracy > 0.0 || !method || !strut_batch_knows(method)) return false;
-  if (strut_scene_span(&job->scene).duration < FEWEST_STEPS * e->step) return false;
+  if (strut_experiment_span(e, &job->setup.scene).duration < FEWEST_STEPS * e->step) return false;
   return !strut_sweep_job_compile(job) && strut_batch_possible(job->model, method);
 }
 
@@ -69,7 +69,7 @@ static bool next_run(void *context, strut_batch_point *run) {
     d->unlike = alike ? 0 : d->unlike + 1;
     if (d->unlike > MOST_UNLIKE) return false; /* it waits for the next batch */
     job->stage = STRUT_SWEEP_RUNNING;
-    *run = (strut_batch_point){job->model, &job->options, job};
+    *run = (strut_batch_point){job->model, &job->setup.experiment, &job->options, job};
     return true;
   }
   return false;
@@ -87,9 +87,9 @@ static void take_result(void *context, const strut_batch_point *run, strut_statu
 static bool make_example(desk *d, const strut_sweep_job *job) {
   const strut_sweep_scenes *scenes = &d->worker->plan->scenes;
   d->unlike = 0;
-  if (scenes->scene(scenes->context, job->cells.values, &d->scene, NULL)) return false;
-  if (!strut_model_compile(&d->scene, &d->example, NULL)) return true;
-  strut_scene_free(&d->scene);
+  if (scenes->setup(scenes->context, job->cells.values, &d->setup, NULL)) return false;
+  if (!strut_model_compile(&d->setup.scene, &d->example, NULL)) return true;
+  strut_setup_free(&d->setup);
   return false;
 }
 
@@ -98,9 +98,10 @@ static void run_batch(desk *d) {
                                              .next = next_run,
                                              .result = take_result,
                                              .example = d->example,
+                                             .integrator = d->setup.experiment.integrator,
                                              .width = d->lanes});
   strut_model_free(d->example);
-  strut_scene_free(&d->scene);
+  strut_setup_free(&d->setup);
   d->example = NULL;
 }
 

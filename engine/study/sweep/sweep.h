@@ -8,17 +8,17 @@
 #include <signal.h>
 
 #include "engine/base/memory.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
 #include "engine/study/results/slots.h"
 
 /** Makes scenes of points; called from several threads at once. */
 typedef struct strut_sweep_scenes {
-  /** The scene where the axes have these values; strut_scene_free releases it. */
-  strut_status (*scene)(void *context, const strut_study_value *values, strut_scene *scene,
+  /** The scene and its experiment where the axes have these values; strut_setup_free releases it. */
+  strut_status (*setup)(void *context, const strut_study_value *values, strut_setup *setup,
                         strut_error *error);
-  /** A scene as a text, in a block of strut_allocate; NULL: memory is out. */
-  char *(*text)(const strut_scene *scene);
+  /** Both as a text, in a block of strut_allocate; NULL: memory is out. */
+  char *(*text)(const strut_setup *setup);
   void *context;
 } strut_sweep_scenes;
 

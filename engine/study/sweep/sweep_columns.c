@@ -93,8 +93,7 @@ static bool is_kept(const strut_study *study, const char *quantity) {
 }
 
 /* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
-static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
-  const strut_experiment *e = &scene->experiment;
+static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++) {
     const strut_quantity_definition *d = &e->quantities[i];
     if (!keeps(plan, STRUT_KEEP_QUANTITIES) && !is_kept(plan->study, d->name)) continue;
@@ -109,7 +108,7 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_scene *scene) {
   return true;
 }
 
-static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
+static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   bool fine = true;
   for (size_t i = 0; i < plan->axis_columns && fine; i++) {
     const strut_study_column *c = strut_grid_column(plan->study, i, NULL);
@@ -118,7 +117,7 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   for (size_t i = 0; i < ENTRIES && fine; i++)
     if (keeps(plan, entries[i].keep))
       fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
-  fine = fine && add_things(plan, scene) && add_quantities(plan, scene);
+  fine = fine && add_things(plan, &setup->scene) && add_quantities(plan, &setup->experiment);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
   if (fine && plan->start) fine = add_column(plan, "", "start_unstable", "1", false);
   if (fine && plan->check)
@@ -128,25 +127,26 @@ static bool add_columns(strut_sweep_plan *plan, const strut_scene *scene) {
   return fine;
 }
 
-static strut_status choose_columns(strut_sweep_plan *plan, const strut_scene *scene,
+static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *setup,
                                    strut_error *error) {
+  const strut_scene *scene = &setup->scene;
   const strut_study *study = plan->study;
   bool shapes = scene->configuration_count > 0;
   bool usual = !study->keep && !study->quantity_count;
   plan->keep = usual ? USUAL : study->keep;
   if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
-  plan->start = usual && scene->settle.wanted;
+  plan->start = usual && setup->experiment.settle.wanted;
   plan->check = study->half_step || study->check_accuracy > 0.0;
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
-  size_t quantities = scene->experiment.quantity_count;
+  size_t quantities = setup->experiment.quantity_count;
   size_t most = plan->axis_columns + ENTRIES + 5 + 2 * scene->contact_count +
                 2 * scene->node_count + quantities;
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
-  if (!plan->columns || !plan->quantities || !add_columns(plan, scene))
+  if (!plan->columns || !plan->quantities || !add_columns(plan, setup))
     return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return STRUT_OK;
 }
@@ -157,15 +157,15 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   plan->points = strut_grid_points(study);
   plan->axis_columns = strut_grid_columns(study);
   if (plan->points < 0) return strut_fail(error, STRUT_USAGE, "a study has 1e9 points at most");
-  strut_scene scene;
+  strut_setup setup;
   strut_study_value *values =
       strut_arena_allocate(&plan->arena, plan->axis_columns + 1, sizeof *values);
   if (!values) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   strut_grid_values(study, 0, values);
-  strut_status status = scenes->scene(scenes->context, values, &scene, error);
+  strut_status status = scenes->setup(scenes->context, values, &setup, error);
   if (status) return status;
-  status = choose_columns(plan, &scene, error);
-  strut_scene_free(&scene);
+  status = choose_columns(plan, &setup, error);
+  strut_setup_free(&setup);
   return status;
 }
 
@@ -185,8 +185,8 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
 }
 
 /* The value of an entry; NAN if the summary has none. */
-static double number_of(const strut_summary *s, const strut_scene *scene, size_t index) {
-  double period = strut_scene_span(scene).period;
+static double number_of(const strut_summary *s, const strut_setup *setup, size_t index) {
+  double period = strut_experiment_span(&setup->experiment, &setup->scene).period;
   bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
   const double values[ENTRIES] = {s->velocity,
                                   s->velocity_spread,
@@ -245,16 +245,16 @@ static double measured_value(const strut_summary *s, const char *name) {
   return (double)NAN;
 }
 
-void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
+void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *cells) {
   for (size_t i = 0; i < ENTRIES; i++) {
     if (!keeps(plan, entries[i].keep)) continue;
     if (entries[i].word)
       strut_sweep_word(cells, summary ? word_of(summary, entries[i].keep) : "");
     else
-      strut_sweep_number(cells, summary ? number_of(summary, scene, i) : (double)NAN);
+      strut_sweep_number(cells, summary ? number_of(summary, setup, i) : (double)NAN);
   }
-  if (summary) fill_things(plan, scene, summary, cells);
+  if (summary) fill_things(plan, &setup->scene, summary, cells);
   for (size_t i = 0; i < plan->quantity_count; i++)
     strut_sweep_number(cells, summary ? measured_value(summary, plan->quantities[i]) : (double)NAN);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(cells, outcome);

@@ -22,7 +22,7 @@ typedef struct strut_row_buffer {
 /* sweep_columns.c */
 
 /** Appends the kept values of a run; summary NULL: all missing. outcome may be "". */
-void strut_sweep_fill(const strut_sweep_plan *plan, const strut_scene *scene,
+void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *cells);
 void strut_sweep_number(strut_row_buffer *cells, double value);
 void strut_sweep_word(strut_row_buffer *cells, const char *word);
@@ -37,7 +37,7 @@ typedef struct strut_sweep_worker {
 
 typedef enum strut_sweep_stage {
   STRUT_SWEEP_IDLE,    /* no point */
-  STRUT_SWEEP_WAITING, /* for the run of `scene` with `options` */
+  STRUT_SWEEP_WAITING, /* for the run of `setup` with `options` */
   STRUT_SWEEP_RUNNING
 } strut_sweep_stage;
 
@@ -46,7 +46,7 @@ typedef struct strut_sweep_job {
   strut_sweep_stage stage;
   int64_t point;
   strut_row_buffer cells;
-  strut_scene scene;
+  strut_setup setup;
   strut_model *model; /* of the scene, where someone has compiled it */
   strut_run_options options;
   strut_sink *sinks[1];

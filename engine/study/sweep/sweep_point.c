@@ -34,16 +34,16 @@ static bool finish_point(const strut_sweep_worker *w, strut_sweep_job *job, stru
              job->error.message);
   }
   cells->row = (strut_result_slot){.status = status,
-                            .numbers = cells->numbers,
-                            .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
-                            .message = cells->message};
+                                   .numbers = cells->numbers,
+                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
+                                   .message = cells->message};
   return false;
 }
 
 /* The same where the point has a scene. */
 static bool finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
                               strut_status status) {
-  strut_scene_free(&job->scene);
+  strut_setup_free(&job->setup);
   return finish_point(w, job, status);
 }
 
@@ -52,7 +52,7 @@ static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *j
   job->options = (strut_run_options){.interrupt = w->options->interrupt};
   job->files = NULL;
   if (!w->plan->study->trajectories || !w->options->directory) return STRUT_OK;
-  char *text = w->plan->scenes.text(&job->scene);
+  char *text = w->plan->scenes.text(&job->setup);
   if (!text) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
   job->files = strut_sweep_record_begin(w->options->directory, job->point, text, &job->error);
   strut_release(text);
@@ -81,9 +81,9 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
       strut_sweep_number(cells, cells->values[i].number);
   }
   strut_status status =
-      plan->scenes.scene(plan->scenes.context, cells->values, &job->scene, &job->error);
+      plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
   if (status) return finish_point(w, job, status);
-  status = strut_equilibrium_cache_resolve(w->standing, &job->scene, &job->error);
+  status = strut_equilibrium_cache_resolve(w->standing, &job->setup, &job->error);
   if (!status) status = begin_record(w, job);
   if (status) return finish_with_scene(w, job, status);
   job->stage = STRUT_SWEEP_WAITING;
@@ -93,11 +93,11 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
 /* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
 static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *job,
                                  const strut_summary *summary, char *name) {
-  const strut_scene *scene = &job->scene;
+  const strut_scene *scene = &job->setup.scene;
   int32_t index = -1;
   if (!(w->plan->keep >> STRUT_KEEP_OUTCOME & 1u) || !scene->configuration_count) return STRUT_OK;
-  strut_status status =
-      strut_equilibrium_cache_nearest(w->standing, scene, summary->positions, &index, &job->error);
+  strut_status status = strut_equilibrium_cache_nearest(w->standing, &job->setup,
+                                                        summary->positions, &index, &job->error);
   snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
   return status;
 }
@@ -126,17 +126,18 @@ static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, 
   bool began = status == STRUT_OK || status == STRUT_DIVERGED;
   if (job->files) {
     strut_error late = {0};
-    strut_status written = strut_sweep_record_end(job->files, &job->scene, summary, began, &late);
+    strut_status written =
+        strut_sweep_record_end(job->files, &job->setup.scene, summary, began, &late);
     if (written) status = strut_fail(&job->error, written, "%s", late.message);
   }
   if (!status) status = name_outcome(w, job, summary, outcome);
   if (status) return finish_with_scene(w, job, status);
   job->warning_count = summary->warning_count;
   memcpy(job->warnings, summary->warnings, sizeof job->warnings);
-  strut_sweep_fill(w->plan, &job->scene, summary, outcome, &job->cells);
+  strut_sweep_fill(w->plan, &job->setup, summary, outcome, &job->cells);
   if (!w->plan->check) return finish_with_scene(w, job, STRUT_OK);
   snprintf(job->first, sizeof job->first, "%s", outcome_word(w, summary, outcome));
-  refine_experiment(w->plan->study, &job->scene.experiment);
+  refine_experiment(w->plan->study, &job->setup.experiment);
   job->options = (strut_run_options){.interrupt = w->options->interrupt};
   job->second = true;
   job->error = (strut_error){0};
@@ -171,7 +172,7 @@ bool strut_sweep_job_take(const strut_sweep_worker *w, strut_sweep_job *job, str
 }
 
 strut_status strut_sweep_job_compile(strut_sweep_job *job) {
-  return job->model ? STRUT_OK : strut_model_compile(&job->scene, &job->model, &job->error);
+  return job->model ? STRUT_OK : strut_model_compile(&job->setup.scene, &job->model, &job->error);
 }
 
 void strut_sweep_job_finish(const strut_sweep_worker *w, strut_sweep_job *job) {
@@ -179,10 +180,13 @@ void strut_sweep_job_finish(const strut_sweep_worker *w, strut_sweep_job *job) {
     strut_summary summary = {0};
     strut_status status;
     job->stage = STRUT_SWEEP_RUNNING;
-    if (job->scene.experiment.accuracy > 0.0)
-      status = strut_simulate_accurately(&job->scene, &job->options, &summary, &job->error);
-    else if (!(status = strut_sweep_job_compile(job)))
-      status = strut_simulate(job->model, &job->options, &summary, &job->error);
+    const strut_experiment *experiment = &job->setup.experiment;
+    status = strut_sweep_job_compile(job);
+    if (!status && experiment->accuracy > 0.0)
+      status =
+          strut_simulate_accurately(job->model, experiment, &job->options, &summary, &job->error);
+    else if (!status)
+      status = strut_simulate(job->model, experiment, &job->options, &summary, &job->error);
     strut_sweep_job_take(w, job, status, &summary, &job->error);
   } while (job->stage == STRUT_SWEEP_WAITING);
 }

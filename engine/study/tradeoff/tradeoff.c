@@ -2,6 +2,7 @@
 /* The whole study, from the variants of the model to the Pareto front. */
 #include "engine/study/tradeoff/tradeoff.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -178,7 +179,7 @@ static double regularisation_speed(const tradeoff_study *s, const strut_friction
 }
 
 static void describe(const tradeoff_study *s, kind what, strut_model_variant *f) {
-  const strut_scene *scene = s->scenes[0];
+  const strut_scene *scene = &s->setups[0]->scene;
   if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
   if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
   if (what == MASS)
@@ -205,7 +206,7 @@ static void describe(const tradeoff_study *s, kind what, strut_model_variant *f)
 static kind kind_of(const tradeoff_study *s, int variant) {
   int found = -1;
   for (int what = OWN; what < KINDS; what++)
-    if (makes_sense(s->scenes[0], (kind)what) && ++found == variant) return (kind)what;
+    if (makes_sense(&s->setups[0]->scene, (kind)what) && ++found == variant) return (kind)what;
   return OWN;
 }
 
@@ -215,7 +216,7 @@ strut_status strut_tradeoff_list_variants(tradeoff_study *s) {
   r->variants = strut_arena_allocate(&r->arena, KINDS, sizeof *r->variants);
   if (!r->variants) return STRUT_NO_MEMORY;
   for (int what = OWN; what < KINDS; what++) {
-    if (!makes_sense(s->scenes[0], (kind)what) || (what != OWN && !all)) continue;
+    if (!makes_sense(&s->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
     strut_model_variant *f = &r->variants[r->variant_count++];
     describe(s, (kind)what, f);
     f->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof *f->value);
@@ -274,11 +275,11 @@ bool strut_tradeoff_has_switches(const strut_scene *scene) {
 
 bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant) {
   kind what = kind_of(s, variant);
-  bool own = has_friction(s->scenes[0], STRUT_FRICTION_COULOMB);
+  bool own = has_friction(&s->setups[0]->scene, STRUT_FRICTION_COULOMB);
   bool exact = own ? what <= GROUND : what == COULOMB;
   if (exact && !method->events) return false;
   return !method->events || strut_tradeoff_is_adaptive(method) ||
-         strut_tradeoff_has_switches(s->scenes[0]);
+         strut_tradeoff_has_switches(&s->setups[0]->scene);
 }
 
 bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method,
@@ -300,31 +301,55 @@ static strut_status out_of_memory(tradeoff_study *s) {
   return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
 }
 
-static strut_tradeoff_measure choose_measure(const strut_scene *scene, strut_tradeoff_measure m) {
+strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
+                                    const strut_model **model) {
+  assert(point < s->result->point_count && variant >= 0 && variant < TRADEOFF_VARIANTS);
+  tradeoff_model *m = &s->models[point * TRADEOFF_VARIANTS + (size_t)variant];
+  strut_status status = STRUT_OK;
+  if (!m->model) {
+    m->scene = s->setups[point]->scene;
+    status = strut_tradeoff_change_scene(s, variant, &m->scene, &m->arena)
+                 ? strut_fail(s->error, STRUT_NO_MEMORY, "out of memory")
+                 : strut_model_compile(&m->scene, &m->model, s->error);
+  }
+  *model = m->model;
+  return status;
+}
+
+static void free_models(tradeoff_study *s) {
+  size_t count = s->models ? s->result->point_count * TRADEOFF_VARIANTS : 0;
+  for (size_t i = 0; i < count; i++) {
+    strut_model_free(s->models[i].model);
+    strut_arena_free(&s->models[i].arena);
+  }
+  strut_release(s->models);
+}
+
+static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tradeoff_measure m) {
   if (m != STRUT_TRADEOFF_AUTOMATIC) return m;
-  bool walks = scene->contact_count > 0 || scene->experiment.periods > 0;
+  bool walks = setup->scene.contact_count > 0 || setup->experiment.periods > 0;
   return walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
 }
 
 static strut_status measure_points(tradeoff_study *s) {
   for (size_t p = 0; p < s->result->point_count; p++) {
-    strut_model *model = NULL;
-    strut_status status = strut_model_compile(s->scenes[p], &model, s->error);
+    const strut_setup *setup = s->setups[p];
+    const strut_model *model = NULL;
+    strut_status status = strut_tradeoff_compile(s, p, 0, &model);
     if (status != STRUT_OK) return status;
-    strut_span span = strut_scene_span(s->scenes[p]);
+    strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
     s->size[p] = model->size;
     s->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
-    strut_model_free(model);
   }
   return STRUT_OK;
 }
 
 static strut_status prepare(tradeoff_study *s, size_t count) {
   strut_tradeoff *r = s->result;
-  const strut_scene *scene = s->scenes[0];
+  const strut_scene *scene = &s->setups[0]->scene;
   r->name = scene->name;
   r->point_count = count;
-  r->measure = choose_measure(scene, s->options->measure);
+  r->measure = choose_measure(s->setups[0], s->options->measure);
   r->value_count = r->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
   s->size = strut_arena_allocate(&r->arena, count, sizeof *s->size);
@@ -333,10 +358,11 @@ static strut_status prepare(tradeoff_study *s, size_t count) {
   s->base_seconds = strut_arena_allocate(&r->arena, count, sizeof *s->base_seconds);
   s->base_timed = strut_arena_allocate(&r->arena, count, sizeof *s->base_timed);
   s->scratch = strut_arena_allocate(&r->arena, most, sizeof *s->scratch);
-  if (!s->size || !s->scale || !s->base_evaluations || !s->base_seconds || !s->base_timed ||
-      !s->scratch)
+  s->models = strut_allocate(count * TRADEOFF_VARIANTS, sizeof *s->models);
+  if (!s->models || !s->size || !s->scale || !s->base_evaluations || !s->base_seconds ||
+      !s->base_timed || !s->scratch)
     return out_of_memory(s);
-  if (!(strut_scene_span(scene).duration > 0))
+  if (!(strut_experiment_span(&s->setups[0]->experiment, scene).duration > 0))
     return strut_fail(s->error, STRUT_USAGE,
                       "the scene has no run: add 'run' with a duration or periods");
   strut_status status = measure_points(s);
@@ -351,7 +377,7 @@ static void fall_back_to_position(tradeoff_study *s) {
   bool still = r->measure == STRUT_TRADEOFF_VELOCITY && fabs(s->scratch[0]) < 1e-9 * s->scale[0];
   if (s->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
   r->measure = STRUT_TRADEOFF_POSITION;
-  r->value_count = 2 * s->scenes[0]->node_count;
+  r->value_count = 2 * s->setups[0]->scene.node_count;
 }
 
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
@@ -360,9 +386,7 @@ static strut_status choose_base(tradeoff_study *s) {
   tradeoff_outcome outcome = {0};
   strut_status status = STRUT_OK;
   strut_experiment e = strut_tradeoff_experiment(s, 0);
-  strut_scene scene = *s->scenes[0];
-  scene.experiment = e;
-  strut_span span = strut_scene_span(&scene);
+  strut_span span = strut_tradeoff_span(s, 0);
   r->periods = e.periods;
   r->duration = span.duration;
   for (size_t i = 0; strut_integrator_at(i); i++) {
@@ -392,12 +416,9 @@ static strut_status run_base(tradeoff_study *s, step_series_list *own) {
     if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
       in = &own->at[i];
   if (in == &alone) alone.group = (int)r->group_count++;
-  for (size_t p = 0; p < r->point_count; p++) {
-    strut_scene scene = *s->scenes[p];
-    scene.experiment = strut_tradeoff_experiment(s, p);
+  for (size_t p = 0; p < r->point_count; p++)
     s->base_evaluations[p] =
-        strut_scene_span(&scene).duration / s->base.step * s->base.method->evaluations;
-  }
+        strut_tradeoff_span(s, p).duration / s->base.step * s->base.method->evaluations;
   bool cannot = false;
   strut_status status = strut_tradeoff_run_row(s, in, s->base, true, &cannot);
   in->last_cost = 0;
@@ -529,18 +550,20 @@ static strut_status make(tradeoff_study *s, size_t count) {
   return STRUT_OK;
 }
 
-strut_status strut_tradeoff_make(const strut_scene *const *scenes, size_t count,
+strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                  const strut_tradeoff_options *options, strut_tradeoff *result,
                                  strut_error *error) {
   strut_error own = {0};
   *result = (strut_tradeoff){.name = ""};
-  tradeoff_study s = {.scenes = scenes,
+  tradeoff_study s = {.setups = setups,
                       .options = options,
                       .result = result,
                       .error = error ? error : &own,
                       .began = strut_tradeoff_cpu_clock(),
                       .budget = options->budget > 0 ? options->budget : USUAL_BUDGET};
-  return make(&s, count);
+  strut_status status = make(&s, count);
+  free_models(&s);
+  return status;
 }
 
 void strut_tradeoff_free(strut_tradeoff *result) {

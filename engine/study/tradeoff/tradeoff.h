@@ -18,6 +18,7 @@
 #include <stdbool.h>
 
 #include "engine/integrate/integrator.h"
+#include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
 
 typedef enum strut_tradeoff_measure {
@@ -102,11 +103,11 @@ typedef struct strut_tradeoff {
 } strut_tradeoff;
 
 /**
- * Runs everything. `scenes` are (count) operating points of one model, alike but for their
+ * Runs everything. `setups` are (count) operating points of one model, alike but for their
  * parameters; as strut_simulate wants them. STRUT_USAGE where there is nothing to measure; else the
  * status of the base's own run where it has none, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_tradeoff_make(const strut_scene *const *scenes, size_t count,
+STRUT_API strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                            const strut_tradeoff_options *options,
                                            strut_tradeoff *result, strut_error *error);
 /** A zeroed struct is allowed. */
@@ -132,8 +133,8 @@ STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int variant, dou
  * differ from run to run, everything else does not while the budget suffices.
  */
 STRUT_API char *strut_tradeoff_table(const strut_tradeoff *result);
-/** scenes: the operating points, whose parameters are listed. */
-STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_scene *const *scenes);
+/** setups: the operating points, whose parameters are listed. */
+STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result, const strut_setup *const *setups);
 /** One row per setting, the spreads over the operating points; diverged: "inf". */
 STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 

@@ -22,8 +22,17 @@ typedef struct tradeoff_outcome {
   double step_limit; /* [s] */
 } tradeoff_outcome;
 
+enum { TRADEOFF_VARIANTS = 7 }; /* at most, with the scene's own model */
+
+/** A point's scene in a variant, and its model once that was needed. */
+typedef struct tradeoff_model {
+  strut_scene scene; /* its contacts may be the arena's; all else is shared */
+  strut_model *model;
+  strut_arena arena;
+} tradeoff_model;
+
 typedef struct tradeoff_study {
-  const strut_scene *const *scenes;
+  const strut_setup *const *setups;
   const strut_tradeoff_options *options;
   strut_tradeoff *result;
   strut_error *error;
@@ -35,6 +44,7 @@ typedef struct tradeoff_study {
   double limit; /* of the base's method [s]; 0 where there is none */
   double *base_evaluations, *base_seconds, *base_timed; /* (points); [s], [s] of the clock */
   size_t row_capacity;
+  tradeoff_model *models; /* (points, TRADEOFF_VARIANTS) */
 } tradeoff_study;
 
 /** This thread's CPU time [s]. */
@@ -45,8 +55,10 @@ double strut_tradeoff_time_left(const tradeoff_study *s, double share);
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
 double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double step);
+/** Duration and period of that experiment. */
+strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point);
 /** The longest step that can make sense: a part of the period, or else of the duration [s]. */
-double strut_tradeoff_longest_step(const strut_scene *scene);
+double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point);
 /**
  * Runs a variant with a setting at an operating point; its values go into (value_count) `value`,
  * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.
@@ -72,6 +84,9 @@ strut_status strut_tradeoff_list_variants(tradeoff_study *s);
 /** Changes a scene into that of a variant; new contacts come from the arena. */
 strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,
                                          strut_arena *arena);
+/** A point's model in a variant, compiled once and kept. Fails as strut_model_compile. */
+strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
+                                    const strut_model **model);
 
 /** Two methods, refined in turn: state of the search for one variant's references. */
 typedef struct tradeoff_reference {

@@ -305,12 +305,12 @@ static void put_rows(strut_json *json, const strut_tradeoff *r) {
   }
 }
 
-static void put_points(strut_json *json, const strut_scene *const *scenes, size_t count) {
+static void put_points(strut_json *json, const strut_setup *const *setups, size_t count) {
   struct cJSON *list = strut_json_array(json, json->root, "points");
   for (size_t p = 0; p < count; p++) {
     struct cJSON *object = strut_json_object(json, list, NULL);
-    for (size_t i = 0; i < scenes[p]->parameter_count; i++) {
-      const strut_parameter *parameter = &scenes[p]->parameters[i];
+    for (size_t i = 0; i < setups[p]->scene.parameter_count; i++) {
+      const strut_parameter *parameter = &setups[p]->scene.parameters[i];
       if (isnan(parameter->value))
         strut_json_text(json, object, parameter->name, parameter->text);
       else
@@ -332,7 +332,7 @@ static void put_advice(strut_json *json, const strut_tradeoff *r) {
   }
 }
 
-char *strut_tradeoff_json(const strut_tradeoff *r, const strut_scene *const *scenes) {
+char *strut_tradeoff_json(const strut_tradeoff *r, const strut_setup *const *setups) {
   strut_json json = strut_json_begin();
   strut_json_text(&json, json.root, "name", r->name);
   strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
@@ -345,7 +345,7 @@ char *strut_tradeoff_json(const strut_tradeoff *r, const strut_scene *const *sce
   strut_json_number(&json, json.root, "base_seconds", r->base_seconds);
   strut_json_number(&json, json.root, "spent_seconds", r->spent);
   strut_json_integer(&json, json.root, "skipped_settings", (int64_t)r->left_out);
-  put_points(&json, scenes, r->point_count);
+  put_points(&json, setups, r->point_count);
   put_variants(&json, r);
   put_rows(&json, r);
   put_advice(&json, r);

@@ -26,7 +26,7 @@ bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
 }
 
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
-  strut_experiment e = s->scenes[point]->experiment;
+  strut_experiment e = s->setups[point]->experiment;
   e.quantity_count = 0; /* only velocity and positions are compared */
   double most = s->options->periods > 0 ? s->options->periods : USUAL_PERIODS;
   e.accuracy = 0;
@@ -41,14 +41,13 @@ strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point
   return e;
 }
 
-static strut_span span_of(const tradeoff_study *s, size_t point) {
-  strut_scene scene = *s->scenes[point];
-  scene.experiment = strut_tradeoff_experiment(s, point);
-  return strut_scene_span(&scene);
+strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point) {
+  const strut_experiment e = strut_tradeoff_experiment(s, point);
+  return strut_experiment_span(&e, &s->setups[point]->scene);
 }
 
 double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double step) {
-  strut_span span = span_of(s, point);
+  strut_span span = strut_tradeoff_span(s, point);
   double turns = span.period > 0 ? span.duration / span.period : 0;
   bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
   double unit = whole ? span.period : span.duration;
@@ -87,8 +86,9 @@ static void take_values(const tradeoff_study *s, const strut_summary *summary, d
   }
 }
 
-double strut_tradeoff_longest_step(const strut_scene *scene) {
-  strut_span span = strut_scene_span(scene);
+double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point) {
+  const strut_setup *setup = s->setups[point];
+  strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
   return (span.period > 0 ? span.period : span.duration) / 20;
 }
 
@@ -96,55 +96,48 @@ double strut_tradeoff_longest_step(const strut_scene *scene) {
  * The largest step worth trying. Where nothing vibrates, as for rigid bars swinging under gravity, the
  * stability limit may exceed the duration: then a part of the duration counts.
  */
-static double useful_limit(const strut_scene *scene, double limit) {
-  return isfinite(limit) ? fmin(limit, strut_tradeoff_longest_step(scene)) : limit;
+static double useful_limit(const tradeoff_study *s, size_t point, double limit) {
+  return isfinite(limit) ? fmin(limit, strut_tradeoff_longest_step(s, point)) : limit;
 }
 
 static bool is_permanent_failure(strut_status status) {
   return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
 }
 
-static strut_status simulate(const tradeoff_study *s, const strut_scene *scene, double *value,
+static strut_status simulate(const tradeoff_study *s, size_t point, int variant,
+                             const strut_experiment *experiment, double *value,
                              tradeoff_outcome *outcome) {
-  strut_model *model = NULL;
+  const strut_model *model = NULL;
   strut_summary summary = {0};
   strut_sink clock = {&outcome->seconds, begin_clock, ignore_rows, end_clock,
                       STRUT_CHANNEL_POSITION};
   strut_sink *sinks[] = {&clock};
   const strut_run_options options = {
       .force = true, .interrupt = s->options->interrupt, .sinks = sinks, .sink_count = 1};
-  strut_status status = strut_model_compile(scene, &model, s->error);
-  if (status == STRUT_OK) status = strut_simulate(model, &options, &summary, s->error);
+  strut_status status = strut_tradeoff_compile(s, point, variant, &model);
+  if (status == STRUT_OK) status = strut_simulate(model, experiment, &options, &summary, s->error);
   outcome->evaluations = summary.force_evaluations;
-  outcome->step_limit = useful_limit(scene, summary.step_limit);
+  outcome->step_limit = useful_limit(s, point, summary.step_limit);
   outcome->cannot = is_permanent_failure(status);
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
   outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;
   if (status == STRUT_OK) take_values(s, &summary, value);
   strut_summary_free(&summary);
-  strut_model_free(model);
   return ours ? status : STRUT_OK;
 }
 
 strut_status strut_tradeoff_run(const tradeoff_study *s, size_t point, int variant,
                                 tradeoff_setting setting, double *value,
                                 tradeoff_outcome *outcome) {
-  strut_scene scene = *s->scenes[point];
-  strut_arena arena = {0};
   *outcome = (tradeoff_outcome){.seconds = (double)NAN};
   for (size_t i = 0; i < s->result->value_count; i++) value[i] = (double)NAN;
-  strut_status status = strut_tradeoff_change_scene(s, variant, &scene, &arena);
-  if (status != STRUT_OK) return strut_fail(s->error, status, "out of memory");
-  strut_experiment *e = &scene.experiment;
-  *e = strut_tradeoff_experiment(s, point);
-  e->integrator = setting.method->name;
-  e->step = strut_tradeoff_fit_step(s, point, setting.step);
-  if (isfinite(setting.tolerance)) e->tolerance = setting.tolerance;
-  e->refine = isfinite(setting.refine) ? setting.refine : 1;
-  e->output_every = strut_scene_span(&scene).duration;
-  status = simulate(s, &scene, value, outcome);
-  strut_arena_free(&arena);
-  return status;
+  strut_experiment e = strut_tradeoff_experiment(s, point);
+  e.integrator = setting.method->name;
+  e.step = strut_tradeoff_fit_step(s, point, setting.step);
+  if (isfinite(setting.tolerance)) e.tolerance = setting.tolerance;
+  e.refine = isfinite(setting.refine) ? setting.refine : 1;
+  e.output_every = strut_tradeoff_span(s, point).duration;
+  return simulate(s, point, variant, &e, value, outcome);
 }
 
 double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
@@ -172,7 +165,7 @@ static const double FIRST_TOLERANCE = 1e-5;
 /* Rank of a method as a reference. */
 static int merit(const tradeoff_study *s, const strut_integrator *method) {
   int merit = method->order;
-  if (method->events && strut_tradeoff_has_switches(s->scenes[0])) merit += 10;
+  if (method->events && strut_tradeoff_has_switches(&s->setups[0]->scene)) merit += 10;
   return merit;
 }
 
@@ -544,7 +537,7 @@ strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all,
   if (limited) first.step = outcome.step_limit;
   if (!limited && !adaptive) {
     double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
-    first.step = fmin(most, strut_tradeoff_longest_step(s->scenes[0]));
+    first.step = fmin(most, strut_tradeoff_longest_step(s, 0));
   }
   first.refine = (double)NAN;
   if (!add_series(s, all, variant, first, limited)) return status;
