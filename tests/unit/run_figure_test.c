@@ -47,8 +47,12 @@ static int tear_down(void **unused) {
 }
 
 static strut_status draw(strut_run_view view, const strut_trajectory *frames, strut_error *error) {
-  const strut_run_figure figure = {
-      .view = view, .width = 250, .scale = {3, 2}, .other = beside, .other_name = "another"};
+  const strut_run_figure figure = {.experiment = &setup.experiment,
+                                   .view = view,
+                                   .width = 250,
+                                   .scale = {3, 2},
+                                   .other = beside,
+                                   .other_name = "another"};
   *error = (strut_error){0};
   return strut_run_figure_draw(scratch_path("a.svg"), &figure, model, frames, &summary, error);
 }

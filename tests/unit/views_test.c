@@ -147,7 +147,8 @@ static void test_film_without_memory(void **unused) {
   for (; failed < MOST && status != STRUT_OK; failed++) {
     strut_error error = {0};
     strut_film_made made;
-    const strut_film film = {.path = scratch_path("a.gif"), .speed = 1};
+    const strut_film film = {
+        .experiment = &t.setup.experiment, .path = scratch_path("a.gif"), .speed = 1};
     strut_fail_allocation_after(failed);
     status = strut_film_make(&film, t.model, &t.motion, &made, &error);
     strut_fail_allocation_after(-1);
@@ -169,7 +170,8 @@ static void test_film_of_what_is_a_number(void **unused) {
   if (strut_encoder_find(NULL) != STRUT_OK) skip();
   make(&t);
   const char *directory = scratch_make();
-  const strut_film film = {.path = scratch_path("a.gif"), .speed = 0.5};
+  const strut_film film = {
+      .experiment = &t.setup.experiment, .path = scratch_path("a.gif"), .speed = 0.5};
   t.position[2][1] = (double)NAN;
   t.motion.status = STRUT_DIVERGED;
   assert_int_equal(strut_film_make(&film, t.model, &t.motion, &made, &error), STRUT_OK);

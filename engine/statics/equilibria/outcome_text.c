@@ -138,9 +138,10 @@ static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibr
   strut_list_nodes(scene, flag, sizeof names, names);
   const char *end = e->ends_as >= 0 ? finds[e->ends_as].e.name : NULL;
   (void)f;
-  snprintf(e->verdict, sizeof e->verdict, "%s%.24s onto %s%s%.60s",
-           over ? "tips over " : "gives way", over ? over : "", names, end ? ": " : "",
-           end ? end : "");
+  int length = snprintf(e->verdict, sizeof e->verdict, "%s%.24s onto %s%s%.60s",
+                        over ? "tips over " : "gives way", over ? over : "", names, end ? ": " : "",
+                        end ? end : ""); /* a long list of names is cut */
+  if (length < 0) e->verdict[0] = '\0';
 }
 
 static void say_no_rest(const strut_equilibrium_search *h, strut_equilibrium *e) {
