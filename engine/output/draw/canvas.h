@@ -50,7 +50,7 @@ typedef struct strut_fill {
   strut_colour hatch_colour;
 } strut_fill;
 
-/** How a text is set. Its size is the font's [pt]; 0 stands for 8. */
+/** How a text is set. Font size in pt; 0: 8. */
 typedef struct strut_font {
   double size;
   bool bold, italic;
@@ -115,6 +115,6 @@ STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_fon
 
 struct strut_file;
 /** The file that a picture is written to, for tests that make writing fail. */
-struct strut_file *strut_canvas_file(strut_canvas *canvas);
+STRUT_API struct strut_file *strut_canvas_file(strut_canvas *canvas);
 
 #endif

@@ -80,6 +80,6 @@ STRUT_API void strut_draw_trail(strut_canvas *canvas, const strut_window *window
 /** A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
 /** Distance of a point from the segment from a to b. */
-double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]);
+STRUT_API double strut_distance_to_segment(const double p[2], const double a[2], const double b[2]);
 
 #endif

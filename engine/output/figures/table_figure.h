@@ -29,9 +29,6 @@ typedef struct strut_table_axis {
   bool limited;      /* the axis goes from low to high, in the column's unit */
   double low, high;
 } strut_table_axis;
-/** The axis for a column named `name` with that unit; its range is NAN where it is not limited. */
-strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
-                               bool logarithmic);
 
 /** Curves from the columns of a table. Columns by number, STRUT_NO_COLUMN for none. */
 typedef struct strut_table_figure {

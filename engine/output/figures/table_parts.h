@@ -28,6 +28,10 @@ strut_status strut_table_numbers(const strut_table *table, int column, strut_err
 void strut_table_panel_title(const strut_table *table, int column, const char *name, size_t panel,
                              char title[300]);
 
+/** The axis for a column named `name` with that unit; its range is NAN where it is not limited. */
+strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
+                               bool logarithmic);
+
 /** A page of panels of one size, below a title and `head` [pt] for a legend. */
 typedef struct strut_panel_page {
   double width, head;         /* [pt] */

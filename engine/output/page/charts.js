@@ -22,7 +22,7 @@
     return high > low ? high - low : 0;
   }
 
-  /* Of many curves those that move most. */
+  /* Chooses the curves that vary most. */
   function liveliest(curves, frames) {
     const ranges = curves.map((curve, index) => ({ index, range: rangeOf(curve, frames) }));
     ranges.sort((a, b) => b.range - a.range);
@@ -57,7 +57,7 @@
       .map((c) => c.curve);
   }
 
-  /* All that can be shown: {name, unit, curves: [{name, at(frame)}]}. */
+  /* The possible charts: {name, unit, curves: [{name, at(frame)}]}. */
   function kindsOf(data, motion) {
     const count = data.nodes.length, kinds = [], track = page.trackedX(data, motion);
     kinds.push({ name: "displacement", unit: "m", curves: displacements(data, motion, track) });
@@ -84,8 +84,8 @@
     return kinds.filter((kind) => kind.curves.length);
   }
 
-  /* Rows for dygraphs: all frames of a stretch of time or, of many, each stretch's least and largest
-     of every curve. */
+  /* Rows for dygraphs: all frames of a time range or, if there are many, the least and largest of
+     every curve in each part of it. */
   function thin(time, curves, low, high) {
     let first = 0, last = time.length - 1;
     while (first < last && time[first + 1] < low) first++;
@@ -202,7 +202,7 @@
       host.append(box);
       const [low, high] = window_ || [motion.time[0], motion.time[motion.frames - 1]];
       chart.graph = new Dygraph(plot, thin(motion.time, chart.scaled, low, high), {
-        labels: ["time", ...kind.curves.map((_, i) => String(i))], /* names stand in the title */
+        labels: ["time", ...kind.curves.map((_, i) => String(i))], /* names are in the title */
         colors: kind.curves.map((_, i) => COLOURS[i % COLOURS.length]),
         strokePattern: null, strokeWidth: 1.3, highlightCircleSize: 0, legend: "never",
         axes: { y: { axisLabelWidth: 52 }, x: { drawGrid: true } },

@@ -10,12 +10,12 @@
   let motion = null, player = null, charts = null, cards = null, theme = page.theme();
   let picked = -1, limits = { force: 0, contact: 0 }, whole = null, extent = null, track = null;
   let camera = { x: 0, y: 0, scale: 1 }, waiting = false;
-  let elsewhere = false; /* what is shown stands somewhere else: even a free camera looks there */
+  let elsewhere = false; /* another shape is shown: even a free camera moves to it */
   const drawTimes = [];
   let decimals = 0;
 
-  /* Figures that the drawing of all frames shares. Of very many values a sample will do, at uneven
-     steps: even ones would see a periodic motion always in the same phase. */
+  /* Finds the ranges that all frames share. Of many values a sample suffices, at uneven steps:
+     even ones would meet a periodic motion always in the same phase. */
   function measure() {
     const count = data.nodes.length, normals = [];
     const step = Math.max(1, motion.frames * (count + data.members.length) / MEASURED);
@@ -33,7 +33,7 @@
       limits.force = Math.max(limits.force, own.force);
       if (shape.contact) normals.push(page.limitsOf({ contact: shape.contact }).contact);
     }
-    normals.sort((a, b) => a - b); /* impacts last a moment: most frames set the scale */
+    normals.sort((a, b) => a - b); /* impacts are short: the scale suits most frames */
     limits.contact = normals.length ? normals[Math.floor(0.9 * (normals.length - 1))] : 0;
     extent = [0, high[0], wide, high[1]];
     if (count === 1) extent[2] = data.size;
@@ -76,7 +76,7 @@
 
   function aim(shape, coloured) {
     const canvas = element("canvas"), height = canvas.clientHeight, mode = element("camera").value;
-    const scale = coloured ? (canvas.clientWidth > 600 ? 72 : 48) : 0; /* the colours' own room */
+    const scale = coloured ? (canvas.clientWidth > 600 ? 72 : 48) : 0; /* width of the colour bar */
     const width = canvas.clientWidth - scale;
     canvas.classList.toggle("free", mode === "free");
     if (mode === "free" && !elsewhere) return;
@@ -91,7 +91,7 @@
     }
     camera.x += 0.5 * scale / camera.scale;
   }
-  let offset = 0; /* of the structure's middle from the tracked point, as it is on average */
+  let offset = 0; /* mean distance of the structure's middle from the tracked point */
 
   function draw() {
     waiting = false;
@@ -199,7 +199,7 @@
     freeCamera();
   }
 
-  /* Choices that would change nothing are not there. */
+  /* Hides choices without effect. */
   function offerChoices() {
     const still = !motion || motion.frames < 2, coloured = (motion && motion.force) ||
       (data.equilibria || []).some((e) => e.force);
@@ -252,7 +252,7 @@
       : "This browser is too old for this page: it cannot unpack data (DecompressionStream).";
   });
 
-  /* For tests: what is shown, and the buttons' work, without a pixel in between. */
+  /* For tests: the state shown, and the actions of the buttons. */
   window.strut = {
     ready,
     data,
@@ -262,7 +262,7 @@
     get playing() { return Boolean(player && player.playing); },
     get picked() { return picked; },
     positions: () => Array.from(currentShape().position),
-    onStage() { /* the nodes' places on the canvas, pixels */
+    onStage() { /* positions of the nodes on the canvas [pixels] */
       const canvas = element("canvas"), shape = currentShape(), at = [];
       aim(shape, !element("colours").hidden);
       for (let i = 0; i < shape.position.length; i += 2)

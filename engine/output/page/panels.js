@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words around the drawings: summary, sampling, the scene's text. */
+/* Parameters, summary, sampling and the scene's text; and the equilibria as cards. */
 "use strict";
 (function (page) {
   function fillTable(id, rows) {
@@ -65,7 +65,7 @@
   };
 })(window.strutPage);
 
-/* The equilibria, each as a card with its shape. */
+/* A card with its shape for each equilibrium. */
 (function (page) {
   const MOST_PASSES = 3;
 
@@ -74,7 +74,7 @@
       .sort((a, b) => a.height - b.height).slice(0, MOST_PASSES);
   }
 
-  /* The ground's push as the drawing takes it: normal, friction for each contact. */
+  /* Contact forces as the drawing expects them: normal and friction of each contact. */
   page.shapeOf = function (data, equilibrium) {
     const contact = new Float64Array(2 * data.contacts.length);
     (equilibrium.contacts || []).forEach((node, k) => {

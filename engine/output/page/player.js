@@ -49,10 +49,10 @@ window.strutPage = {};
   };
 })(window.strutPage);
 
-/* Which frame is shown: play, pause, scrub, speed. Frames are shown as recorded, never in between. */
+/* Playing, pausing, scrubbing, speed. Frames are shown as recorded, never interpolated. */
 (function (page) {
   const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
-  const WATCHED = 12; /* a motion is over after about so many seconds, if not faster than it was */
+  const WATCHED = 12; /* approximate playing time [s], if not faster than real time */
 
   page.createPlayer = function (time, onFrame) {
     const last = time.length - 1, begin = time[0], span = time[last] - begin;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawing a structure true to scale on a canvas: for the stage and for the cards. */
+/* Draws a structure to scale on a canvas, for the stage and for the cards. */
 "use strict";
 (function (page) {
   const SIGNED = [[10, 31, 102], [47, 74, 158], [125, 131, 144], [201, 139, 69], [245, 163, 26]];
@@ -38,7 +38,7 @@
     return { context, width, height };
   };
 
-  /* What does not change from frame to frame. */
+  /* Data that do not change between frames. */
   page.structureOf = function (data) {
     const count = data.members.length;
     const shades = count > 500 ? 9 : 33; /* strokes cost more than members */
@@ -116,7 +116,7 @@
     const plain = [theme.bar, theme.spring, theme.cable], slack = s.buckets - 1;
     sortMembers(s, shape, coloured ? options.limit : 0);
     c.lineCap = s.count > 500 ? "butt" : "round";
-    if (coloured && s.count <= 500) { /* an edge keeps light colours apart from the paper */
+    if (coloured && s.count <= 500) { /* an edge separates light colours from the paper */
       c.strokeStyle = theme.casing;
       for (let kind = 0; kind < 2; kind++) {
         c.lineWidth = (WIDTHS[kind] + 1.4) * thin;
@@ -173,7 +173,7 @@
     return angles;
   }
 
-  /* The direction farthest from all of them, upwards where that leaves a choice. */
+  /* The direction farthest from all of them; of equal ones the uppermost. */
   function freeAngle(angles) {
     let best = -Math.PI / 2, most = -1;
     for (let k = 0; k < 16; k++) {
@@ -207,7 +207,7 @@
     }
     if (!options.names || count > 60) return;
     const angles = memberAngles(s, px, py), taken = [];
-    if (data.ground) /* below a contact are its force and the ground's marks */
+    if (data.ground) /* names avoid the space below a contact, with its force and the ground's marks */
       for (const node of data.contacts) angles[node].push(Math.PI / 2);
     c.font = "italic 13px system-ui, 'DejaVu Sans', sans-serif";
     c.textBaseline = "middle";
@@ -290,7 +290,7 @@
     c.fill();
   }
 
-  /* The ground's forces: what pushes ends at its node, friction begins there. */
+  /* Contact forces: the normal force ends at its node, friction starts there. */
   function drawForces(c, data, shape, options, px, py) {
     if (!shape.contact || !options.arrows || !(options.contactLimit > 0)) return;
     const slope = data.ground ? data.ground.slope : 0, longest = options.small ? 16 : 46;
@@ -349,7 +349,7 @@
     return String(number).replace("-", "\u2212") + " " + prefixes[group + 5] + unit;
   };
 
-  /* The scale of colours: low at the foot. */
+  /* The colour bar, low values at the bottom. */
   page.drawColourScale = function (canvas, limit, theme) {
     const { context: c, height } = page.prepareCanvas(canvas), top = 24, bottom = height - 8;
     c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
