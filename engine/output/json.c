@@ -77,6 +77,7 @@ static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_text(json, to, "status", strut_status_text(s->status));
   strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
   add_warnings(json, to, s);
+  strut_json_text(json, to, "caveat", s->caveat[0] ? s->caveat : NULL);
   strut_json_number(json, to, "velocity", s->velocity);
   strut_json_number(json, to, "velocity_spread", s->velocity_spread);
   if (s->velocity_zero) strut_json_bool(json, to, "velocity_zero", true);

@@ -60,6 +60,11 @@ static void add_warnings(rows *r) {
   }
 }
 
+static void add_caveat(rows *r) {
+  const char *caveat = text(r->from, "caveat");
+  if (caveat) add_row(r, "accuracy", caveat);
+}
+
 static void add_velocity(rows *r, const strut_experiment *experiment, const strut_scene *scene) {
   int32_t node = experiment->measure_node;
   char label[LABEL], value[VALUE];
@@ -163,6 +168,7 @@ void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
     add_status(&r);
     add_warnings(&r);
     add_velocity(&r, experiment, scene);
+    add_caveat(&r);
     add_measured(&r);
     add_steps(&r);
     add_contacts(&r);

@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
@@ -13,6 +14,18 @@ enum { MOST_ROWS = 10, DIGITS = 4 };
 
 static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
+}
+
+/* Each clause of the caveat on a line of its own. */
+static void add_caveat(strut_buffer *table, const char *caveat) {
+  const char *label = "accuracy";
+  while (*caveat) {
+    const char *end = strstr(caveat, "; ");
+    int length = end ? (int)(end - caveat) + 1 : (int)strlen(caveat);
+    strut_buffer_add(table, "  %-11s %.*s\n", label, length, caveat);
+    caveat += end ? length + 1 : length;
+    label = "";
+  }
 }
 
 /* Steady motion and accuracy, if requested. */
@@ -45,6 +58,7 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
   } else if (m->reason[0]) {
     strut_buffer_add(table, "  orbit       not computed: %s\n", m->reason);
   }
+  if (!(a->wanted > 0.0)) add_caveat(table, s->caveat);
   if (!(a->wanted > 0.0)) return;
   char expected[40] = "the velocity is zero by symmetry";
   if (!s->velocity_zero || s->measured_count)

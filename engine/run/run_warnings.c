@@ -139,7 +139,34 @@ static void warn_of_balance(const strut_run *r) {
                      s->energy.residual > 0.0 ? "came from nowhere" : "went nowhere", why);
 }
 
+/* The residual of the energy balance over the net work done on the structure, in words. */
+static void describe_residual(const strut_energy *e, char *text, size_t size) {
+  double work = fabs(e->drive_work + e->load_work + e->belt_work);
+  double part = fabs(e->residual) / work;
+  if (!(work > 0.0) || !isfinite(part)) return;
+  const char *verdict = part < 1e-3 ? "small" : part < 1e-2 ? "moderate" : "large";
+  snprintf(text, size, "; the energy residual is %s: %.2g %% of the net work done", verdict,
+           100.0 * part);
+}
+
+/* A fixed step that passes over switches says nothing of its own error. */
+static void note_unknown_error(const strut_run *r) {
+  strut_summary *s = r->summary;
+  const char *over = passed_over(r);
+  char residual[160] = "";
+  s->caveat[0] = '\0';
+  if (!over || r->options->chosen || s->status != STRUT_OK) return;
+  if (s->balance != STRUT_BALANCE_NOT_KEPT)
+    describe_residual(&s->energy, residual, sizeof residual);
+  snprintf(
+      s->caveat, sizeof s->caveat,
+      "not known: fixed steps of %s pass over %s%s; --accuracy 1%% chooses the method and step "
+      "and states the error",
+      s->method, over, residual);
+}
+
 void strut_run_warn(const strut_run *r) {
+  note_unknown_error(r);
   strut_summary_warn_of_start(r->summary);
   warn_of_balance(r);
   warn_of_bands(r);

@@ -124,6 +124,22 @@ for set in A=0.2 A=2e-5 "A=500 mm" mass=99 A=0; do
   [ ! -s err ] || fail "--set $set is no case for a note"
 done
 
+# A fixed step that passes over switches does not know its error, and says so; others do not.
+write slide.yaml <<'EOF'
+nodes: {block: {position: [0, 0], mass: 1}}
+ground: {stiffness: 1e5, damping: 100, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
+loads: {push: {node: block, force: [4 N, 0 N]}}
+EOF
+expect 0 run slide.yaml --json
+out_has '"caveat":	"not known: fixed steps of rk4 pass over changes between sticking and slipping; the energy residual'
+expect 0 run slide.yaml
+out_has '  accuracy    not known: fixed steps of rk4 pass over changes between sticking and slipping;'
+for method in "--integrator rk4-events" "--accuracy 1%"; do
+  # shellcheck disable=SC2086
+  expect 0 run slide.yaml --json $method
+  out_has '"caveat":	null'
+done
+
 # The models that come with strut say nothing of the kind.
 for model in "$models"/*/*.yaml; do
   grep -q '^strut:' "$model" && ! grep -q '^sweep:' "$model" || continue

@@ -137,6 +137,7 @@ typedef struct strut_summary {
   strut_balance balance;
   strut_steady_summary steady;
   strut_accuracy_summary accuracy;
+  char caveat[400]; /* why the error of the result is not known, and how to learn it; else empty */
   size_t warning_count;
   strut_warning warnings[STRUT_MOST_WARNINGS];
 } strut_summary;
