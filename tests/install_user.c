@@ -90,7 +90,7 @@ int main(void) {
   strut_hdf5_free(sinks[1]);
   strut_summary_free(&summary);
   strut_model_free(model);
-  strut_setup_free(&scene);
+  strut_setup_free(&setup);
   strut_diagnostics_free(&diagnostics);
   return status == STRUT_OK ? 0 : 1;
 }

@@ -149,7 +149,7 @@ strut_status strut_run_pictures_read(const strut_command *command, const strut_a
   p->figure.width = p->plot.width;
   p->figure.title = strut_option_text(arguments, STRUT_OPTION_TITLE);
   if (status == STRUT_OK && p->figure.title && !p->plot.path) {
-    fprintf(stderr, "strut %s: --title is that of a figure: give --plot FILE too\n", command->name);
+    fprintf(stderr, "strut %s: --title needs --plot FILE\n", command->name);
     status = STRUT_USAGE;
   }
   if (status == STRUT_OK) status = read_scale(command, arguments, p);

@@ -198,7 +198,7 @@ if found and frames:
 for words, err in ((["--x-limits", "3,1"], "two ascending numbers"),
                    (["--y-limits", "0,1", "--log", "y"], "above 0"),
                    (["--y-limits", "x"], "two ascending numbers"),
-                   (["--colors", "grey"], "knows no --colors")):
+                   (["--colors", "grey"], "has no option --colors")):
     plot("two.csv", "--y", "v", *words, "--plot", "a.svg", code=1, err=err)
 
 # An eighth curve has the colour of the first, and other dashes.

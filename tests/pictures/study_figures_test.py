@@ -141,7 +141,7 @@ for figure, wanted in (
     said = sweep(STUDY + f"  bad: {figure}\n", code=2)
     check(wanted in said, f"{figure}: {said}")
 said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n", code=2)
-check("lacks 'trajectories: yes'" in said, said)
+check("add 'trajectories: yes' to the study" in said, said)
 os.rename("out", "before")
 said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1)
 check("no run recorded any of it" in said, said)
