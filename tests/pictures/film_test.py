@@ -171,7 +171,7 @@ def test_without():
     with open("old.mp4", "rb") as file:
         old = file.read()
     for script, word in [("echo 'no codec today' >&2\nexit 1\n", "no codec today"),
-                         ("exit 1\n", "did not say why"),
+                         ("exit 1\n", "gave no reason"),
                          ("cat >/dev/null\necho 'disk full' >&2\nexit 2\n", "disk full")]:
         said = call(4, hopper, "--animate", "old.mp4", path=fake(script) + ":" + os.environ["PATH"])
         check(word in said.stderr and said.stderr.count("\n") == 1, said.stderr)

@@ -40,9 +40,9 @@ static void expect(bool good, const char *what, const char *where, double value)
   failures++;
 }
 
-static bool read_scene(const char *text, strut_scene *scene, bool report) {
+static bool read_setup(const char *text, strut_setup *setup, bool report) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_scene_read(scene, "recipe.yaml", text, strlen(text), NULL, 0,
+  strut_status status = strut_setup_read(setup, "recipe.yaml", text, strlen(text), NULL, 0,
                                          STRUT_FOR_RUN, &diagnostics);
   for (size_t i = 0; i < diagnostics.count && report; i++)
     printf("%s\n", diagnostics.items[i].message);
@@ -51,15 +51,16 @@ static bool read_scene(const char *text, strut_scene *scene, bool report) {
 }
 
 /* State of node `node` after `time` by the method with steps dt; NAN where it cannot be run. */
-static void run(const strut_scene *scene, const strut_integrator *method, double dt, double time,
+static void run(const strut_setup *setup, const strut_integrator *method, double dt, double time,
                 int32_t node, double *x, double *v) {
   strut_model *model = NULL;
   strut_state *state = NULL;
+  const strut_integrator_settings settings = strut_integrator_settings_of(&setup->experiment);
   void *workspace = NULL;
   *x = *v = (double)NAN;
-  if (strut_model_compile(scene, &model, NULL) == STRUT_OK &&
+  if (strut_model_compile(&setup->scene, &model, NULL) == STRUT_OK &&
       strut_state_create(model, &state, NULL) == STRUT_OK &&
-      (workspace = method->create(model, state))) {
+      (workspace = method->create(model, state, &settings))) {
     if (method->restart) method->restart(model, state, workspace, dt);
     method->advance(model, state, workspace, dt, llround(time / dt));
     *x = state->q[2 * node], *v = state->v[2 * node];
@@ -70,25 +71,25 @@ static void run(const strut_scene *scene, const strut_integrator *method, double
 
 /* u + w ln u falls at the rate mu g. */
 static void test_the_law_in_every_method(void) {
-  strut_scene scene, again;
+  strut_setup setup, again;
   int runs = 0;
-  if (!read_scene(BLOCK, &scene, true)) {
+  if (!read_setup(BLOCK, &setup, true)) {
     expect(false, "is refused", "the friction law's scene", 0);
     return;
   }
-  char *text = strut_scene_write(&scene);
-  bool back = text && read_scene(text, &again, true);
-  expect(back && again.contacts[0].friction.law == scene.contacts[0].friction.law &&
-             again.contacts[0].friction.width == 0.1,
+  char *text = strut_setup_write(&setup);
+  bool back = text && read_setup(text, &again, true);
+  expect(back && again.scene.contacts[0].friction.law == setup.scene.contacts[0].friction.law &&
+             again.scene.contacts[0].friction.width == 0.1,
          "is lost when the scene is written", "the friction law", 0);
-  if (back) strut_scene_free(&again);
+  if (back) strut_setup_free(&again);
   strut_release(text);
-  expect(!read_scene(LACKS_WIDTH, &again, false), "is not missed", "the law's width", 0);
+  expect(!read_setup(LACKS_WIDTH, &again, false), "is not missed", "the law's width", 0);
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
     if (method->no_ground) continue;
     double x, u, t = 0.3, w = 0.1;
-    run(&scene, method, 1e-4, t, 0, &x, &u);
+    run(&setup, method, 1e-4, t, 0, &x, &u);
     double fell = (1 - u) - w * log(u);
     expect(fabs(fell - 0.2 * 9.81 * t) < 2e-3, "the block slides by another law", method->name, u);
     runs++;
@@ -96,25 +97,25 @@ static void test_the_law_in_every_method(void) {
   expect(runs >= 7, "too few methods run", "friction law", runs);
   strut_model *model = NULL;
   strut_step_limit limit = {0};
-  expect(strut_model_compile(&scene, &model, NULL) == STRUT_OK &&
+  expect(strut_model_compile(&setup.scene, &model, NULL) == STRUT_OK &&
              strut_step_limit_estimate(model, &limit, NULL) == STRUT_OK && limit.limit < 0.2,
          "is not known to the step limit", "the law's slope", limit.limit);
   strut_model_free(model);
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 static void test_the_method(void) {
-  strut_scene scene;
-  if (!read_scene(OSCILLATOR, &scene, true)) {
+  strut_setup setup;
+  if (!read_setup(OSCILLATOR, &setup, true)) {
     expect(false, "is refused", "the method's scene", 0);
     return;
   }
-  const strut_integrator *method = strut_integrator_find(scene.experiment.integrator);
+  const strut_integrator *method = strut_integrator_find(setup.experiment.integrator);
   expect(method && !strcmp(method->name, "euler-forward"), "is not found", "the method", 0);
   double error[2];
   for (int k = 0; method && k < 2; k++) {
     double x, v, dt = k ? 1e-4 : 2e-4;
-    run(&scene, method, dt, 1.0, 1, &x, &v);
+    run(&setup, method, dt, 1.0, 1, &x, &v);
     error[k] = fabs(x - (1 + 0.01 * cos(10.0)));
   }
   if (method) {
@@ -122,7 +123,7 @@ static void test_the_method(void) {
     expect(fabs(error[0] / error[1] - 2) < 0.1, "is not of first order", "the method",
            error[0] / error[1]);
   }
-  strut_scene_free(&scene);
+  strut_setup_free(&setup);
 }
 
 int main(void) {
