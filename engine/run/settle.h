@@ -49,26 +49,8 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
                                 strut_state *state, const volatile sig_atomic_t *interrupt,
                                 double *time, strut_error *error);
 
-/** settle_stability.c. The most unstable direction of an equilibrium. */
-typedef struct strut_instability {
-  int32_t node;       /* that moves most; -1: the equilibrium is not unstable */
-  double stiffness;   /* lowest eigenvalue of the Hessian [N/m] */
-  double growth_rate; /* [1/s] */
-  double *direction;  /* (length) 1 where the node moves; of the arena; NULL where not unstable */
-} strut_instability;
-
 /**
- * Counts the negative eigenvalues of the tangent stiffness at q by the signs of its factor, contacts
- * that touch closed, held along the ground too where they stick. Motions without stiffness, such as
- * those of a structure that floats or slides freely, are no instability, nor is what
- * `acceleration` [m/s^2], at which a structure counts as at rest, leaves open. STRUT_NO_MEMORY.
- */
-strut_status strut_find_instability(const strut_model *model, double acceleration, const double *q,
-                                    strut_arena *arena, strut_instability *instability,
-                                    strut_error *error);
-
-/**
- * settle_experiment.c. The start of an experiment, settled: q (length) are the positions
+ * The start of an experiment, settled: q (length) are the positions
  * [m], *time what it simulated [s], `how` tells the rest. The step is chosen by the stability limit
  * where the scene gives none that is stable; one that proves too large on the way is halved. With
  * settle.perturb an unstable equilibrium is left. limits: of models seen before, may be NULL. Fails as

@@ -6,6 +6,10 @@
 #include <time.h>
 
 #include "engine/base/subnormals.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/model/memory_estimate.h"
+#include "engine/run/orbit/shooting.h"
+#include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
 
 /* Work, in members times steps, between two looks at the state and at the interrupt flag. */
@@ -16,6 +20,216 @@ double strut_run_clock(void) {
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
+
+/* ---- before the first step ---- */
+
+static strut_status refuse_large_step(const strut_run *r, bool bound) {
+  double limit = r->summary->step_limit;
+  if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (bound)
+    return strut_fail(
+        r->error, STRUT_STEP_TOO_LARGE,
+        "the step %g s is above %.4g s, up to which %s is stable (all contacts closed; "
+        "a bound, the structure being too large for its largest stable step to be "
+        "found); use solver.step <= %.3g s, or --force to run all the same",
+        r->dt, limit, r->method->name, 0.99 * limit);
+  return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                    "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
+                    "closed); use solver.step <= %.2g s, or --force to run all the same",
+                    r->dt, r->method->name, limit, 0.9 * limit);
+}
+
+static strut_status fill_names(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_summary *s = r->summary;
+  const strut_experiment *e = r->experiment;
+  size_t contacts = (size_t)r->model->contacts.count;
+  s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
+  s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
+  s->contacts = strut_allocate(contacts, sizeof *s->contacts);
+  if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
+  if (!s->node_names || !s->positions || !s->contacts || (e->quantity_count && !s->measured))
+    return strut_memory_fail_model(r->model->scene, r->error);
+  s->node_count = scene->node_count;
+  s->contact_count = contacts;
+  s->measured_count = e->quantity_count;
+  if (e->measure_node >= 0) s->measured_node = scene->nodes[e->measure_node].name;
+  for (size_t i = 0; i < s->measured_count; i++)
+    s->measured[i] = (strut_measured){.name = e->quantities[i].name,
+                                      .unit = e->quantities[i].unit,
+                                      .value = (double)NAN,
+                                      .spread = (double)NAN,
+                                      .scale = (double)NAN,
+                                      .expected = (double)NAN};
+  for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
+  for (size_t i = 0; i < contacts; i++)
+    s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
+  return STRUT_OK;
+}
+
+/* The step, made to divide the drive's period where that is watched; first and last step. */
+static void choose_steps(strut_run *r, const strut_span *span) {
+  const strut_experiment *e = r->experiment;
+  double last = e->output_last;
+  r->dt = e->step;
+  if (r->watching) {
+    r->period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
+    r->dt = span->period / (double)r->period_steps;
+    r->more_periods = r->options->sink_count && last > 1.0 ? (int64_t)ceil(last - 1e-9) : 1;
+  }
+  r->summary->step = r->dt;
+  r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
+  r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
+  r->grid = (strut_time_grid){
+      .step = r->dt, .last = r->steps, .end = (double)r->first * r->dt + span->duration};
+  double offset = r->options->from ? r->options->from->time - (double)r->first * r->dt : 0.0;
+  if (!r->watching && fabs(offset) > 1e-6 * r->dt) r->grid.offset = offset;
+}
+
+/* Where the run begins: as the scene says, settled, or where another one ended. */
+static strut_status place_state(strut_run *r) {
+  const strut_snapshot *from = r->options->from;
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  r->state->step = r->first;
+  if (from) {
+    memcpy(r->state->q, from->q, bytes);
+    memcpy(r->state->v, from->v, bytes);
+    r->state->refined_until = from->time - r->grid.offset + from->refined;
+    return STRUT_OK;
+  }
+  if (!r->experiment->settle.wanted) return STRUT_OK;
+  memset(r->state->v, 0, bytes);
+  return strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
+                                 r->state->q, &r->summary->settle_time, &r->summary->settle,
+                                 r->error);
+}
+
+static strut_status prepare(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_span span = strut_experiment_span(r->experiment, scene);
+  r->watching = r->experiment->steady.wanted && span.period > 0.0;
+  choose_steps(r, &span);
+  strut_status status = strut_integrator_check(r->model, r->experiment, r->error);
+  if (status) return status;
+  r->method = strut_integrator_find(r->experiment->integrator);
+  for (size_t i = 0; i + 1 < sizeof r->summary->method && r->method->name[i]; i++)
+    r->summary->method[i] = r->method->name[i];
+  if (scene->start_equilibrium >= 0)
+    return strut_fail(r->error, STRUT_USAGE,
+                      "the run wants to start at the equilibrium of configuration '%s'; resolve it "
+                      "into positions first (strut_resolve_start_equilibrium)",
+                      scene->configurations[scene->start_equilibrium].name);
+  if (!r->model->mass)
+    return strut_fail(r->error, STRUT_SINGULAR, "some node that can move has no mass");
+  double *limit = &r->summary->step_limit;
+  bool bound = false;
+  status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
+                     : strut_step_limit_with_bound(r->model, r->method, limit, &bound, r->error);
+  if (status) return status;
+  if ((status = refuse_large_step(r, bound)) || (status = fill_names(r)) ||
+      (status = strut_state_create(r->model, &r->state, r->error)))
+    return status;
+  const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
+  r->workspace = r->method->create(r->model, r->state, &settings);
+  double begin = (double)r->first * r->dt;
+  int64_t room = r->more_periods > STRUT_LONGEST_REPEAT ? r->more_periods : STRUT_LONGEST_REPEAT;
+  if (!r->workspace ||
+      strut_measure_create(r->model, r->experiment, &r->grid, begin, (size_t)room + 1,
+                           &r->measure) ||
+      (r->watching && strut_steady_detector_create(r->model, &r->experiment->steady, span.period,
+                                                   begin, &r->watch)))
+    return strut_memory_fail_model(r->model->scene, r->error);
+  if ((status = place_state(r))) return status;
+  r->state->time_offset = r->grid.offset;
+  r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(r->experiment);
+  r->state->interrupt = r->options->interrupt;
+  r->state->most_evaluations = r->options->most_evaluations;
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->guard) ||
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
+    return strut_memory_fail_model(r->model->scene, r->error);
+  strut_energy_reset_load_work(r->model, r->state);
+  r->initial = strut_energy_evaluate(r->model, r->state, begin);
+  strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
+  return strut_recording_create(r->model, r->experiment, &r->grid, begin, r->options->sinks,
+                                r->options->sink_count, &r->recording, r->error);
+}
+
+/* ---- steady motion ---- */
+
+static int64_t middle_of_period(int64_t period) { return (int64_t)(0.382 * (double)period); }
+
+/* The state becomes the orbit's; what the change does to the stored energies is no error of the run. */
+static void take_orbit(strut_run *r, const double *y) {
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  double t = (double)r->state->step * r->dt;
+  strut_energies before = strut_energy_evaluate(r->model, r->state, t);
+  memcpy(r->state->q, y, bytes);
+  memcpy(r->state->v, y + r->model->length, bytes);
+  r->state->refined_until = t + y[2 * r->model->length];
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  strut_energies after = strut_energy_evaluate(r->model, r->state, t);
+  r->initial.kinetic += after.kinetic - before.kinetic;
+  r->initial.elastic += after.elastic - before.elastic;
+  r->initial.gravity += after.gravity - before.gravity;
+  r->initial.contact += after.contact - before.contact;
+}
+
+/* Finishes the motion that was found to be periodic; it goes on as it is where that fails. */
+static strut_status shoot(strut_run *r) {
+  size_t length = (size_t)r->model->length;
+  strut_steady_summary *found = &r->watch.result;
+  strut_period_map map = {.model = NULL};
+  double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
+  if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      strut_period_map_create(r->model, r->experiment, found->repeats, &map, r->error);
+  if (!status) {
+    map.time = (double)r->state->step * r->dt;
+    map.interrupt = r->options->interrupt;
+    memcpy(y, r->state->q, length * sizeof *y);
+    memcpy(y + length, r->state->v, length * sizeof *y);
+    y[2 * length] = fmax(0.0, r->state->refined_until - map.time);
+    status = strut_shoot(&map, y, &travel, found);
+    if (status == STRUT_INTERRUPTED)
+      strut_fail(r->error, status, "interrupted at t = %.9g s, while the orbit was shot", map.time);
+    else if (status)
+      strut_fail(r->error, status, "out of memory");
+  }
+  if (!status && found->shot) {
+    take_orbit(r, y);
+    r->watch.velocity = travel / (map.period * found->repeats);
+  }
+  r->shot_periods = map.applied;
+  found->periods += map.applied;
+  r->state->evaluations += map.evaluations;
+  strut_period_map_free(&map);
+  strut_release(y);
+  return status;
+}
+
+static strut_status watch_steady(strut_run *r) {
+  int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
+  if (past == middle_of_period(r->period_steps))
+    strut_steady_detector_half_period(r->state, &r->watch);
+  if (past != 0) return STRUT_OK;
+  double x, v;
+  bool before = r->watch.known;
+  strut_measure_track(r->model, r->state, &r->measure, &x, &v);
+  if (!strut_steady_detector_period(r->state, x, &r->watch) || before) return STRUT_OK;
+  strut_status status = r->experiment->steady.shooting ? shoot(r) : STRUT_OK;
+  if (status) return status;
+  double now = (double)n * r->dt, period = r->watch.period;
+  int64_t periods = r->more_periods, repeats = r->watch.result.repeats;
+  if (r->measure.quantities && periods < repeats) periods = repeats; /* over the whole orbit */
+  r->steps = n + periods * r->period_steps;
+  r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
+  strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
+  if (r->experiment->output_last > 0.0) r->recording.start = now;
+  return STRUT_OK;
+}
+
+/* ---- stepping ---- */
 
 /* Where to stop stepping for a while: a sample, the window, the end, or just to look around. */
 static int64_t next_stop(const strut_run *r, int64_t chunk) {
@@ -29,7 +243,7 @@ static int64_t next_stop(const strut_run *r, int64_t chunk) {
   if (r->balance.next > n && stop > r->balance.next) stop = r->balance.next;
   if (!r->watching) return stop;
   int64_t period = r->period_steps, past = (n - r->first) % period, end = n - past + period;
-  int64_t middle = n - past + strut_run_middle(period);
+  int64_t middle = n - past + middle_of_period(period);
   if (middle > n && stop > middle) stop = middle;
   return stop > end ? end : stop;
 }
@@ -107,7 +321,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (guarded) return guarded;
   if (lost >= 0) return strut_run_diverged(r, lost);
   if (n >= r->balance.next) look_at_balance(r);
-  strut_status watched = r->watching ? strut_run_watch(r) : STRUT_OK;
+  strut_status watched = r->watching ? watch_steady(r) : STRUT_OK;
   if (watched) return watched;
   if (n == strut_measure_first_step(&r->measure))
     strut_measure_begin(r->model, r->state, &r->measure);
@@ -132,6 +346,8 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   *stop = next_stop(r, r->chunk);
   return STRUT_OK;
 }
+
+/* ---- the end ---- */
 
 /* The end of the run for whoever goes on from it. */
 static void keep_end(const strut_run *r) {
@@ -187,7 +403,7 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
                    .summary = summary,
                    .error = error};
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
-  strut_status status = strut_run_prepare(r);
+  strut_status status = prepare(r);
   r->begun = !status;
   r->began = r->told = strut_run_clock();
   return status;

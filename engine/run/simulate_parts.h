@@ -66,10 +66,7 @@ double strut_run_time(const strut_run *run);
 /** Fills the summary and frees what belongs to the run; `status` is what begin or look returned. */
 strut_status strut_run_end(strut_run *run, strut_status status);
 
-/* ---- parts of these, in run_*.c ---- */
-
-/** All but the fields that strut_run_begin fills itself: no memory is asked for after this. */
-strut_status strut_run_prepare(strut_run *r);
+/* ---- run_diagnosis.c ---- */
 
 /** Every so many steps: does the step still suit the structure? */
 strut_status strut_run_watch_step(strut_run *r);
@@ -82,13 +79,5 @@ strut_status strut_run_stuck(const strut_run *r);
 
 /** At the end: what is to be said of the result goes into the summary, which is filled. */
 void strut_run_warn(const strut_run *r);
-
-/** A place within the period that no symmetry of the drive prefers. */
-int64_t strut_run_middle(int64_t period);
-/**
- * At the ends of periods, and once within each. When the motion has become steady the run goes on
- * for the periods that are recorded, at least one, over which contacts are measured.
- */
-strut_status strut_run_watch(strut_run *r);
 
 #endif

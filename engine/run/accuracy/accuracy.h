@@ -25,7 +25,7 @@ STRUT_API strut_status strut_simulate_accurately(const strut_model *model,
                                                  const strut_run_options *options,
                                                  strut_summary *summary, strut_error *error);
 
-/* accuracy_midpoint.c, accuracy_orbit.c, accuracy_plain.c: the ways. Share what follows. */
+/* Shared by the strategies in accuracy_midpoint.c, accuracy_orbit.c and accuracy_ladder.c. */
 
 typedef struct strut_accuracy {
   const strut_model *model;    /* of the settled start */

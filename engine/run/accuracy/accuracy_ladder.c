@@ -10,7 +10,101 @@
 
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
-#include "engine/run/accuracy/accuracy_track.h"
+#include "engine/run/recorder.h"
+
+/* ---- tracks: node positions at moments near the end of a run, which show that two runs are the same motion ---- */
+
+typedef struct track {
+  const strut_model *model; /* of the scene; any run of it may be recorded */
+  size_t room, count;       /* moments there is memory for; moments of the latest run */
+  double *time;             /* (room) [s] */
+  double *position;         /* (room, node_count, 2) [m] */
+  strut_sink sink;          /* to be given to the run */
+} track;
+
+/* Moments of two runs that are this close, relative to the time between two of them, are the same. */
+static const double SAME_MOMENT = 1e-3;
+/* The least motion that distances are relative to, over the structure's size. */
+static const double LEAST_MOTION = 1e-4;
+
+static strut_status begin_track(void *context, const strut_record_layout *layout,
+                                strut_error *error) {
+  (void)layout, (void)error;
+  ((track *)context)->count = 0;
+  return STRUT_OK;
+}
+
+static strut_status record_track_rows(void *context, const double *rows, size_t count,
+                                      strut_error *error) {
+  track *t = context;
+  size_t both = 2 * (size_t)t->model->node_count;
+  (void)error;
+  for (size_t k = 0; k < count && t->count < t->room; k++, t->count++) {
+    const double *row = rows + k * (both + 1);
+    t->time[t->count] = row[0];
+    memcpy(t->position + t->count * both, row + 1, both * sizeof(double));
+  }
+  return STRUT_OK;
+}
+
+static strut_status end_track(void *context, strut_status status, strut_error *error) {
+  (void)context, (void)status, (void)error;
+  return STRUT_OK;
+}
+
+static strut_status create_track(const strut_model *model, size_t room, strut_arena *arena,
+                                 track *t) {
+  size_t both = 2 * (size_t)model->node_count;
+  *t = (track){.model = model, .room = room};
+  t->sink = (strut_sink){t, begin_track, record_track_rows, end_track, STRUT_CHANNEL_POSITION};
+  t->time = strut_arena_allocate(arena, room, sizeof(double));
+  t->position = strut_arena_allocate(arena, room * both, sizeof(double));
+  return t->time && t->position ? STRUT_OK : STRUT_NO_MEMORY;
+}
+
+/* The mean position along the ground at moment k; 0 where a support or no ground holds it. */
+static double mean_along(const track *t, size_t k) {
+  const strut_model *model = t->model;
+  const double *q = t->position + 2 * k * (size_t)model->node_count;
+  double sum = 0.0;
+  if (!model->contacts.count) return 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    if (model->fixed[2 * i] || model->fixed[2 * i + 1]) return 0.0;
+    sum += q[2 * i] * model->contacts.tangent[0] + q[2 * i + 1] * model->contacts.tangent[1];
+  }
+  return sum / model->node_count;
+}
+
+/*
+ * The largest distance between two tracks at the same moments, over how far the nodes move in them: 0 for
+ * the same motion, about 1 for two that have nothing in common. How far the whole has travelled along
+ * the ground is left out. HUGE_VAL where the moments differ, but for whole periods [s] where `period` is not 0.
+ * Motions below 1e-4 of the structure's size count as that.
+ */
+static double measure_track_distance(const track *a, const track *b, double period) {
+  const strut_model *model = a->model;
+  size_t both = 2 * (size_t)model->node_count, count = a->count;
+  double away = 0.0, motion = LEAST_MOTION * model->size;
+  if (count != b->count || count < 2) return HUGE_VAL;
+  double apart = (a->time[count - 1] - a->time[0]) / (double)(count - 1);
+  double first = mean_along(a, 0);
+  for (size_t k = 0; k < count; k++) {
+    double here = mean_along(a, k), there = mean_along(b, k);
+    double later = a->time[k] - b->time[k];
+    if (period > 0.0) later = remainder(later, period);
+    if (fabs(later) > SAME_MOMENT * apart) return HUGE_VAL;
+    for (size_t i = 0; i < both; i++) {
+      double t = model->contacts.count ? model->contacts.tangent[i % 2] : 0.0;
+      double x = a->position[k * both + i] - here * t, y = b->position[k * both + i] - there * t;
+      double x0 = a->position[i] - first * t;
+      away = fmax(away, fabs(x - y));
+      motion = fmax(motion, fabs(x - x0));
+    }
+  }
+  return away / motion;
+}
+
+/* ---- the ladder of runs ---- */
 
 /* From one run by error control to the next: tolerance, and longest step. The error of a step is of fifth
    order, so that both do about as much. */
@@ -33,7 +127,7 @@ static const double STANDING_QUANTITY = 1e-3;
 typedef struct rung {
   strut_experiment e;
   strut_summary s;
-  strut_track track;
+  track track;
   int64_t cost; /* evaluations of the forces */
 } rung;
 
@@ -167,7 +261,7 @@ static strut_status climb(ladder *l) {
   double period =
       next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
   l->apart = differ(l, &next->s, &l->before->s);
-  l->distance = strut_track_distance(&next->track, &l->before->track, period);
+  l->distance = measure_track_distance(&next->track, &l->before->track, period);
   if (l->runs > 1 && l->means < MOST_RUNS) l->mean[l->means++] = next->s.velocity;
   return STRUT_OK;
 }
@@ -252,7 +346,7 @@ static strut_status create(strut_accuracy *a, ladder *l) {
   double room = TRACK_ROOM / (2.0 * l->model->node_count);
   size_t moments = room < 2.0 ? 2 : room < MOST_MOMENTS ? (size_t)room : MOST_MOMENTS;
   for (int k = 0; k < 3 && !status; k++)
-    status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
+    status = create_track(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;
   if (!status && !(l->difference = strut_arena_allocate(&l->arena, quantities, sizeof(double))))
     status = STRUT_NO_MEMORY;

@@ -94,7 +94,5 @@ strut_status strut_orbit_solve_stuck(strut_orbit_solve *way);
  * by the cheap one with half the step. Their differences are the error.
  */
 strut_status strut_orbit_solve_disputed(strut_orbit_solve *way);
-/** accuracy_tell.c. Puts together what the parts found and cost. orbit: a run of the motion found. */
-void strut_orbit_solve_report(strut_orbit_solve *way, const strut_summary *orbit);
 
 #endif

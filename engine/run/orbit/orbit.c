@@ -4,11 +4,65 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/orbit/extrapolation.h"
+#include "engine/base/vec.h"
 
 /* The sum over a disturbance ends when it moves the structure so much less than at its height. */
 static const double REMAINDER = 0.02;
-enum { WINDOW = STRUT_EXTRAPOLATION_WINDOW, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12 };
+/* Members of a sequence that extrapolation combines. */
+enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12, MOST_CYCLES = 8 };
+/*
+ * The limit of a sequence from a few of its members: reduced rank extrapolation (Eddy 1979; Mesina
+ * 1977; Sidi 1991). Of the differences of successive members the combination with weights of sum 1
+ * that is smallest is looked for; the members are then combined by the same weights.
+ */
+
+/* Weights beyond this lose more digits than they win. */
+static const double MOST_WEIGHT = 100.0;
+
+/* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
+static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
+  for (int32_t i = 0; i < n; i++) x[i] = 1.0;
+  for (int32_t p = 0; p < n; p++) {
+    if (!(a[p][p] > 0.0)) return false;
+    for (int32_t i = p + 1; i < n; i++) {
+      double f = a[i][p] / a[p][p];
+      for (int32_t j = p; j < n; j++) a[i][j] -= f * a[p][j];
+      x[i] -= f * x[p];
+    }
+  }
+  for (int32_t i = n - 1; i >= 0; i--) {
+    for (int32_t j = i + 1; j < n; j++) x[i] -= a[i][j] * x[j];
+    x[i] /= a[i][i];
+  }
+  return true;
+}
+
+/*
+ * weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= the window. False where
+ * there are none or they are so large that they would but blow up errors.
+ */
+static bool find_extrapolation_weights(const strut_period_map *map, double *const *d, int32_t count,
+                                       double *weight) {
+  int32_t length = map->model->length, nodes = 2 * map->model->node_count;
+  double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
+  double in = map->model->size, speed = in * STRUT_TAU / map->period;
+  for (int32_t i = 0; i < count; i++)
+    for (int32_t j = 0; j <= i; j++) {
+      double product = 0.0;
+      for (int32_t k = 0; k < nodes; k++)
+        product +=
+            d[i][k] * d[j][k] / (in * in) + d[i][length + k] * d[j][length + k] / (speed * speed);
+      a[i][j] = a[j][i] = product;
+    }
+  for (int32_t i = 0; i < count; i++) a[i][i] *= 1.0 + 1e-10;
+  if (!solve_ones(a, count, weight)) return false;
+  for (int32_t i = 0; i < count; i++) sum += weight[i];
+  if (!(fabs(sum) > 0.0)) return false;
+  for (int32_t i = 0; i < count; i++) most = fmax(most, fabs(weight[i] /= sum));
+  return most < MOST_WEIGHT;
+}
+
+/* ---- the correction of an orbit ---- */
 
 /* A disturbance and what has come of it after the latest periods; entry k % KEPT is after k. */
 typedef struct trail {
@@ -31,13 +85,13 @@ static bool make_trail(size_t both, strut_arena *arena, trail *t) {
  * The sums' limit after m periods, by extrapolation, into t->limit and t->travel. Returns the size of
  * what the combination leaves of the disturbance.
  */
-static double extrapolate(const strut_period_map *map, int m, trail *t) {
+static double extrapolate_disturbance(const strut_period_map *map, int m, trail *t) {
   double *d[WINDOW], c[WINDOW];
   int n = m < WINDOW ? m : WINDOW;
   size_t both = 2 * (size_t)map->model->length + 1;
   for (int i = 0; i < n; i++) d[i] = t->d[(m - n + i + 1) % KEPT];
   t->travel = (double)NAN;
-  if (n < 2 || !strut_extrapolation_weights(map, d, n, c)) return HUGE_VAL;
+  if (n < 2 || !find_extrapolation_weights(map, d, n, c)) return HUGE_VAL;
   t->travel = 0.0;
   memset(t->limit, 0, both * sizeof(double));
   memset(t->work, 0, both * sizeof(double));
@@ -80,7 +134,7 @@ static double follow(strut_period_map *cheap, const double *base, double travel,
       memcpy(t->limit, total, bytes);
       return gone;
     }
-    double left = extrapolate(cheap, m, t);
+    double left = extrapolate_disturbance(cheap, m, t);
     if (left <= 0.1 * first && fabs(t->travel - guess) <= little) return t->travel;
     last = now, last_step = step, guess = t->travel;
   }
@@ -110,6 +164,84 @@ strut_status strut_orbit_correct(strut_period_map *cheap, strut_period_map *accu
     orbit->velocity = (gone + more) / period;
     orbit->correction = more / period;
     orbit->converged = true;
+  }
+  strut_arena_free(&arena);
+  return STRUT_OK;
+}
+
+/* ---- the limit of a sequence of periods without running all of them ---- */
+
+/* A window of periods: y[k + 1] = C(y[k]), d[k] their difference, travel[k] on the way. */
+typedef struct window {
+  double *y[WINDOW + 1], *d[WINDOW], *best;
+  double travel[WINDOW], size[WINDOW];
+} window;
+
+static bool make_window(size_t both, strut_arena *arena, window *w) {
+  bool ready = true;
+  for (int k = 0; k <= WINDOW && ready; k++)
+    ready = (w->y[k] = strut_arena_allocate(arena, both, sizeof(double)));
+  for (int k = 0; k < WINDOW && ready; k++)
+    ready = (w->d[k] = strut_arena_allocate(arena, both, sizeof(double)));
+  return ready && (w->best = strut_arena_allocate(arena, both, sizeof(double)));
+}
+
+/* The extrapolated limit into w->best; the latest period's end where that is no good. */
+static void extrapolate_periods(const strut_period_map *map, window *w) {
+  double c[WINDOW];
+  size_t both = 2 * (size_t)map->model->length + 1;
+  memcpy(w->best, w->y[WINDOW], both * sizeof(double));
+  if (!find_extrapolation_weights(map, w->d, WINDOW, c)) return;
+  for (size_t k = 0; k < both; k++) {
+    double x = w->y[WINDOW][k];
+    for (int i = 0; i < WINDOW; i++) x += c[i] * (w->y[i + 1][k] - w->y[WINDOW][k]);
+    w->best[k] = x;
+  }
+}
+
+/* What is left to go, in travel per application: by the decay of the differences. */
+static double remaining(const window *w) {
+  double effect = 0.0, first = w->size[0], last = w->size[WINDOW - 1];
+  for (int k = 1; k < WINDOW; k++)
+    effect = fmax(effect, fabs(w->travel[k] - w->travel[k - 1]) / fmax(w->size[k - 1], 1e-300));
+  double rate = first > 0.0 ? pow(last / first, 1.0 / (WINDOW - 1)) : 0.0;
+  if (!(rate < 0.98)) rate = 0.98;
+  return effect * last * rate / (1.0 - rate);
+}
+
+strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, double *travel,
+                               bool *found) {
+  size_t both = 2 * (size_t)map->model->length + 1, bytes = both * sizeof(double);
+  strut_arena arena = {0};
+  window w = {.best = NULL};
+  *found = false;
+  if (!make_window(both, &arena, &w)) {
+    strut_arena_free(&arena);
+    return STRUT_NO_MEMORY;
+  }
+  double before = HUGE_VAL; /* the last difference before extrapolation */
+  bool jumped = false;
+  for (int cycle = 0; cycle < MOST_CYCLES && !*found; cycle++) {
+    memcpy(w.y[0], y, bytes);
+    for (int k = 0; k < WINDOW; k++) {
+      memcpy(w.y[k + 1], w.y[k], bytes);
+      w.travel[k] = strut_period_map_apply(map, w.y[k + 1]);
+      strut_period_map_subtract(map, w.y[k], w.y[k + 1], w.d[k]);
+      w.size[k] = strut_period_map_size(map, w.d[k]);
+      if (!isfinite(w.travel[k])) cycle = MOST_CYCLES;
+    }
+    if (cycle == MOST_CYCLES) break;
+    if (jumped && w.size[WINDOW - 1] > before) break; /* it led away: not a steady motion's doing */
+    if (remaining(&w) <= enough) {
+      memcpy(y, w.y[WINDOW], bytes);
+      *travel = w.travel[WINDOW - 1];
+      *found = true;
+      break;
+    }
+    before = w.size[WINDOW - 1];
+    extrapolate_periods(map, &w);
+    memcpy(y, w.best, bytes);
+    jumped = true;
   }
   strut_arena_free(&arena);
   return STRUT_OK;
