@@ -4,14 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-double strut_accuracy_scale(const strut_accuracy *a, double velocity) {
+double strut_accuracy_velocity_scale(const strut_accuracy *a, double velocity) {
   return fmax(fabs(velocity), a->scale);
 }
 
-void strut_orbit_solve_count(strut_orbit_solve *w) {
-  int64_t made = w->cheap.evaluations + w->fine.evaluations;
-  w->a->used += made > w->counted ? made - w->counted : 0;
-  w->counted = made;
+void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve) {
+  int64_t made = solve->coarse_map.evaluations + solve->reference_map.evaluations;
+  solve->a->used += made > solve->counted ? made - solve->counted : 0;
+  solve->counted = made;
 }
 
 void strut_summary_append(strut_summary *whole, strut_summary *part) {
@@ -28,11 +28,12 @@ void strut_summary_append(strut_summary *whole, strut_summary *part) {
   whole->steady.periods = periods;
 }
 
-strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, double tolerance,
-                                   int32_t successive, double periods, bool from_end,
-                                   strut_summary *summary) {
-  strut_accuracy *a = w->a;
-  strut_snapshot from = w->end;
+strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_experiment e,
+                                                double tolerance, int32_t successive,
+                                                double periods, bool from_end,
+                                                strut_summary *summary) {
+  strut_accuracy *a = solve->a;
+  strut_snapshot from = solve->end_state;
   e.steady.wanted = true;
   e.steady.tolerance = tolerance;
   e.steady.floor = tolerance * a->scale;
@@ -45,95 +46,97 @@ strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, dou
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,
                                .from = from_end ? &from : a->options->from,
-                               .to = &w->end};
+                               .to = &solve->end_state};
   return strut_accuracy_run(a, &e, &options, summary);
 }
 
-void strut_orbit_solve_keep_end(strut_orbit_solve *w) {
-  size_t length = (size_t)w->cheap.model->length;
-  memcpy(w->orbit.y, w->end.q, length * sizeof(double));
-  memcpy(w->orbit.y + length, w->end.v, length * sizeof(double));
-  w->orbit.y[2 * length] = w->end.refined;
+void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve) {
+  size_t length = (size_t)solve->coarse_map.model->length;
+  memcpy(solve->orbit.y, solve->end_state.q, length * sizeof(double));
+  memcpy(solve->orbit.y + length, solve->end_state.v, length * sizeof(double));
+  solve->orbit.y[2 * length] = solve->end_state.refined;
 }
 
-/* ---- the accurate method until it is steady itself, and whether its tolerance was small enough ---- */
+/* ---- the reference method and the check of its tolerance ---- */
 
-/* Periods in which a finer tolerance should be steady, from the orbit of a coarser one. */
+/* Periods in which a finer tolerance should become steady from the orbit of a coarser one. */
 static const double TRIAL = 40.0;
 enum { MOST_CHECKS = 4 };
 
-strut_status strut_orbit_solve_map_status(strut_orbit_solve *w, strut_status status) {
-  if (status) return strut_fail(w->a->error, status, "out of memory");
-  strut_orbit_solve_count(w);
-  if (strut_period_map_spent(&w->cheap) || strut_period_map_spent(&w->fine))
-    return strut_fail(w->a->error, STRUT_WORK_LIMIT,
-                      "the work allowed was used up while the orbit was corrected");
-  if (!strut_period_map_interrupted(&w->cheap)) return STRUT_OK;
-  return strut_fail(w->a->error, STRUT_INTERRUPTED,
-                    "interrupted at t = %.9g s, while the orbit was corrected", w->cheap.time);
+strut_status strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status) {
+  if (status) return strut_fail(solve->a->error, status, "out of memory");
+  strut_orbit_solve_count_evaluations(solve);
+  if (strut_period_map_spent(&solve->coarse_map) || strut_period_map_spent(&solve->reference_map))
+    return strut_fail(solve->a->error, STRUT_WORK_LIMIT,
+                      "the work budget was used up while the orbit was corrected");
+  if (!strut_period_map_interrupted(&solve->coarse_map)) return STRUT_OK;
+  return strut_fail(solve->a->error, STRUT_INTERRUPTED,
+                    "interrupted at t = %.9g s, while the orbit was corrected",
+                    solve->coarse_map.time);
 }
 
-double strut_orbit_solve_tolerance_share(const strut_orbit_solve *w) {
-  double size = strut_accuracy_scale(w->a, w->orbit.velocity);
-  return w->error / (w->a->wanted * size);
+double strut_orbit_solve_error_share(const strut_orbit_solve *solve) {
+  double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
+  return solve->error / (solve->a->target * size);
 }
 
-void strut_orbit_solve_start_later_runs(strut_orbit_solve *w) {
-  size_t length = (size_t)w->cheap.model->length;
-  memcpy(w->end.q, w->orbit.y, length * sizeof(double));
-  memcpy(w->end.v, w->orbit.y + length, length * sizeof(double));
-  w->end.refined = w->orbit.y[2 * length];
+void strut_orbit_solve_copy_orbit_to_end(strut_orbit_solve *solve) {
+  size_t length = (size_t)solve->coarse_map.model->length;
+  memcpy(solve->end_state.q, solve->orbit.y, length * sizeof(double));
+  memcpy(solve->end_state.v, solve->orbit.y + length, length * sizeof(double));
+  solve->end_state.refined = solve->orbit.y[2 * length];
 }
 
-/* The accurate method's run has the orbit. */
-static void take_last(strut_orbit_solve *w) {
-  strut_orbit_solve_keep_end(w);
-  w->orbit.velocity = w->last.velocity;
-  w->error = w->last.steady.interval;
-  w->found = STRUT_WAY_ACCURATE;
+static void accept_reference_run(strut_orbit_solve *solve) {
+  strut_orbit_solve_copy_end_to_orbit(solve);
+  solve->orbit.velocity = solve->last_run.velocity;
+  solve->error = solve->last_run.steady.interval;
+  solve->answer = STRUT_ORBIT_REFERENCE;
 }
 
-strut_status strut_orbit_solve_accurate(strut_orbit_solve *w, bool from_orbit, double periods) {
-  strut_accuracy *a = w->a;
+strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
+                                             double periods) {
+  strut_accuracy *a = solve->a;
   strut_summary more = {0};
   strut_accuracy_begin_phase(a, "until steady by adaptive");
-  strut_orbit_solve_start_later_runs(w);
-  /* where corrections fail the orbit is sensitive, and errors of a step matter more than usual */
-  if (!w->tightened && !(strut_orbit_solve_tolerance_share(w) <= 0.8)) {
-    w->accurate.tolerance = fmax(1e-12, w->accurate.tolerance / 25.0);
-    w->tightened = true;
+  strut_orbit_solve_copy_orbit_to_end(solve);
+  /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
+  if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
+    solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / 25.0);
+    solve->tightened = true;
   }
-  strut_status status = strut_orbit_solve_run(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4,
-                                              periods, from_orbit, &more);
-  if (!status) strut_summary_append(&w->last, &more);
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, solve->reference, fmin(0.001, 0.2 * a->target), 4, periods, from_orbit, &more);
+  if (!status) strut_summary_append(&solve->last_run, &more);
   strut_summary_free(&more);
-  if (!status && w->last.steady.kind == STRUT_MOTION_PERIODIC) take_last(w);
+  if (!status && solve->last_run.steady.kind == STRUT_MOTION_PERIODIC) accept_reference_run(solve);
   return status;
 }
 
 /*
- * A sensitive orbit once more, with a tenth of the tolerance: it stands if that agrees to half of what
- * is wanted; else the finer one has the word, and is asked the same.
+ * Repeats a sensitive orbit with a tenth of the tolerance. It is accepted if both agree to half of
+ * the wanted error; otherwise the finer result replaces it and is checked likewise.
  */
-static strut_status check_sensitive(strut_orbit_solve *w) {
-  strut_accuracy *a = w->a;
+static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
   for (int k = 0; k < MOST_CHECKS; k++) {
     strut_summary finer = {0};
-    strut_orbit_solve_start_later_runs(w);
-    w->accurate.tolerance = fmax(1e-12, 0.1 * w->accurate.tolerance);
-    strut_status status =
-        strut_orbit_solve_run(w, w->accurate, fmin(0.001, 0.2 * a->wanted), 4, TRIAL, true, &finer);
+    strut_orbit_solve_copy_orbit_to_end(solve);
+    solve->reference.tolerance = fmax(1e-12, 0.1 * solve->reference.tolerance);
+    strut_status status = strut_orbit_solve_run_until_steady(
+        solve, solve->reference, fmin(0.001, 0.2 * a->target), 4, TRIAL, true, &finer);
     bool periodic = !status && finer.steady.kind == STRUT_MOTION_PERIODIC;
-    double apart = periodic ? fabs(finer.velocity - w->orbit.velocity) : HUGE_VAL;
-    bool stands = apart <= 0.5 * a->wanted * strut_accuracy_scale(a, w->orbit.velocity);
+    double apart = periodic ? fabs(finer.velocity - solve->orbit.velocity) : HUGE_VAL;
+    bool stands =
+        apart <= 0.5 * a->target * strut_accuracy_velocity_scale(a, solve->orbit.velocity);
     if (stands || !periodic) {
-      a->spent += finer.force_evaluations;
-      w->error = fmax(w->error, stands ? apart : 0.0);
-      w->accurate.tolerance *= 10.0;
+      a->check_evaluations += finer.force_evaluations;
+      solve->error = fmax(solve->error, stands ? apart : 0.0);
+      solve->reference.tolerance *= 10.0;
     } else {
-      strut_summary_append(&w->last, &finer);
-      take_last(w);
-      w->error = fmax(w->error, 0.5 * apart);
+      strut_summary_append(&solve->last_run, &finer);
+      accept_reference_run(solve);
+      solve->error = fmax(solve->error, 0.5 * apart);
     }
     strut_summary_free(&finer);
     if (status || stands || !periodic) return status;
@@ -142,141 +145,156 @@ static strut_status check_sensitive(strut_orbit_solve *w) {
 }
 
 /*
- * What a tenth of the tolerance would change, by one period of it and its effect on the orbit; and, where
- * that is not little, by running on with it.
+ * Corrects the orbit once by a period with a tenth of the tolerance; where that changes it too
+ * much, runs on with that tolerance.
  */
-static strut_status check_tolerance(strut_orbit_solve *w) {
-  strut_accuracy *a = w->a;
-  size_t both = 2 * (size_t)w->cheap.model->length + 1;
-  strut_experiment finer = w->accurate;
+static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  size_t both = 2 * (size_t)solve->coarse_map.model->length + 1;
+  strut_experiment finer = solve->reference;
   strut_period_map map = {.model = NULL};
-  strut_orbit there = {.y = strut_arena_allocate(&w->arena, both, sizeof(double))};
+  strut_orbit there = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
   if (!there.y) return strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
-  memcpy(there.y, w->orbit.y, both * sizeof(double));
+  memcpy(there.y, solve->orbit.y, both * sizeof(double));
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
-  double size = strut_accuracy_scale(a, w->orbit.velocity), half = 0.5 * a->wanted * size;
-  const strut_orbit_solve_cost before = {w->cheap.evaluations, w->cheap.events, w->cheap.applied};
-  strut_status status = strut_period_map_create(a->model, &finer, w->cheap.repeats, &map, a->error);
+  double size = strut_accuracy_velocity_scale(a, solve->orbit.velocity),
+         half = 0.5 * a->target * size;
+  const strut_orbit_solve_cost before = {solve->coarse_map.evaluations, solve->coarse_map.events,
+                                         solve->coarse_map.applied};
+  strut_status status =
+      strut_period_map_create(a->model, &finer, solve->coarse_map.repeats, &map, a->error);
   if (status) return status;
-  map.interrupt = w->cheap.interrupt, map.time = w->cheap.time;
-  map.most_evaluations = strut_accuracy_left(a);
-  status = strut_orbit_correct(&w->cheap, &map, w->base, w->travel, 0.1 * half * w->cheap.period,
-                               &there);
-  a->spent += w->cheap.evaluations - before.evaluations + map.evaluations;
-  a->used += w->cheap.evaluations - before.evaluations + map.evaluations;
-  w->cheap.evaluations = before.evaluations;
-  w->cheap.events = before.events, w->cheap.applied = before.applied;
+  map.interrupt = solve->coarse_map.interrupt, map.time = solve->coarse_map.time;
+  map.most_evaluations = strut_accuracy_evaluations_left(a);
+  status = strut_orbit_correct(&solve->coarse_map, &map, solve->fixed_point, solve->travel,
+                               0.1 * half * solve->coarse_map.period, &there);
+  a->check_evaluations += solve->coarse_map.evaluations - before.evaluations + map.evaluations;
+  a->used += solve->coarse_map.evaluations - before.evaluations + map.evaluations;
+  solve->coarse_map.evaluations = before.evaluations;
+  solve->coarse_map.events = before.events, solve->coarse_map.applied = before.applied;
   strut_period_map_free(&map);
-  status = strut_orbit_solve_map_status(w, status);
-  double apart = there.converged ? fabs(there.velocity - w->orbit.velocity) : HUGE_VAL;
-  if (status || apart > half) return status ? status : check_sensitive(w);
-  w->error = fmax(w->error, apart);
+  status = strut_orbit_solve_check_maps(solve, status);
+  double apart = there.converged ? fabs(there.velocity - solve->orbit.velocity) : HUGE_VAL;
+  if (status || apart > half) return status ? status : repeat_with_finer_tolerance(solve);
+  solve->error = fmax(solve->error, apart);
   return STRUT_OK;
 }
 
-strut_status strut_orbit_solve_check(strut_orbit_solve *w) {
-  return w->tightened ? check_sensitive(w) : check_tolerance(w);
+strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
+  return solve->tightened ? repeat_with_finer_tolerance(solve)
+                          : correct_with_finer_tolerance(solve);
 }
 
-/* ---- motions without an orbit to correct: irregular ones, and those that stick all the time ---- */
+/* ---- motions without an orbit to correct: irregular or stuck ---- */
 
-/* Periods of each run in which an irregular motion's mean is looked for, and when those show no end. */
+/*
+ * Periods over which the mean of an irregular motion is sought, and those added while it is
+ * transient.
+ */
 static const double PERIODS = 136.0, MORE_PERIODS = 544.0;
-/* Of that with half the step, as many as the former's latter half has. */
+/* Periods of the half-step run: half of those above. */
 static const double HALF_PERIODS = 68.0;
-/* Two velocities that agree to this part of what is wanted. */
+/* Velocities agree if they differ by less than this part of the wanted error. */
 static const double AGREE = 0.4;
 
-static strut_experiment with_half_the_step(const strut_orbit_solve *w) {
-  strut_experiment half = w->a->cheap;
+static strut_experiment halve_coarse_step(const strut_orbit_solve *solve) {
+  strut_experiment half = solve->a->coarse;
   half.step *= 0.5;
   return half;
 }
 
-/* The run `last` is the answer; `error` is what it may be off by [m/s]. */
-static void answer(strut_orbit_solve *w, strut_orbit_solve_end end, double error) {
-  strut_orbit_solve_keep_end(w);
-  w->orbit.velocity = w->last.velocity;
-  w->error = error;
-  w->found = end;
+/* `error` in [m/s]. */
+static void accept_last_run(strut_orbit_solve *solve, strut_orbit_answer end, double error) {
+  strut_orbit_solve_copy_end_to_orbit(solve);
+  solve->orbit.velocity = solve->last_run.velocity;
+  solve->error = error;
+  solve->answer = end;
 }
 
 /*
- * The mean over a run's window scatters more than that over all of its periods: by as much as there
- * are fewer of them.
+ * Widens the interval of a mean over `periods` to that of a mean over the shorter window: it
+ * scatters as the square root of their ratio.
  */
-static double scatter(const strut_orbit_solve *w, double interval, double periods) {
-  const strut_experiment *e = &w->a->experiment;
+static double widen_to_window(const strut_orbit_solve *solve, double interval, double periods) {
+  const strut_experiment *e = &solve->a->experiment;
   if (e->steady.wanted || !(e->measure_last < periods)) return interval;
   return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
 }
 
-/* The cheap method by more periods; what came out is added to way->run. */
-static strut_status go_on(strut_orbit_solve *w, double periods) {
+/* Continues the coarse run; solve->coarse_run grows by it. */
+static strut_status continue_coarse_run(strut_orbit_solve *solve, double periods) {
   strut_summary more = {0};
-  strut_status status =
-      strut_orbit_solve_run(w, w->a->cheap, w->a->wanted, 5, periods, true, &more);
-  if (!status) strut_summary_append(&w->run, &more);
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, solve->a->coarse, solve->a->target, 5, periods, true, &more);
+  if (!status) strut_summary_append(&solve->coarse_run, &more);
   strut_summary_free(&more);
   return status;
 }
 
-strut_status strut_orbit_solve_irregular(strut_orbit_solve *w, bool *periodic) {
-  strut_accuracy *a = w->a;
+strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic) {
+  strut_accuracy *a = solve->a;
   strut_summary half = {0};
   strut_status status = STRUT_OK;
-  w->found = STRUT_WAY_NONE;
-  if (w->run.steady.kind != STRUT_MOTION_IRREGULAR) status = go_on(w, PERIODS);
-  if (!status && w->run.steady.kind == STRUT_MOTION_TRANSIENT) status = go_on(w, MORE_PERIODS);
-  *periodic = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC;
-  if (status || w->run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
-  status = strut_orbit_solve_run(w, with_half_the_step(w), a->wanted, 5, HALF_PERIODS, true, &half);
+  solve->answer = STRUT_ORBIT_NONE;
+  if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
+    status = continue_coarse_run(solve, PERIODS);
+  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)
+    status = continue_coarse_run(solve, MORE_PERIODS);
+  *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
+  if (status || solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
+  status = strut_orbit_solve_run_until_steady(solve, halve_coarse_step(solve), a->target, 5,
+                                              HALF_PERIODS, true, &half);
   if (!status) {
-    strut_summary_append(&w->last, &half);
-    double apart = fabs(w->last.velocity - w->run.velocity);
-    if (w->last.steady.kind == STRUT_MOTION_TRANSIENT)
-      w->last.steady.kind = STRUT_MOTION_IRREGULAR; /* too short a run to see that itself */
-    answer(w, STRUT_WAY_IRREGULAR, apart + scatter(w, w->run.steady.interval, HALF_PERIODS));
+    strut_summary_append(&solve->last_run, &half);
+    double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
+    if (solve->last_run.steady.kind == STRUT_MOTION_TRANSIENT)
+      solve->last_run.steady.kind = STRUT_MOTION_IRREGULAR; /* too short a run for the detector */
+    accept_last_run(
+        solve, STRUT_ORBIT_IRREGULAR,
+        apart + widen_to_window(solve, solve->coarse_run.steady.interval, HALF_PERIODS));
   }
   strut_summary_free(&half);
   return status;
 }
 
-bool strut_orbit_solve_is_stuck(const strut_orbit_solve *w) {
-  const strut_contact_table *c = &w->cheap.model->contacts;
+bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve) {
+  const strut_contact_table *c = &solve->coarse_map.model->contacts;
   double band = 0.0;
   for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].friction.stick_velocity);
-  return w->cheap.applied > 0 && w->cheap.events == 0 && fabs(w->run.velocity) <= 1.01 * band;
+  return solve->coarse_map.applied > 0 && solve->coarse_map.events == 0 &&
+         fabs(solve->coarse_run.velocity) <= 1.01 * band;
 }
 
-strut_status strut_orbit_solve_stuck(strut_orbit_solve *w) {
-  strut_accuracy *a = w->a;
+strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
   strut_summary half = {0};
-  w->found = STRUT_WAY_NONE;
-  strut_status status =
-      strut_orbit_solve_run(w, with_half_the_step(w), fmin(0.001, 0.2 * a->wanted), 4,
-                            fmax(20.0, strut_accuracy_periods(a)), false, &half);
+  solve->answer = STRUT_ORBIT_NONE;
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, halve_coarse_step(solve), fmin(0.001, 0.2 * a->target), 4,
+      fmax(20.0, strut_accuracy_transient_periods(a)), false, &half);
   if (status) {
     strut_summary_free(&half);
     return status;
   }
   bool periodic = half.steady.kind == STRUT_MOTION_PERIODIC;
-  strut_summary_append(&w->last, &half);
-  double apart = fabs(w->last.velocity - w->run.velocity);
-  if (periodic && apart <= AGREE * a->wanted * strut_accuracy_scale(a, w->last.velocity))
-    answer(w, STRUT_WAY_STUCK, apart + w->last.steady.interval);
+  strut_summary_append(&solve->last_run, &half);
+  double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
+  if (periodic &&
+      apart <= AGREE * a->target * strut_accuracy_velocity_scale(a, solve->last_run.velocity))
+    accept_last_run(solve, STRUT_ORBIT_STUCK, apart + solve->last_run.steady.interval);
   return STRUT_OK;
 }
 
-strut_status strut_orbit_solve_disputed(strut_orbit_solve *w) {
+strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
   strut_summary half = {0};
-  double accurate = w->last.velocity;
-  strut_status status =
-      strut_orbit_solve_run(w, with_half_the_step(w), w->a->wanted, 5, HALF_PERIODS, true, &half);
+  double accurate = solve->last_run.velocity;
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, halve_coarse_step(solve), solve->a->target, 5, HALF_PERIODS, true, &half);
   if (!status) {
-    strut_summary_append(&w->last, &half);
-    double apart = fabs(accurate - w->run.velocity);
-    answer(w, STRUT_WAY_DISPUTED, apart + fabs(w->last.velocity - w->run.velocity));
+    strut_summary_append(&solve->last_run, &half);
+    double apart = fabs(accurate - solve->coarse_run.velocity);
+    accept_last_run(solve, STRUT_ORBIT_DISPUTED,
+                    apart + fabs(solve->last_run.velocity - solve->coarse_run.velocity));
   }
   strut_summary_free(&half);
   return status;
