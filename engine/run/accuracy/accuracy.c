@@ -61,7 +61,7 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   double unit = span.period > 0.0 ? span.period : span.duration;
   strut_status status = STRUT_OK;
   if (!model->mass)
-    return strut_fail(a->error, STRUT_SINGULAR, "some node that can move has no mass");
+    return strut_fail(a->error, STRUT_SINGULAR, "a free node has no mass");
   a->single_method = model->plan & STRUT_TERM_RIGID; /* supported by one method only */
   if (a->single_method) status = refuse_exact_friction(a);
   if (status) return status;
