@@ -84,7 +84,7 @@ strut_status strut_run_check_step_limit(strut_run *r) {
     strut_step_limit_monitor_check(r->model, r->state, &r->step_monitor);
   if (!unstable) strut_step_limit_monitor_sample(r->model, r->state, &r->step_monitor);
   if (r->options->force) return STRUT_OK;
-  if (!r->step_monitor.hopeless && !unstable) return STRUT_OK;
+  if (!r->step_monitor.motion_lost && !unstable) return STRUT_OK;
   return strut_step_limit_monitor_fail(&r->step_monitor, r->state, r->summary->step_limit,
                                        r->error);
 }

@@ -60,8 +60,7 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
   strut_status status = STRUT_OK;
-  if (!model->mass)
-    return strut_fail(a->error, STRUT_SINGULAR, "a free node has no mass");
+  if (!model->mass) return strut_fail(a->error, STRUT_SINGULAR, "a free node has no mass");
   a->single_method = model->plan & STRUT_TERM_RIGID; /* supported by one method only */
   if (a->single_method) status = refuse_exact_friction(a);
   if (status) return status;

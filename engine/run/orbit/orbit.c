@@ -6,17 +6,23 @@
 
 #include "engine/base/vec.h"
 
-/* The sum over a disturbance ends when it moves the structure so much less than at its height. */
-static const double REMAINDER = 0.02;
-/* Members of a sequence that extrapolation combines. */
+/*
+ * The sum over a disturbance ends when its effect on the travel falls below this part of its
+ * largest.
+ */
+static const double DECAYED = 0.02;
+/*
+ * Members of a sequence that are combined; stored; most periods of a disturbance, and those after
+ * which it must have decayed; cycles of extrapolation.
+ */
 enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12, MOST_CYCLES = 8 };
 /*
  * The limit of a sequence from a few of its members: reduced rank extrapolation (Eddy 1979; Mesina
- * 1977; Sidi 1991). Of the differences of successive members the combination with weights of sum 1
- * that is smallest is looked for; the members are then combined by the same weights.
+ * 1977; Sidi 1991). Finds the combination of successive differences, with weights of sum 1, that is
+ * smallest; the members are then combined with the same weights.
  */
 
-/* Weights beyond this lose more digits than they win. */
+/* Larger weights lose more digits than extrapolation gains. */
 static const double MOST_WEIGHT = 100.0;
 
 /* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
@@ -38,8 +44,8 @@ static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
 }
 
 /*
- * weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= the window. False where
- * there are none or they are so large that they would but blow up errors.
+ * Fills weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= WINDOW. False
+ * where the system is singular or the weights would amplify errors.
  */
 static bool find_extrapolation_weights(const strut_period_map *map, double *const *d, int32_t count,
                                        double *weight) {
@@ -64,15 +70,15 @@ static bool find_extrapolation_weights(const strut_period_map *map, double *cons
 
 /* ---- the correction of an orbit ---- */
 
-/* A disturbance and what has come of it after the latest periods; entry k % KEPT is after k. */
-typedef struct trail {
-  double *d[KEPT], *sum[KEPT]; /* (2 length + 1) what is left of it; all until then */
-  double gone[KEPT];           /* the travel that all until then causes [m] */
+/* A disturbance and its development over the latest periods; entry k % KEPT is after period k. */
+typedef struct disturbance {
+  double *d[KEPT], *sum[KEPT]; /* (2 length + 1) the disturbance; its sum so far */
+  double gone[KEPT];           /* travel that the sum so far causes [m] */
   double *limit, *work;
   double travel; /* extrapolated [m]; NAN where there is none */
-} trail;
+} disturbance;
 
-static bool make_trail(size_t both, strut_arena *arena, trail *t) {
+static bool allocate_disturbance(size_t both, strut_arena *arena, disturbance *t) {
   bool ready = (t->limit = strut_arena_allocate(arena, both, sizeof(double)));
   ready = ready && (t->work = strut_arena_allocate(arena, both, sizeof(double)));
   for (int k = 0; k < KEPT && ready; k++)
@@ -82,10 +88,10 @@ static bool make_trail(size_t both, strut_arena *arena, trail *t) {
 }
 
 /*
- * The sums' limit after m periods, by extrapolation, into t->limit and t->travel. Returns the size of
- * what the combination leaves of the disturbance.
+ * Extrapolates the sums after m periods into t->limit and t->travel. Returns the size of the
+ * combined disturbance.
  */
-static double extrapolate_disturbance(const strut_period_map *map, int m, trail *t) {
+static double extrapolate_disturbance(const strut_period_map *map, int m, disturbance *t) {
   double *d[WINDOW], c[WINDOW];
   int n = m < WINDOW ? m : WINDOW;
   size_t both = 2 * (size_t)map->model->length + 1;
@@ -107,59 +113,60 @@ static double extrapolate_disturbance(const strut_period_map *map, int m, trail 
 }
 
 /*
- * What C makes of the disturbance t->d[0] of `base`, summed over the periods, into t->limit; returns
- * the sum of the travel it causes, NAN where it does not die out. It ends where two periods in a row
- * add less than `enough` [m], or where two extrapolations in a row differ by less.
+ * Propagates the disturbance t->d[0] of `base` by C and sums it over the periods into t->limit;
+ * returns the travel it causes, NAN where it does not decay. Ends where two periods in a row, or
+ * the change between two extrapolations in a row, contribute less than `enough` [m].
  */
-static double follow(strut_period_map *cheap, const double *base, double travel, double enough,
-                     trail *t) {
-  int32_t both = 2 * cheap->model->length + 1;
+static double propagate_disturbance(strut_period_map *coarse, const double *base, double travel,
+                                    double enough, disturbance *t) {
+  int32_t both = 2 * coarse->model->length + 1;
   size_t bytes = (size_t)both * sizeof(double);
-  double first = strut_period_map_size(cheap, t->d[0]), last = first, gone = 0.0, farthest = 0.0;
+  double first = strut_period_map_size(coarse, t->d[0]), last = first, gone = 0.0, farthest = 0.0;
   double last_step = 0.0, guess = (double)NAN;
   memcpy(t->sum[0], t->d[0], bytes);
   for (int m = 1; m <= MOST_PERIODS; m++) {
     const double *before = t->d[(m - 1) % KEPT], *sum = t->sum[(m - 1) % KEPT];
     double *d = t->d[m % KEPT], *total = t->sum[m % KEPT];
     for (int32_t i = 0; i < both; i++) t->work[i] = base[i] + before[i];
-    double step = strut_period_map_apply(cheap, t->work) - travel;
-    strut_period_map_subtract(cheap, base, t->work, d);
-    double now = strut_period_map_size(cheap, d);
+    double step = strut_period_map_apply(coarse, t->work) - travel;
+    strut_period_map_subtract(coarse, base, t->work, d);
+    double now = strut_period_map_size(coarse, d);
     t->gone[(m - 1) % KEPT] = gone += step;
     for (int32_t i = 0; i < both; i++) total[i] = sum[i] + d[i];
     if (!isfinite(step) || !(now < 30.0 * first) || (m >= LOST && now > first)) return (double)NAN;
     farthest = fmax(farthest, fabs(step));
-    double little = fmax(REMAINDER * farthest, enough);
+    double little = fmax(DECAYED * farthest, enough);
     if (fmax(fabs(step), fabs(last_step)) <= little && fmax(now, last) <= 0.3 * first) {
       memcpy(t->limit, total, bytes);
       return gone;
     }
-    double left = extrapolate_disturbance(cheap, m, t);
-    if (left <= 0.1 * first && fabs(t->travel - guess) <= little) return t->travel;
+    double rest = extrapolate_disturbance(coarse, m, t);
+    if (rest <= 0.1 * first && fabs(t->travel - guess) <= little) return t->travel;
     last = now, last_step = step, guess = t->travel;
   }
   return (double)NAN;
 }
 
-strut_status strut_orbit_correct(strut_period_map *cheap, strut_period_map *accurate,
+strut_status strut_orbit_correct(strut_period_map *coarse, strut_period_map *reference,
                                  const double *base, double travel, double enough,
                                  strut_orbit *orbit) {
-  size_t both = 2 * (size_t)cheap->model->length + 1;
+  size_t both = 2 * (size_t)coarse->model->length + 1;
   strut_arena arena = {0};
-  trail t = {.limit = NULL};
+  disturbance t = {.limit = NULL};
   double *end = strut_arena_allocate(&arena, both, sizeof(double));
   orbit->converged = false;
-  if (!end || !make_trail(both, &arena, &t)) {
+  if (!end || !allocate_disturbance(both, &arena, &t)) {
     strut_arena_free(&arena);
     return STRUT_NO_MEMORY;
   }
   memcpy(end, orbit->y, both * sizeof *end);
-  double gone = strut_period_map_apply(accurate, end);
-  strut_period_map_subtract(cheap, orbit->y, end, t.d[0]);
-  orbit->defect = strut_period_map_size(cheap, t.d[0]);
-  double more = isfinite(gone) ? follow(cheap, base, travel, enough, &t) : (double)NAN;
+  double gone = strut_period_map_apply(reference, end);
+  strut_period_map_subtract(coarse, orbit->y, end, t.d[0]);
+  orbit->defect = strut_period_map_size(coarse, t.d[0]);
+  double more =
+      isfinite(gone) ? propagate_disturbance(coarse, base, travel, enough, &t) : (double)NAN;
   if (isfinite(more)) {
-    double period = cheap->period * cheap->repeats;
+    double period = coarse->period * coarse->repeats;
     for (size_t i = 0; i < both; i++) orbit->y[i] += t.limit[i];
     orbit->velocity = (gone + more) / period;
     orbit->correction = more / period;
@@ -171,13 +178,13 @@ strut_status strut_orbit_correct(strut_period_map *cheap, strut_period_map *accu
 
 /* ---- the limit of a sequence of periods without running all of them ---- */
 
-/* A window of periods: y[k + 1] = C(y[k]), d[k] their difference, travel[k] on the way. */
+/* A window of periods: y[k + 1] = C(y[k]), d[k] their difference, travel[k] the travel. */
 typedef struct window {
   double *y[WINDOW + 1], *d[WINDOW], *best;
   double travel[WINDOW], size[WINDOW];
 } window;
 
-static bool make_window(size_t both, strut_arena *arena, window *w) {
+static bool allocate_window(size_t both, strut_arena *arena, window *w) {
   bool ready = true;
   for (int k = 0; k <= WINDOW && ready; k++)
     ready = (w->y[k] = strut_arena_allocate(arena, both, sizeof(double)));
@@ -186,7 +193,7 @@ static bool make_window(size_t both, strut_arena *arena, window *w) {
   return ready && (w->best = strut_arena_allocate(arena, both, sizeof(double)));
 }
 
-/* The extrapolated limit into w->best; the latest period's end where that is no good. */
+/* Extrapolates into w->best; takes the end of the latest period where that fails. */
 static void extrapolate_periods(const strut_period_map *map, window *w) {
   double c[WINDOW];
   size_t both = 2 * (size_t)map->model->length + 1;
@@ -199,8 +206,8 @@ static void extrapolate_periods(const strut_period_map *map, window *w) {
   }
 }
 
-/* What is left to go, in travel per application: by the decay of the differences. */
-static double remaining(const window *w) {
+/* Estimates the remaining travel per application from the decay of the differences. */
+static double estimate_remaining_travel(const window *w) {
   double effect = 0.0, first = w->size[0], last = w->size[WINDOW - 1];
   for (int k = 1; k < WINDOW; k++)
     effect = fmax(effect, fabs(w->travel[k] - w->travel[k - 1]) / fmax(w->size[k - 1], 1e-300));
@@ -215,7 +222,7 @@ strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, 
   strut_arena arena = {0};
   window w = {.best = NULL};
   *found = false;
-  if (!make_window(both, &arena, &w)) {
+  if (!allocate_window(both, &arena, &w)) {
     strut_arena_free(&arena);
     return STRUT_NO_MEMORY;
   }
@@ -231,8 +238,9 @@ strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, 
       if (!isfinite(w.travel[k])) cycle = MOST_CYCLES;
     }
     if (cycle == MOST_CYCLES) break;
-    if (jumped && w.size[WINDOW - 1] > before) break; /* it led away: not a steady motion's doing */
-    if (remaining(&w) <= enough) {
+    if (jumped && w.size[WINDOW - 1] > before)
+      break; /* extrapolation led away: the motion is not steady */
+    if (estimate_remaining_travel(&w) <= enough) {
       memcpy(y, w.y[WINDOW], bytes);
       *travel = w.travel[WINDOW - 1];
       *found = true;
