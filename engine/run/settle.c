@@ -10,31 +10,34 @@
 #include "engine/integrate/integrator.h"
 #include "engine/model/pose.h"
 
-/* Evaluations after which accelerations that rounding alone explains count as rest. */
-static const int64_t PATIENCE = 1000000;
+/* Force evaluations after which accelerations explained by rounding count as rest. */
+static const int64_t ROUNDING_EVALUATIONS = 1000000;
 
-/* The scene with all that moves or holds by itself taken out. Shares texts and arrays. */
-static strut_status quiet_scene(const strut_scene *scene, bool friction, strut_scene *quiet,
-                                strut_arena *arena) {
-  *quiet = *scene;
-  quiet->actuator_count = 0;
-  quiet->ground.belt_speed = 0.0;
-  quiet->bar_model = STRUT_BARS_ELASTIC; /* rigid from where they have come to rest under load */
-  quiet->loads = strut_arena_allocate(arena, scene->load_count, sizeof *quiet->loads);
-  quiet->contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *quiet->contacts);
-  if (!quiet->loads || !quiet->contacts) return STRUT_NO_MEMORY;
-  quiet->load_count = 0;
+/*
+ * Copies the scene without drives, driven loads, belt and, unless kept, friction. Shares texts and
+ * arrays.
+ */
+static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
+                                       strut_scene *passive, strut_arena *arena) {
+  *passive = *scene;
+  passive->actuator_count = 0;
+  passive->ground.belt_speed = 0.0;
+  passive->bar_model = STRUT_BARS_ELASTIC; /* they become rigid in the settled, loaded shape */
+  passive->loads = strut_arena_allocate(arena, scene->load_count, sizeof *passive->loads);
+  passive->contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *passive->contacts);
+  if (!passive->loads || !passive->contacts) return STRUT_NO_MEMORY;
+  passive->load_count = 0;
   for (size_t i = 0; i < scene->load_count; i++)
-    if (scene->loads[i].signal < 0) quiet->loads[quiet->load_count++] = scene->loads[i];
+    if (scene->loads[i].signal < 0) passive->loads[passive->load_count++] = scene->loads[i];
   for (size_t i = 0; i < scene->contact_count; i++) {
-    quiet->contacts[i] = scene->contacts[i];
-    if (!friction) quiet->contacts[i].friction.law = STRUT_FRICTION_NONE;
+    passive->contacts[i] = scene->contacts[i];
+    if (!friction) passive->contacts[i].friction.law = STRUT_FRICTION_NONE;
   }
   return STRUT_OK;
 }
 
-/* The node with the largest entry of x, and that entry's size: infinite where x is no number. */
-static double largest(const double *x, int32_t n, int32_t *node) {
+/* The largest absolute entry of x and its node; infinite where x has a NaN. */
+static double find_largest(const double *x, int32_t n, int32_t *node) {
   double most = 0.0;
   *node = 0;
   for (int32_t i = 0; i < n; i++) {
@@ -44,8 +47,8 @@ static double largest(const double *x, int32_t n, int32_t *node) {
   return most;
 }
 
-/* The acceleration that the last bits of positions may leave at a node of stiff members. */
-static double rounding(const strut_relaxation *r) {
+/* The acceleration that rounding of the positions may cause at a node of stiff members. */
+static double rounding_acceleration(const strut_relaxation *r) {
   const strut_model *model = r->model;
   const strut_member_table *t = &model->members;
   double worst = 0.0, *force = r->acceleration;
@@ -61,12 +64,12 @@ static double rounding(const strut_relaxation *r) {
   return 4.0 * worst;
 }
 
-static strut_status give_up(const strut_relaxation *r, strut_error *error) {
+static strut_status fail_not_settled(const strut_relaxation *r, strut_error *error) {
   const strut_settle *wanted = &r->experiment->settle;
   int32_t fastest, pushed, length = r->model->length;
-  double speed = largest(r->state->v, length, &fastest);
+  double speed = find_largest(r->state->v, length, &fastest);
   strut_forces_acceleration(r->model, r->state, 0.0, r->state->q, r->state->v, r->acceleration);
-  double push = largest(r->acceleration, length, &pushed);
+  double push = find_largest(r->acceleration, length, &pushed);
   bool late = r->time >= wanted->limit, moves = !(speed < wanted->speed);
   bool slides = r->scene.contact_count && !wanted->friction;
   char within[60];
@@ -84,30 +87,29 @@ static strut_status give_up(const strut_relaxation *r, strut_error *error) {
 static strut_status fail_diverged(const strut_relaxation *r, double time, strut_error *error) {
   if (r->state->trouble)
     return strut_fail(error, STRUT_DIVERGED,
-                      "%s could not go on while coming to rest, after %g s; look for a member of "
-                      "zero length",
+                      "%s failed while settling, after %g s; look for a member of zero length",
                       r->method->name, time);
   return strut_fail(error, STRUT_DIVERGED,
-                    "coming to rest before the run diverged after %g s with a step of %g s; "
-                    "use a smaller initial.settle.step",
+                    "settling before the run diverged after %g s with a step of %g s; use a "
+                    "smaller initial.settle.step",
                     time, r->step);
 }
 
-/* No velocities: where the kinetic energy has passed a peak, and at first. */
+/* Sets all velocities to zero: at the start and whenever the kinetic energy has passed a peak. */
 static void stop_motion(strut_relaxation *r) {
   memset(r->state->v, 0, (size_t)r->model->length * sizeof(double));
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->step);
 }
 
-/* Steps until at rest; r->time and r->evaluations as they were before. */
-static strut_status relax(strut_relaxation *r, strut_error *error) {
+/* Steps until at rest; adds to r->time and r->evaluations. */
+static strut_status relax_until_rest(strut_relaxation *r, strut_error *error) {
   const strut_settle *wanted = &r->experiment->settle;
   strut_state *state = r->state;
   double dt = r->step, previous = 0.0, before = r->time, enough = wanted->acceleration;
   double most = wanted->evaluations > 0.0 ? wanted->evaluations : STRUT_SETTLE_EVALUATIONS;
   int64_t spent = r->evaluations;
   int32_t length = r->model->length, node;
-  bool patient = true;
+  bool strict = true;
   stop_motion(r);
   while (r->time < wanted->limit && (double)r->evaluations < most) {
     if (r->interrupt && *r->interrupt)
@@ -123,27 +125,27 @@ static strut_status relax(strut_relaxation *r, strut_error *error) {
       kinetic = 0.0;
     }
     previous = kinetic;
-    if (patient && r->evaluations > PATIENCE) {
-      patient = false;
-      enough = fmax(enough, rounding(r));
+    if (strict && r->evaluations > ROUNDING_EVALUATIONS) {
+      strict = false;
+      enough = fmax(enough, rounding_acceleration(r));
     }
-    if (!(largest(state->v, length, &node) < wanted->speed)) continue;
+    if (!(find_largest(state->v, length, &node) < wanted->speed)) continue;
     strut_forces_acceleration(r->model, state, 0.0, state->q, state->v, r->acceleration);
-    if (largest(r->acceleration, length, &node) < enough) return STRUT_OK;
+    if (find_largest(r->acceleration, length, &node) < enough) return STRUT_OK;
   }
-  return give_up(r, error);
+  return fail_not_settled(r, error);
 }
 
 strut_status strut_relaxation_run(strut_relaxation *r, strut_error *error) {
   r->state->interrupt = r->interrupt;
-  return relax(r, error);
+  return relax_until_rest(r, error);
 }
 
 strut_status strut_relaxation_create(const strut_model *model, const strut_experiment *experiment,
                                      strut_relaxation *r, strut_error *error) {
   const strut_settle *settle = &experiment->settle;
   *r = (strut_relaxation){.experiment = experiment};
-  strut_status status = quiet_scene(model->scene, settle->friction, &r->scene, &r->arena);
+  strut_status status = copy_passive_scene(model->scene, settle->friction, &r->scene, &r->arena);
   r->step = settle->step > 0.0 ? settle->step : experiment->step;
   r->acceleration = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
   if (!r->acceleration) status = STRUT_NO_MEMORY;

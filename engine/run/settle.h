@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Coming to rest before a run: dynamic relaxation with kinetic damping, and whether the rest is stable.
+ * Settling before a run: dynamic relaxation with kinetic damping, and the stability of the
+ * equilibrium found.
  *
- * Where a structure settles does not depend on the method, step or accuracy of the run: it is always
- * the classical Runge-Kutta method that settles, with settle.step. Every command that wants the
- * settled start gets it from strut_settle_experiment, hence the same bits.
+ * The settled start does not depend on the method, step or accuracy of the run: settling always
+ * uses the classical Runge-Kutta method with settle.step. Every command gets it from
+ * strut_settle_experiment, hence the same bits.
  */
 #ifndef STRUT_ENGINE_RUN_SETTLE_H
 #define STRUT_ENGINE_RUN_SETTLE_H
@@ -16,11 +17,11 @@
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 
-/** A model without drives, driven loads, belt and, unless kept, friction, with a state that relaxes. */
+/** A model without drives, driven loads, belt and, unless kept, friction, and its state. */
 typedef struct strut_relaxation {
   strut_scene scene;
   const strut_experiment *experiment;
-  strut_model *model; /* of it */
+  strut_model *model; /* of `scene` */
   strut_state *state;
   const struct strut_integrator *method;
   void *workspace;
@@ -32,47 +33,31 @@ typedef struct strut_relaxation {
   strut_arena arena;
 } strut_relaxation;
 
-/** The step is the experiment's; it may be changed before it runs. STRUT_NO_MEMORY, STRUT_SINGULAR. */
+/**
+ * Takes the step of the experiment, which may be changed before the relaxation runs.
+ * STRUT_NO_MEMORY, STRUT_SINGULAR.
+ */
 strut_status strut_relaxation_create(const strut_model *model, const strut_experiment *experiment,
                                      strut_relaxation *relaxation, strut_error *error);
 /**
- * Integrates from the state's positions, at rest, and sets all velocities to zero whenever the
- * kinetic energy has passed a peak, until every speed and acceleration is below the scene's limits.
- * Fails with STRUT_NOT_SETTLED where the scene's limits of time or work are used up before,
+ * Integrates from the positions of the state, at rest, and sets all velocities to zero whenever the
+ * kinetic energy has passed a peak, until every speed and acceleration is below the limits of the
+ * scene. Fails with STRUT_NOT_SETTLED where the limits of time or work are used up first,
  * STRUT_DIVERGED, STRUT_INTERRUPTED.
  */
 strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error);
 void strut_relaxation_free(strut_relaxation *relaxation);
 
-/** A relaxation by itself, with the step as the experiment gives it; *time is the time it took [s]. */
+/** A single relaxation with the given step; *time is the simulated time [s]. */
 strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
                                 strut_state *state, const volatile sig_atomic_t *interrupt,
                                 double *time, strut_error *error);
 
-/** settle_stability.c. The most unstable direction of an equilibrium. */
-typedef struct strut_instability {
-  int32_t node;       /* that moves most; -1: the equilibrium is not unstable */
-  double stiffness;   /* lowest eigenvalue of the Hessian [N/m] */
-  double growth_rate; /* [1/s] */
-  double *direction;  /* (length) 1 where the node moves; of the arena; NULL where not unstable */
-} strut_instability;
-
 /**
- * Counts the negative eigenvalues of the tangent stiffness at q by the signs of its factor, contacts
- * that touch closed, held along the ground too where they stick. Motions without stiffness, such as
- * those of a structure that floats or slides freely, are no instability, nor is what
- * `acceleration` [m/s^2], at which a structure counts as at rest, leaves open. STRUT_NO_MEMORY.
- */
-strut_status strut_find_instability(const strut_model *model, double acceleration, const double *q,
-                                    strut_arena *arena, strut_instability *instability,
-                                    strut_error *error);
-
-/**
- * settle_experiment.c. The start of an experiment, settled: q (length) are the positions
- * [m], *time what it simulated [s], `how` tells the rest. The step is chosen by the stability limit
- * where the scene gives none that is stable; one that proves too large on the way is halved. With
- * settle.perturb an unstable equilibrium is left. limits: of models seen before, may be NULL. Fails as
- * strut_relaxation_run.
+ * Settles the start of an experiment: q (length) are the positions [m], *time the simulated time
+ * [s], `how` the details. The step follows from the stability limit where the scene gives no stable
+ * one, and is halved where it diverges. With settle.perturb an unstable equilibrium is left.
+ * limits: cache of step limits, may be NULL. Fails as strut_relaxation_run.
  */
 STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                const strut_experiment *experiment,
@@ -81,19 +66,19 @@ STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                double *time, strut_settle_summary *how,
                                                strut_error *error);
 
-/** A start that has settled once, for experiments that are to begin with the same bits. */
+/** A settled start shared by several experiments, so that all start from the same bits. */
 typedef struct strut_settled_start {
-  const strut_model *model; /* that starts at rest there: `own`, or the one given */
-  strut_model *own;         /* NULL where nothing had to settle */
-  strut_scene *scene;       /* of `own`; its nodes are the arena's, all else is shared */
-  double time;              /* what settling simulated [s] */
+  const strut_model *model; /* starts at rest there: `own`, or the model given */
+  strut_model *own;         /* NULL where settling was not requested */
+  strut_scene *scene;       /* of `own`; its nodes are in the arena, all else is shared */
+  double time;              /* simulated while settling [s] */
   strut_settle_summary how;
   strut_arena arena;
 } strut_settled_start;
 
 /**
- * Settles where the experiment wants it. What then runs on start->model must not settle again.
- * strut_settled_start_free, after a failure too; the model given must outlive it.
+ * Settles if the experiment requests it. Experiments on start->model must not settle again. Call
+ * strut_settled_start_free, also after a failure; the model given must outlive the start.
  */
 STRUT_API strut_status strut_settle_model(const strut_model *model,
                                           const strut_experiment *experiment,

@@ -6,9 +6,13 @@
 #include <time.h>
 
 #include "engine/base/subnormals.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/model/memory_estimate.h"
+#include "engine/run/orbit/shooting.h"
+#include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
 
-/* Work, in members times steps, between two looks at the state and at the interrupt flag. */
+/* Members times steps between two checks of the state and the interrupt flag. */
 static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
 
 double strut_run_clock(void) {
@@ -17,8 +21,231 @@ double strut_run_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Where to stop stepping for a while: a sample, the window, the end, or just to look around. */
-static int64_t next_stop(const strut_run *r, int64_t chunk) {
+/* ---- before the first step ---- */
+
+static strut_status check_step_limit(const strut_run *r, bool bound) {
+  double limit = r->summary->step_limit;
+  if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (bound)
+    return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                      "the step %g s is above %.4g s, a bound below which %s is stable (all "
+                      "contacts closed; the structure is too large to compute its largest stable "
+                      "step); use solver.step <= %.3g s, or --force to run anyway",
+                      r->dt, limit, r->method->name, 0.99 * limit);
+  return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                    "the step %g s is above the largest stable step of %s, %.4g s (all contacts "
+                    "closed); use solver.step <= %.2g s, or --force to run anyway",
+                    r->dt, r->method->name, limit, 0.9 * limit);
+}
+
+static strut_status allocate_summary(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_summary *s = r->summary;
+  const strut_experiment *e = r->experiment;
+  size_t contacts = (size_t)r->model->contacts.count;
+  s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
+  s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
+  s->contacts = strut_allocate(contacts, sizeof *s->contacts);
+  if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
+  if (!s->node_names || !s->positions || !s->contacts || (e->quantity_count && !s->measured))
+    return strut_memory_fail_model(r->model->scene, r->error);
+  s->node_count = scene->node_count;
+  s->contact_count = contacts;
+  s->measured_count = e->quantity_count;
+  if (e->measure_node >= 0) s->measured_node = scene->nodes[e->measure_node].name;
+  for (size_t i = 0; i < s->measured_count; i++)
+    s->measured[i] = (strut_measured){.name = e->quantities[i].name,
+                                      .unit = e->quantities[i].unit,
+                                      .value = (double)NAN,
+                                      .spread = (double)NAN,
+                                      .scale = (double)NAN,
+                                      .expected = (double)NAN};
+  for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
+  for (size_t i = 0; i < contacts; i++)
+    s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
+  return STRUT_OK;
+}
+
+/*
+ * Chooses the step, which divides the drive period where steady motion is detected, and the first
+ * and last step number.
+ */
+static void choose_steps(strut_run *r, const strut_span *span) {
+  const strut_experiment *e = r->experiment;
+  double last = e->output_last;
+  r->dt = e->step;
+  if (r->detect_steady) {
+    r->period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
+    r->dt = span->period / (double)r->period_steps;
+    r->recorded_periods = r->options->sink_count && last > 1.0 ? (int64_t)ceil(last - 1e-9) : 1;
+  }
+  r->summary->step = r->dt;
+  r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
+  r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
+  r->grid = (strut_time_grid){
+      .step = r->dt, .last = r->steps, .end = (double)r->first * r->dt + span->duration};
+  double offset = r->options->from ? r->options->from->time - (double)r->first * r->dt : 0.0;
+  if (!r->detect_steady && fabs(offset) > 1e-6 * r->dt) r->grid.offset = offset;
+}
+
+/* Places the state at the start: that of the scene, the settled one, or the end of another run. */
+static strut_status place_state(strut_run *r) {
+  const strut_snapshot *from = r->options->from;
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  r->state->step = r->first;
+  if (from) {
+    memcpy(r->state->q, from->q, bytes);
+    memcpy(r->state->v, from->v, bytes);
+    r->state->refined_until = from->time - r->grid.offset + from->refined;
+    return STRUT_OK;
+  }
+  if (!r->experiment->settle.wanted) return STRUT_OK;
+  memset(r->state->v, 0, bytes);
+  return strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
+                                 r->state->q, &r->summary->settle_time, &r->summary->settle,
+                                 r->error);
+}
+
+static strut_status prepare_run(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_span span = strut_experiment_span(r->experiment, scene);
+  r->detect_steady = r->experiment->steady.wanted && span.period > 0.0;
+  choose_steps(r, &span);
+  strut_status status = strut_integrator_check(r->model, r->experiment, r->error);
+  if (status) return status;
+  r->method = strut_integrator_find(r->experiment->integrator);
+  for (size_t i = 0; i + 1 < sizeof r->summary->method && r->method->name[i]; i++)
+    r->summary->method[i] = r->method->name[i];
+  if (scene->start_equilibrium >= 0)
+    return strut_fail(r->error, STRUT_USAGE,
+                      "the run starts at the equilibrium of configuration '%s'; resolve it to "
+                      "positions first with strut_resolve_start_equilibrium",
+                      scene->configurations[scene->start_equilibrium].name);
+  if (!r->model->mass) return strut_fail(r->error, STRUT_SINGULAR, "a free node has no mass");
+  double *limit = &r->summary->step_limit;
+  bool bound = false;
+  status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
+                     : strut_step_limit_with_bound(r->model, r->method, limit, &bound, r->error);
+  if (status) return status;
+  if ((status = check_step_limit(r, bound)) || (status = allocate_summary(r)) ||
+      (status = strut_state_create(r->model, &r->state, r->error)))
+    return status;
+  const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
+  r->workspace = r->method->create(r->model, r->state, &settings);
+  double begin = (double)r->first * r->dt;
+  int64_t marks =
+      r->recorded_periods > STRUT_LONGEST_REPEAT ? r->recorded_periods : STRUT_LONGEST_REPEAT;
+  if (!r->workspace ||
+      strut_measure_create(r->model, r->experiment, &r->grid, begin, (size_t)marks + 1,
+                           &r->measure) ||
+      (r->detect_steady && strut_steady_detector_create(r->model, &r->experiment->steady,
+                                                        span.period, begin, &r->steady)))
+    return strut_memory_fail_model(r->model->scene, r->error);
+  if ((status = place_state(r))) return status;
+  r->state->time_offset = r->grid.offset;
+  r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(r->experiment);
+  r->state->interrupt = r->options->interrupt;
+  r->state->most_evaluations = r->options->most_evaluations;
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->step_monitor) ||
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
+    return strut_memory_fail_model(r->model->scene, r->error);
+  strut_energy_reset_load_work(r->model, r->state);
+  r->initial = strut_energy_evaluate(r->model, r->state, begin);
+  strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
+  return strut_recording_create(r->model, r->experiment, &r->grid, begin, r->options->sinks,
+                                r->options->sink_count, &r->recording, r->error);
+}
+
+/* ---- steady motion ---- */
+
+/* A step within the period that no symmetry of the drive prefers. */
+static int64_t asymmetric_phase(int64_t period) { return (int64_t)(0.382 * (double)period); }
+
+/*
+ * Moves the state to the orbit. The change of the stored energies is added to the initial ones, so
+ * that it does not count as an error of the balance.
+ */
+static void jump_to_orbit(strut_run *r, const double *y) {
+  size_t bytes = (size_t)r->model->length * sizeof(double);
+  double t = (double)r->state->step * r->dt;
+  strut_energies before = strut_energy_evaluate(r->model, r->state, t);
+  memcpy(r->state->q, y, bytes);
+  memcpy(r->state->v, y + r->model->length, bytes);
+  r->state->refined_until = t + y[2 * r->model->length];
+  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  strut_energies after = strut_energy_evaluate(r->model, r->state, t);
+  r->initial.kinetic += after.kinetic - before.kinetic;
+  r->initial.elastic += after.elastic - before.elastic;
+  r->initial.gravity += after.gravity - before.gravity;
+  r->initial.contact += after.contact - before.contact;
+}
+
+/* Completes a periodic motion by shooting; keeps the state where that fails. */
+static strut_status shoot_orbit(strut_run *r) {
+  size_t length = (size_t)r->model->length;
+  strut_steady_summary *found = &r->steady.result;
+  strut_period_map map = {.model = NULL};
+  double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
+  if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      strut_period_map_create(r->model, r->experiment, found->repeats, &map, r->error);
+  if (!status) {
+    map.time = (double)r->state->step * r->dt;
+    map.interrupt = r->options->interrupt;
+    memcpy(y, r->state->q, length * sizeof *y);
+    memcpy(y + length, r->state->v, length * sizeof *y);
+    y[2 * length] = fmax(0.0, r->state->refined_until - map.time);
+    status = strut_shoot(&map, y, &travel, found);
+    if (status == STRUT_INTERRUPTED)
+      strut_fail(r->error, status, "interrupted at t = %.9g s, during shooting", map.time);
+    else if (status)
+      strut_fail(r->error, status, "out of memory");
+  }
+  if (!status && found->shot) {
+    jump_to_orbit(r, y);
+    r->steady.velocity = travel / (map.period * found->repeats);
+  }
+  r->shooting_periods = map.applied;
+  found->periods += map.applied;
+  r->state->evaluations += map.evaluations;
+  strut_period_map_free(&map);
+  strut_release(y);
+  return status;
+}
+
+/*
+ * Samples the detector at the end of each period and once within it. Once the motion is steady, the run
+ * continues for the recorded periods, at least one, over which contacts are measured.
+ */
+static strut_status detect_steady_motion(strut_run *r) {
+  int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
+  if (past == asymmetric_phase(r->period_steps))
+    strut_steady_detector_half_period(r->state, &r->steady);
+  if (past != 0) return STRUT_OK;
+  double x, v;
+  bool before = r->steady.known;
+  strut_measure_track(r->model, r->state, &r->measure, &x, &v);
+  if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
+  strut_status status = r->experiment->steady.shooting ? shoot_orbit(r) : STRUT_OK;
+  if (status) return status;
+  double now = (double)n * r->dt, period = r->steady.period;
+  int64_t periods = r->recorded_periods, repeats = r->steady.result.repeats;
+  if (r->measure.quantities && periods < repeats)
+    periods = repeats; /* a window over the whole orbit */
+  r->steps = n + periods * r->period_steps;
+  r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
+  strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
+  if (r->experiment->output_last > 0.0) r->recording.start = now;
+  return STRUT_OK;
+}
+
+/* ---- stepping ---- */
+
+/*
+ * Finds the step at which to stop next: a sample, the window, a period, the end, or the next check.
+ */
+static int64_t find_next_stop(const strut_run *r, int64_t chunk) {
   int64_t n = r->state->step, stop = n + chunk;
   int64_t sample = strut_recording_next_step(&r->recording);
   int64_t window = strut_measure_first_step(&r->measure);
@@ -27,9 +254,9 @@ static int64_t next_stop(const strut_run *r, int64_t chunk) {
   if (sample > n && stop > sample) stop = sample;
   if (window > n && stop > window) stop = window;
   if (r->balance.next > n && stop > r->balance.next) stop = r->balance.next;
-  if (!r->watching) return stop;
+  if (!r->detect_steady) return stop;
   int64_t period = r->period_steps, past = (n - r->first) % period, end = n - past + period;
-  int64_t middle = n - past + strut_run_middle(period);
+  int64_t middle = n - past + asymmetric_phase(period);
   if (middle > n && stop > middle) stop = middle;
   return stop > end ? end : stop;
 }
@@ -59,12 +286,15 @@ static void step_to(strut_run *r, int64_t stop) {
 
 double strut_run_time(const strut_run *r) { return strut_time_grid_real(&r->grid, r->state->step); }
 
-bool strut_run_last_step_due(const strut_run *r) {
+bool strut_run_is_short_step_due(const strut_run *r) {
   return r->state->step == r->grid.last - 1 && strut_time_grid_rest(&r->grid) > 0.0;
 }
 
-/* A step of another length: n times that is not the time, so drives are told how much later it is. */
-static void take_last_step(strut_run *r) {
+/*
+ * Makes the last step of another length. Step number times step is then not the time, so the drives
+ * get the difference as offset.
+ */
+static void step_short(strut_run *r) {
   strut_state *state = r->state;
   double length = strut_time_grid_rest(&r->grid), before = state->time_offset;
   double later = (double)state->step * (r->dt - length);
@@ -82,17 +312,19 @@ static void take_last_step(strut_run *r) {
     strut_measure_step(r->model, state, &r->measure);
 }
 
-/* Motion that has died away must not be slow: numbers too small for full speed are zero. */
+/*
+ * Denormal numbers of a decayed motion would slow the processor down, so they are flushed to zero.
+ */
 void strut_run_step(strut_run *r, int64_t stop) {
   unsigned before = strut_subnormals_off();
-  if (strut_run_last_step_due(r))
-    take_last_step(r);
+  if (strut_run_is_short_step_due(r))
+    step_short(r);
   else
     step_to(r, stop);
   strut_subnormals_restore(before);
 }
 
-static void look_at_balance(strut_run *r) {
+static void sample_balance(strut_run *r) {
   strut_balance_sample(r->model, r->state, &r->initial,
                        strut_time_grid_at(&r->grid, r->state->step), &r->balance,
                        &r->summary->energy);
@@ -101,14 +333,14 @@ static void look_at_balance(strut_run *r) {
 strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   const strut_run_options *o = r->options;
   int64_t n = r->state->step;
-  int32_t lost = strut_run_lost_node(r->model, r->state);
-  strut_status guarded = strut_run_watch_step(r);
+  int32_t lost = strut_run_find_lost_node(r->model, r->state);
+  strut_status limit_status = strut_run_check_step_limit(r);
   *stop = n;
-  if (guarded) return guarded;
-  if (lost >= 0) return strut_run_diverged(r, lost);
-  if (n >= r->balance.next) look_at_balance(r);
-  strut_status watched = r->watching ? strut_run_watch(r) : STRUT_OK;
-  if (watched) return watched;
+  if (limit_status) return limit_status;
+  if (lost >= 0) return strut_run_fail_lost_node(r, lost);
+  if (n >= r->balance.next) sample_balance(r);
+  strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;
+  if (steady_status) return steady_status;
   if (n == strut_measure_first_step(&r->measure))
     strut_measure_begin(r->model, r->state, &r->measure);
   if (n == strut_recording_next_step(&r->recording) ||
@@ -122,19 +354,21 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (r->state->trouble == STRUT_FAILURE_WORK ||
       (o->most_evaluations > 0 && r->state->evaluations > o->most_evaluations))
     return strut_fail(r->error, STRUT_WORK_LIMIT,
-                      "%s used up the work allowed, %lld evaluations of the forces, by t = %.9g s",
+                      "%s used up the work budget of %lld force evaluations at t = %.9g s",
                       r->method->name, (long long)o->most_evaluations, strut_run_time(r));
-  if (r->state->trouble) return strut_run_stuck(r);
-  if (o->progress && strut_run_clock() - r->told > 0.1) {
+  if (r->state->trouble) return strut_run_fail_method(r);
+  if (o->progress && strut_run_clock() - r->progress_time > 0.1) {
     o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
-    r->told = strut_run_clock();
+    r->progress_time = strut_run_clock();
   }
-  *stop = next_stop(r, r->chunk);
+  *stop = find_next_stop(r, r->chunk);
   return STRUT_OK;
 }
 
-/* The end of the run for whoever goes on from it. */
-static void keep_end(const strut_run *r) {
+/* ---- the end ---- */
+
+/* Stores the end state for a later run. */
+static void store_end_state(const strut_run *r) {
   strut_snapshot *to = r->options->to;
   if (!to) return;
   size_t bytes = (size_t)r->model->length * sizeof(double);
@@ -154,25 +388,25 @@ static void fill_summary(strut_run *r, strut_status status) {
   fill_contacts(r);
   s->status = status;
   s->steps = r->state->step - r->first;
-  s->duration = (double)(s->steps + r->shot_periods * r->period_steps) * r->dt;
+  s->duration = (double)(s->steps + r->shooting_periods * r->period_steps) * r->dt;
   if (r->state->step == r->grid.last)
     s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
-  s->limit_fell = (strut_step_limit_violation){.limit = r->guard.lowest,
-                                               .time = r->guard.lowest_time,
-                                               .since = r->guard.first_time,
-                                               .steps = r->guard.steps_below};
+  s->limit_fell = (strut_step_limit_violation){.limit = r->step_monitor.lowest,
+                                               .time = r->step_monitor.lowest_time,
+                                               .since = r->step_monitor.first_time,
+                                               .steps = r->step_monitor.steps_below};
   strut_measure_finish(&r->measure, s);
-  if (r->watching) strut_steady_detector_finish(&r->watch, s);
+  if (r->detect_steady) strut_steady_detector_finish(&r->steady, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
   if (r->state->ledger) {
-    look_at_balance(r);
+    sample_balance(r);
     s->balance = strut_balance_judge(&s->energy, s->steps);
   }
   strut_run_warn(r);
-  keep_end(r);
+  store_end_state(r);
 }
 
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
@@ -187,17 +421,17 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
                    .summary = summary,
                    .error = error};
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
-  strut_status status = strut_run_prepare(r);
-  r->begun = !status;
-  r->began = r->told = strut_run_clock();
+  strut_status status = prepare_run(r);
+  r->ready = !status;
+  r->start_time = r->progress_time = strut_run_clock();
   return status;
 }
 
 strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_summary *summary = r->summary;
   strut_error *error = r->error;
-  if (r->begun) {
-    summary->wall_time = strut_run_clock() - r->began;
+  if (r->ready) {
+    summary->wall_time = strut_run_clock() - r->start_time;
     fill_summary(r, status);
     strut_error first = *error;
     strut_status written = strut_recording_finish(&r->recording, status, error);
@@ -211,7 +445,7 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
     if (!(summary->reason[i] = error->message[i])) break;
   strut_recording_free(&r->recording);
   strut_measure_free(&r->measure);
-  strut_steady_detector_free(&r->watch);
+  strut_steady_detector_free(&r->steady);
   strut_state_free(r->state);
   return status;
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The run: from a compiled model to its summary, with rows for whoever records.
- */
+/** A run: from a compiled model to its summary, with rows for recorders. */
 #ifndef STRUT_ENGINE_RUN_SIMULATE_H
 #define STRUT_ENGINE_RUN_SIMULATE_H
 
@@ -12,44 +10,49 @@
 #include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"
 
-/** A state to go on from, or to keep: coordinate arrays of the model's length, owned by the caller. */
+/**
+ * A state to start from or to store; coordinate arrays of the length of the model, owned by the
+ * caller.
+ */
 typedef struct strut_snapshot {
   double *q, *v;  /* [m], [m/s] */
-  double time;    /* [s]: where drives and loads stand */
-  double refined; /* refinement after a touchdown still lasts so long [s] */
+  double time;    /* time of drives and loads [s] */
+  double refined; /* refinement after a touchdown lasts this much longer [s] */
 } strut_snapshot;
 
-/** How to run; zero-initialised it means: obey the step limit, tell nobody, record nothing. */
+/** Options of a run. Zero: obey the step limit, no callbacks, no recording. */
 typedef struct strut_run_options {
   bool force;                             /* run even above the step limit */
   const volatile sig_atomic_t *interrupt; /* stops soon after it becomes non-zero; may be NULL */
   void (*progress)(void *context, double fraction); /* a few times a second; may be NULL */
-  void (*phase)(void *context, const char *name); /* a run in several parts begins another one, such
-                                 as "checking by adaptive"; may be NULL */
-  void *progress_context;                         /* of both */
-  strut_sink **sinks;                             /* (sink_count) */
+  void (*phase)(
+      void *context,
+      const char *
+          name); /* a run in several parts begins another, such as "checking by adaptive"; may be NULL */
+  void *progress_context; /* of both */
+  strut_sink **sinks;     /* (sink_count) */
   size_t sink_count;
-  const strut_snapshot *from; /* instead of the scene's start; in a run that stops when it is steady
-                                 its time becomes a whole number of steps; may be NULL */
-  strut_snapshot *to;         /* filled at the end; may be NULL */
+  const strut_snapshot *
+      from; /* start instead of that of the scene; its time becomes a whole number of steps in a run that stops when it is steady; may be NULL */
+  strut_snapshot *to; /* filled at the end; may be NULL */
   int64_t
-      most_evaluations; /* of the forces: the run ends soon after with STRUT_WORK_LIMIT; 0: any */
+      most_evaluations; /* force evaluations after which the run ends with STRUT_WORK_LIMIT; 0: no limit */
   bool chosen;          /* method and step were chosen for a wanted accuracy */
-  bool without_ledger;  /* no works and no energy residual in the summary: 0. Cheaper */
+  bool without_ledger; /* leaves works and energy residual of the summary 0; cheaper */
 } strut_run_options;
 
 /**
- * Runs an experiment on a model, whose `accuracy` is not obeyed. The summary is filled whenever a run began: also with
- * STRUT_DIVERGED and STRUT_INTERRUPTED, up to where it came; free it with strut_summary_free.
- * Other failures: STRUT_USAGE (no such method, or a start equilibrium that strut_resolve_start_equilibrium has not
- * resolved), STRUT_STEP_TOO_LARGE (nothing was run), STRUT_NOT_SETTLED, STRUT_SINGULAR (no
- * mass), STRUT_NO_MEMORY, and what a sink returned.
+ * Runs an experiment on a model; ignores its `accuracy`. The summary is filled whenever stepping
+ * started, also with STRUT_DIVERGED and STRUT_INTERRUPTED up to that time; free it with
+ * strut_summary_free. Other failures: STRUT_USAGE (no such method, or a start equilibrium not yet
+ * resolved by strut_resolve_start_equilibrium), STRUT_STEP_TOO_LARGE (before the first step),
+ * STRUT_NOT_SETTLED, STRUT_SINGULAR (no mass), STRUT_NO_MEMORY, and those of a sink.
  */
 STRUT_API strut_status strut_simulate(const strut_model *model, const strut_experiment *experiment,
                                       const strut_run_options *options, strut_summary *summary,
                                       strut_error *error);
 
-/** A clock that never goes back [s]; for how long things take, never for results. */
+/** Monotonic clock [s], for durations only, never for results. */
 STRUT_API double strut_run_clock(void);
 
 #endif

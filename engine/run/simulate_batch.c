@@ -5,55 +5,55 @@
 #include "engine/integrate/lanes/batch.h"
 #include "engine/run/simulate_parts.h"
 
-/* A lane and who runs in it. */
-typedef struct seat {
+/* A lane with its run. */
+typedef struct lane_run {
   bool taken;
   strut_batch_point point;
   strut_run run;
   strut_summary summary;
   strut_error error;
-  int64_t stop; /* step at which to look at it next */
-} seat;
+  int64_t stop; /* step at which to sample it next */
+} lane_run;
 
-typedef struct hall {
+typedef struct batch_state {
   const strut_batch_source *source;
-  strut_batch *batch; /* NULL: all runs are run alone */
-  bool more;          /* the next point is worth asking for */
+  strut_batch *batch; /* NULL: every run is made alone */
+  bool more;          /* the source may have another point */
   int32_t width, taken;
   strut_step_limits limits;
-  seat seats[STRUT_MOST_LANES];
-} hall;
+  lane_run lanes[STRUT_MOST_LANES];
+} batch_state;
 
-static void end(hall *h, seat *s, strut_status status) {
+static void end_run(batch_state *h, lane_run *s, strut_status status) {
   strut_batch_point point = s->point;
   status = strut_run_end(&s->run, status);
   h->source->result(h->source->context, &point, status, &s->summary, &s->error);
   h->more = true;
 }
 
-/* To the end, in the caller's own time. */
-static void finish_alone(hall *h, seat *s) {
+/* Runs a lane to its end outside the batch. */
+static void run_to_end(batch_state *h, lane_run *s) {
   strut_status status = STRUT_OK;
   while (!status) {
     if (s->stop == s->run.state->step) break;
     strut_run_step(&s->run, s->stop);
     status = strut_run_sample(&s->run, &s->stop);
   }
-  end(h, s, status);
+  end_run(h, s, status);
 }
 
-static bool fits(const hall *h, const seat *s) {
+static bool fits_lane(const batch_state *h, const lane_run *s) {
   const strut_run *r = &s->run;
-  if (r->measure.quantities) return false; /* lanes show positions and velocities only */
-  if (strut_run_last_step_due(r) || r->grid.offset != 0.0) return false;
+  if (r->measure.quantities) return false; /* lanes provide positions and velocities only */
+  if (strut_run_is_short_step_due(r) || r->grid.offset != 0.0) return false;
   return h->batch && r->state->ledger != h->source->without_ledger &&
          h->batch->method == r->method && strut_batch_possible(r->model, r->method) &&
          strut_lanes_alike(h->source->example, r->model);
 }
 
-/* The next point that is to run in this lane; those that no lane can take are run at once. */
-static void seat_next(hall *h, int32_t lane) {
-  seat *s = &h->seats[lane];
+/* Fills a lane with the next point that fits; runs all others at once. */
+static void fill_lane(batch_state *h, int32_t lane) {
+  lane_run *s = &h->lanes[lane];
   while (h->more && !s->taken) {
     h->more = h->source->next(h->source->context, &s->point);
     if (!h->more) return;
@@ -62,9 +62,9 @@ static void seat_next(hall *h, int32_t lane) {
                                           &h->limits, &s->summary, &s->error, &s->run);
     if (!status) status = strut_run_sample(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
-      end(h, s, status);
-    } else if (!fits(h, s)) {
-      finish_alone(h, s);
+      end_run(h, s, status);
+    } else if (!fits_lane(h, s)) {
+      run_to_end(h, s);
     } else {
       s->taken = true;
       h->taken++;
@@ -74,21 +74,21 @@ static void seat_next(hall *h, int32_t lane) {
   }
 }
 
-static void leave(hall *h, int32_t lane) {
+static void release_lane(batch_state *h, int32_t lane) {
   strut_batch_empty(h->batch, lane);
-  h->seats[lane].taken = false;
+  h->lanes[lane].taken = false;
   h->taken--;
 }
 
-static bool is_measured(const seat *s, int64_t step) {
+static bool is_measured(const lane_run *s, int64_t step) {
   return step >= strut_measure_first_step(&s->run.measure);
 }
 
-/* Steps to the next stop of some lane; by single steps where one is measured after each. */
-static void step(hall *h) {
+/* Steps to the nearest stop of a lane; by single steps while a lane is measured. */
+static void step_lanes(batch_state *h) {
   int64_t left[STRUT_MOST_LANES] = {0}, before[STRUT_MOST_LANES] = {0};
   for (int32_t l = 0; l < h->width; l++) {
-    const seat *s = &h->seats[l];
+    const lane_run *s = &h->lanes[l];
     if (!s->taken) continue;
     before[l] = s->run.state->step;
     left[l] = is_measured(s, before[l]) ? 1 : s->stop - before[l];
@@ -96,7 +96,7 @@ static void step(hall *h) {
   unsigned subnormals = strut_subnormals_off();
   strut_batch_advance(h->batch, left);
   for (int32_t l = 0; l < h->width; l++) {
-    seat *s = &h->seats[l];
+    lane_run *s = &h->lanes[l];
     if (!s->taken) continue;
     bool measured = is_measured(s, before[l]);
     strut_batch_count(h->batch, l, s->run.state);
@@ -110,43 +110,44 @@ static void step(hall *h) {
   strut_subnormals_restore(subnormals);
 }
 
-static void leave_alone(hall *h, int32_t lane) {
-  strut_batch_get(h->batch, lane, h->seats[lane].run.state);
-  leave(h, lane);
-  finish_alone(h, &h->seats[lane]);
+static void run_lane_to_end(batch_state *h, int32_t lane) {
+  strut_batch_get(h->batch, lane, h->lanes[lane].run.state);
+  release_lane(h, lane);
+  run_to_end(h, &h->lanes[lane]);
 }
 
-/* Looks at the lanes that have come to their stop; those that have ended leave. */
-static void look(hall *h) {
+/* Samples the lanes that reached their stop, and releases those whose run ended. */
+static void sample_lanes(batch_state *h) {
   for (int32_t l = 0; l < h->width; l++) {
-    seat *s = &h->seats[l];
+    lane_run *s = &h->lanes[l];
     if (!s->taken || s->run.state->step < s->stop) continue;
-    int64_t shot = s->run.shot_periods;
+    int64_t shot = s->run.shooting_periods;
     strut_status status = strut_run_sample(&s->run, &s->stop);
     if (status || s->stop == s->run.state->step) {
-      leave(h, l);
-      end(h, s, status);
-    } else if (strut_run_last_step_due(&s->run)) {
-      leave_alone(h, l);
-    } else if (s->run.shot_periods != shot) {
-      strut_batch_put(h->batch, l, s->run.state, s->run.workspace); /* it goes on from the orbit */
+      release_lane(h, l);
+      end_run(h, s, status);
+    } else if (strut_run_is_short_step_due(&s->run)) {
+      run_lane_to_end(h, l);
+    } else if (s->run.shooting_periods != shot) {
+      strut_batch_put(h->batch, l, s->run.state,
+                      s->run.workspace); /* shooting moved the state to the orbit */
     }
   }
 }
 
-/* Lanes cost the same however few are taken: the last runs are faster alone. */
-static bool too_few(const hall *h) { return !h->more && 4 * h->taken <= h->width; }
+/* A batch costs the same with any number of lanes in use: the last runs are faster alone. */
+static bool too_few(const batch_state *h) { return !h->more && 4 * h->taken <= h->width; }
 
-static void finish_last(hall *h) {
+static void finish_remaining(batch_state *h) {
   for (int32_t l = 0; l < h->width; l++) {
-    seat *s = &h->seats[l];
+    lane_run *s = &h->lanes[l];
     if (!s->taken) continue;
-    leave_alone(h, l);
+    run_lane_to_end(h, l);
   }
 }
 
-/* NULL, and one seat, where there are no lanes to be had. */
-static strut_batch *batch_for(const strut_batch_source *source, int32_t wanted, int32_t *width) {
+/* NULL, and a width of one, where lanes cannot be used. */
+static strut_batch *create_batch(const strut_batch_source *source, int32_t wanted, int32_t *width) {
   const strut_model *m = source->example;
   const strut_integrator *method = m ? strut_integrator_find(source->integrator) : NULL;
   if (wanted < 2 || !method || !strut_batch_possible(m, method)) return NULL;
@@ -158,16 +159,16 @@ static strut_batch *batch_for(const strut_batch_source *source, int32_t wanted, 
 
 void strut_simulate_batch(const strut_batch_source *source) {
   int32_t widest = strut_batch_widest(), width = source->width;
-  hall h = {.source = source, .more = true, .width = 1};
-  h.batch = batch_for(source, width < 1 || width > widest ? widest : width, &h.width);
+  batch_state h = {.source = source, .more = true, .width = 1};
+  h.batch = create_batch(source, width < 1 || width > widest ? widest : width, &h.width);
   do {
-    for (int32_t l = 0; l < h.width; l++) seat_next(&h, l);
+    for (int32_t l = 0; l < h.width; l++) fill_lane(&h, l);
     if (!h.taken) break;
     if (too_few(&h)) {
-      finish_last(&h);
+      finish_remaining(&h);
     } else {
-      step(&h);
-      look(&h);
+      step_lanes(&h);
+      sample_lanes(&h);
     }
   } while (h.taken || h.more);
   strut_batch_free(h.batch);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * A run in parts, for whoever does the stepping: simulate.c one run, simulate_batch.c several at once.
- */
+/** Parts of a run: simulate.c steps one run, simulate_batch.c several at once. */
 #ifndef STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 #define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 
@@ -15,7 +13,7 @@
 #include "engine/run/recording.h"
 #include "engine/run/simulate.h"
 
-/** All that belongs to one run. */
+/** State of one run. */
 typedef struct strut_run {
   const strut_model *model;
   const strut_experiment *experiment;
@@ -28,67 +26,58 @@ typedef struct strut_run {
   void *workspace;
   strut_measurement measure;
   strut_recording recording;
-  strut_step_limit_monitor guard;
+  strut_step_limit_monitor step_monitor;
   strut_stick_band band;
   strut_energies initial;
   strut_balance_monitor balance;
-  bool watching;
-  strut_steady_detector watch;
+  bool detect_steady;
+  strut_steady_detector steady;
   double dt;
   strut_time_grid grid;
-  int64_t first, steps; /* the step number it begins with, and the one it is to end with */
-  int64_t period_steps; /* of a drive period, where steady motion is watched for */
-  int64_t more_periods; /* to run, and record, once it is steady */
-  int64_t shot_periods; /* drive periods that shooting took */
-  int64_t chunk;        /* the most steps between two looks */
-  double began, told;   /* when stepping began, and when progress was told last */
-  bool begun;           /* the first step may be taken */
+  int64_t first, steps;     /* first step number; last step number */
+  int64_t period_steps;     /* steps per drive period; only where steady motion is detected */
+  int64_t recorded_periods; /* periods to run and record once the motion is steady */
+  int64_t shooting_periods; /* drive periods run by shooting */
+  int64_t chunk;            /* most steps between two samples */
+  double start_time,
+      progress_time; /* wall clock at the first step and at the latest progress report [s] */
+  bool ready;        /* preparation succeeded: the first step may be made */
 } strut_run;
 
 /**
- * Everything before the first step. `run` and what is given must stay where they are until
- * strut_run_end, which must be called whatever is returned. limits: of models seen before; may be NULL.
+ * Prepares everything before the first step. `run` and all arguments must stay in place until
+ * strut_run_end, which must be called whatever is returned. limits: cache of step limits; may be
+ * NULL.
  */
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
                              const strut_run_options *options, strut_step_limits *limits,
                              strut_summary *summary, strut_error *error, strut_run *run);
 /**
- * Between steps: looks at the state, measures, records. *stop is the step to go on to before the next
- * look, or the present one where the run is over. May change the state's q, v.
+ * Between steps: checks, measures and records the state, which may change. *stop is the step at
+ * which to sample next, or the present one where the run is over.
  */
 strut_status strut_run_sample(strut_run *run, int64_t *stop);
-/** From a look to the next one. */
+/** Steps up to `stop`. */
 void strut_run_step(strut_run *run, int64_t stop);
-/** Is the step that is due the last one, and shorter than the others? Only strut_run_step takes it. */
-bool strut_run_last_step_due(const strut_run *run);
-/** The time that the run has come to [s]. */
+/** Is the next step the last one and shorter than the others? Only strut_run_step handles it. */
+bool strut_run_is_short_step_due(const strut_run *run);
+/** Time reached [s]. */
 double strut_run_time(const strut_run *run);
-/** Fills the summary and frees what belongs to the run; `status` is what begin or look returned. */
+/** Fills the summary and frees the run; `status` is that of begin or sample. */
 strut_status strut_run_end(strut_run *run, strut_status status);
 
-/* ---- parts of these, in run_*.c ---- */
+/* ---- run_diagnosis.c ---- */
 
-/** All but the fields that strut_run_begin fills itself: no memory is asked for after this. */
-strut_status strut_run_prepare(strut_run *r);
+/** Checks at intervals that the step is still stable for the present shape. */
+strut_status strut_run_check_step_limit(strut_run *r);
+/** First node with a NaN or runaway position, or -1. */
+int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *state);
+/** Reports a lost node: STRUT_DIVERGED. */
+strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
+/** Reports a method that failed: STRUT_DIVERGED. */
+strut_status strut_run_fail_method(const strut_run *r);
 
-/** Every so many steps: does the step still suit the structure? */
-strut_status strut_run_watch_step(strut_run *r);
-/** The first node that is nowhere or too far away, or -1. */
-int32_t strut_run_lost_node(const strut_model *model, const strut_state *state);
-/** Fails for a lost node. */
-strut_status strut_run_diverged(const strut_run *r, int32_t node);
-/** Fails for a method that could not go on. */
-strut_status strut_run_stuck(const strut_run *r);
-
-/** At the end: what is to be said of the result goes into the summary, which is filled. */
+/** Adds all warnings about the result to the summary, which must be complete. */
 void strut_run_warn(const strut_run *r);
-
-/** A place within the period that no symmetry of the drive prefers. */
-int64_t strut_run_middle(int64_t period);
-/**
- * At the ends of periods, and once within each. When the motion has become steady the run goes on
- * for the periods that are recorded, at least one, over which contacts are measured.
- */
-strut_status strut_run_watch(strut_run *r);
 
 #endif

@@ -145,7 +145,7 @@ about "$(field .velocity)" -2.068963889494835 1e-6 # 4 length / period
 # and that no method takes together with exact friction
 sed 's/^nodes:/bars: rigid\nnodes:/; s/law: karnopp/law: coulomb/' "$crawler" >"$work/both.yaml"
 expect 1 run "$work/both.yaml" --accuracy 1%
-err_has "no method keeps both"
+err_has "no method supports both"
 # Exact friction: speed^2 / (2 mu g) in a second.
 sed 's/law: karnopp/law: coulomb/; s/, stick_velocity: [^}]*//' \
   "$here/../../models/basics/sliding-block.yaml" >"$work/block.yaml"

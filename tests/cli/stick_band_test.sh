@@ -15,7 +15,7 @@ expect 0 check "$belt" --set band=1e-8m/s
 err_has "stick_velocity 10 nm/s of node 'block'"
 err_has "use stick_velocity >= 100 um/s"
 expect 0 run "$belt" --set band=1e-8m/s --quiet --json
-err_has "node 'block' stuck to the ground by accident"
+err_has "node 'block' stuck only by chance"
 # friction and the spring together, up to 1 + 2.4 N
 needed=$(sed -n 's/.*"stick_velocity_needed":[^0-9]*\([0-9.e-]*\).*/\1/p' out)
 awk "BEGIN { exit !($needed > 1e-5 && $needed < 3.5e-4) }" || fail "needed: $needed"
@@ -56,13 +56,13 @@ differ() { awk "BEGIN { d = $1 - $2; exit !(d * d > $3 * $3) }"; }
 right=$(place --integrator rk4-events)
 [ ! -s err ] || fail "rk4-events needs no band"
 wrong=$(place)
-err_has "node 'front' and 1 more stuck to the ground by accident"
+err_has "node 'front' and 1 more stuck only by chance"
 differ "$right" "$wrong" 0.05 || fail "passing over the band: $wrong, not $right"
 out_has '"code":	"stick_band"'
 
 # A band that is met, but so wide that the feet creep apart until one lets go.
 wrong=$(place --set band=1e-3m/s)
-err_has "nodes 'front' and 'back' stick, but creep in their stick bands"
+err_has "nodes 'front' and 'back' stick, but creep within their stick bands"
 err_has "strained member 'body'"
 differ "$right" "$wrong" 0.05 || fail "creeping in the band: $wrong, not $right"
 out_has '"code":	"stick_creep"'

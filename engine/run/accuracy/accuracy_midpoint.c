@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* To an accuracy by implicit midpoint: where stiff members hold explicit steps far below the motion. */
+/*
+ * A wanted accuracy by implicit midpoint, for scenes whose stiff members keep explicit steps far
+ * below the motion.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,73 +10,82 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
 
-/* Steps at first: in the whole run, in a period of the drive, and in any time that a signal has. */
-static const double IN_RUN = 100.0, IN_PERIOD = 40.0, IN_SIGNAL = 20.0;
-/* Evaluations of a step. */
-static const double PER_STEP = 5.0;
-/* Periods in which a driven motion mostly becomes steady: the other way needs no more. */
+/*
+ * Steps of the first run: in the whole run, in a drive period, and in the shortest time of a
+ * signal.
+ */
+static const double STEPS_IN_RUN = 100.0, STEPS_IN_PERIOD = 40.0, STEPS_IN_SIGNAL = 20.0;
+/* Estimated force evaluations per step. */
+static const double EVALUATIONS_PER_STEP = 5.0;
+/* Periods in which a driven motion usually becomes steady: the orbit strategy needs no more. */
 static const double MOST_PERIODS = 60.0;
-/* Two runs that agree to this part of what is wanted, and a part that hides nothing more. */
+/* Part of the wanted error to which two runs must agree, and that unresolved motions may reach. */
 static const double AGREE = 0.4;
-/* Half the step should leave a fourth of the change of all positions. */
+/* Halving the step should divide the change of the positions by 4; this is still accepted. */
 static const double CONVERGES = 2.5;
 
 /*
- * Motions too fast for the step stay as large as they are, and their velocity changes its sign from
- * step to step. They would push the slow ones: how large they are is seen by what is left of the
- * velocities when neighbours are averaged.
+ * Implicit midpoint neither damps nor resolves motions too fast for its step: their velocity
+ * changes sign from step to step. They would disturb the slow motion, so their energy is measured,
+ * as what averaging of neighbouring steps removes.
  */
-typedef struct watch {
+typedef struct fast_motion {
   const strut_model *model;
   double *before[2]; /* (2 nodes) velocities of the last two steps, latest first [m/s] */
   int known;
   double fast, slow; /* twice the kinetic energy, summed over steps [J] */
-} watch;
+} fast_motion;
 
-static strut_status begin_watch(void *context, const strut_record_layout *layout,
-                                strut_error *error) {
+static strut_status begin_velocity_rows(void *context, const strut_record_layout *layout,
+                                        strut_error *error) {
   (void)context, (void)layout, (void)error;
   return STRUT_OK;
 }
 
-static strut_status end_watch(void *context, strut_status status, strut_error *error) {
+static strut_status end_velocity_rows(void *context, strut_status status, strut_error *error) {
   (void)context, (void)status, (void)error;
   return STRUT_OK;
 }
 
-/* Three velocities in a row: their second difference is fast, their mean, all moving as one, slow. */
-static void watch_step(watch *w, const double *v) {
+/*
+ * Adds three successive velocities: the second difference is fast, the mean without the rigid
+ * translation slow.
+ */
+static void add_step_energies(fast_motion *m, const double *v) {
   double mean[2] = {0.0, 0.0}, fast = 0.0, slow = 0.0, whole = 0.0;
-  for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
-    double ends = w->before[1][i] + v[i], middle = 2.0 * w->before[0][i];
-    double mass = w->model->weight[i / 2], smooth = 0.25 * (ends + middle);
+  for (int32_t i = 0; i < 2 * m->model->node_count; i++) {
+    double ends = m->before[1][i] + v[i], middle = 2.0 * m->before[0][i];
+    double mass = m->model->weight[i / 2], smooth = 0.25 * (ends + middle);
     fast += mass * 0.0625 * (ends - middle) * (ends - middle);
     slow += mass * smooth * smooth;
     mean[i % 2] += mass * smooth;
     whole += 0.5 * mass;
   }
-  w->fast += fast;
-  w->slow += fmax(0.0, slow - (mean[0] * mean[0] + mean[1] * mean[1]) / whole);
+  m->fast += fast;
+  m->slow += fmax(0.0, slow - (mean[0] * mean[0] + mean[1] * mean[1]) / whole);
 }
 
-static strut_status watch_rows(void *context, const double *rows, size_t count,
-                               strut_error *error) {
-  watch *w = context;
-  size_t both = 2 * (size_t)w->model->node_count;
+static strut_status read_velocity_rows(void *context, const double *rows, size_t count,
+                                       strut_error *error) {
+  fast_motion *m = context;
+  size_t both = 2 * (size_t)m->model->node_count;
   (void)error;
   for (size_t k = 0; k < count; k++) {
     const double *v = rows + k * (both + 1) + 1;
-    double *oldest = w->before[1];
-    if (w->known == 2) watch_step(w, v);
+    double *oldest = m->before[1];
+    if (m->known == 2) add_step_energies(m, v);
     memcpy(oldest, v, both * sizeof *v);
-    w->before[1] = w->before[0], w->before[0] = oldest;
-    if (w->known < 2) w->known++;
+    m->before[1] = m->before[0], m->before[0] = oldest;
+    if (m->known < 2) m->known++;
   }
   return STRUT_OK;
 }
 
-/* Does a signal jump? Then errors do not fall as the order says, and two runs may agree by chance. */
-static bool jumps(const strut_scene *scene) {
+/*
+ * Does a signal jump? Then errors do not fall with the order of the method, and two runs may agree
+ * by chance.
+ */
+static bool has_jumping_signal(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
@@ -97,13 +109,16 @@ double strut_accuracy_signal_time(const strut_scene *scene) {
   return shortest;
 }
 
-/* The first step: with the window's begin on the grid where that can be, else between two points. */
-static double first_step(const strut_accuracy *a) {
+/*
+ * First step: one that puts the start of the window on the grid if possible, otherwise half-way. 0:
+ * the explicit method is at least as good.
+ */
+static double choose_first_step(const strut_accuracy *a) {
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene);
-  double least = fmax(span.period > 0.0 ? IN_PERIOD : IN_RUN, ceil(signals));
-  if (!(unit / least > a->cheap.step)) return 0.0;
+  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a->scene);
+  double least = fmax(span.period > 0.0 ? STEPS_IN_PERIOD : STEPS_IN_RUN, ceil(signals));
+  if (!(unit / least > a->coarse.step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
     double at = span.window_start / unit * n;
     if (fabs(at - round(at)) < 1e-9 * n) return unit / n;
@@ -111,24 +126,24 @@ static double first_step(const strut_accuracy *a) {
   return unit / (2.0 * least);
 }
 
-/* The runs so far. */
-typedef struct halving {
+/* The latest two runs. */
+typedef struct midpoint_runs {
   strut_accuracy *a;
-  watch watch;
+  fast_motion fast_motion;
   strut_experiment e;
   strut_summary now, before;
-  double change, moved; /* of the velocity [m/s], of all positions at the end [m] */
-  double earlier;       /* `moved` of the run before */
-  double share;         /* of energy in motions too fast for the step, as an error [m/s] */
+  double change, moved; /* change of the velocity [m/s]; largest change of an end position [m] */
+  double earlier;       /* `moved` one run earlier */
+  double share;         /* velocity error that motions too fast for the step may cause [m/s] */
   strut_arena arena;
-} halving;
+} midpoint_runs;
 
-static double enough(const halving *h) {
-  return h->a->wanted * fmax(fabs(h->now.velocity), h->a->scale);
+static double tolerated_error(const midpoint_runs *h) {
+  return h->a->target * fmax(fabs(h->now.velocity), h->a->scale);
 }
 
-/* How far the ends of the last two runs are apart [m]. */
-static double apart(const halving *h) {
+/* Largest distance of a node between the ends of the last two runs [m]. */
+static double distance_of_ends(const midpoint_runs *h) {
   double most = 0.0;
   for (size_t i = 0; i + 1 < 2 * h->now.node_count; i += 2)
     most = fmax(most, hypot(h->now.positions[i] - h->before.positions[i],
@@ -136,57 +151,58 @@ static double apart(const halving *h) {
   return most;
 }
 
-/* One more run, with half the step if it is not the first. *kept: the two last agree. */
-static strut_status run_finer(halving *h, bool *kept) {
+/* Makes one more run with the present step. *kept: it agrees with the one before. */
+static strut_status run_with_half_step(midpoint_runs *h, bool *kept) {
   strut_accuracy *a = h->a;
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
-  strut_sink sink = {&h->watch, begin_watch, watch_rows, end_watch, STRUT_CHANNEL_VELOCITY};
+  strut_sink sink = {&h->fast_motion, begin_velocity_rows, read_velocity_rows, end_velocity_rows,
+                     STRUT_CHANNEL_VELOCITY};
   strut_sink *sinks[] = {&sink};
   strut_run_options quiet = *a->options;
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
-  h->watch.known = 0, h->watch.fast = h->watch.slow = 0.0;
+  h->fast_motion.known = 0, h->fast_motion.fast = h->fast_motion.slow = 0.0;
   strut_summary_free(&h->before);
   h->before = h->now;
   h->now = (strut_summary){0};
-  h->e.output_every = h->e.step, h->e.output_last = 0.0; /* all of them are looked at */
+  h->e.output_every = h->e.step, h->e.output_last = 0.0; /* velocities of every step */
   strut_status status = strut_accuracy_run(a, &h->e, &quiet, &h->now);
-  a->spent += h->now.force_evaluations;
+  a->check_evaluations += h->now.force_evaluations;
   h->earlier = h->moved;
   h->moved = h->change = HUGE_VAL;
   if (status || h->before.steps == 0) return status;
   double window = span.duration - span.window_start, size = a->scale * 1e3 * span.duration;
   if (span.period > 0.0) size = a->scale * 1e3 * span.period;
   h->change = fabs(h->now.velocity - h->before.velocity);
-  h->moved = apart(h);
-  h->share = h->watch.slow > 0.0 ? h->watch.fast / h->watch.slow * size / window : 0.0;
+  h->moved = distance_of_ends(h);
+  h->share =
+      h->fast_motion.slow > 0.0 ? h->fast_motion.fast / h->fast_motion.slow * size / window : 0.0;
   bool converges = h->earlier >= CONVERGES * h->moved && isfinite(h->earlier);
-  *kept = h->change <= AGREE * enough(h) && h->share <= AGREE * enough(h) &&
-          (converges || h->moved <= AGREE * enough(h) * window);
+  *kept = h->change <= AGREE * tolerated_error(h) && h->share <= AGREE * tolerated_error(h) &&
+          (converges || h->moved <= AGREE * tolerated_error(h) * window);
   return status;
 }
 
-static void tell(halving *h, double explicit_evaluations) {
+static void report_midpoint(midpoint_runs *h, double explicit_evaluations) {
   strut_accuracy *a = h->a;
   strut_summary *s = a->summary;
   double error = 0.5 * h->change + h->share, size = fmax(fabs(s->velocity), a->scale);
-  s->accuracy = (strut_accuracy_summary){.wanted = a->wanted,
+  s->accuracy = (strut_accuracy_summary){.wanted = a->target,
                                          .expected = error / size,
                                          .scale = a->scale,
-                                         .kept = error <= a->wanted * size,
-                                         .check_evaluations = a->spent};
-  snprintf(
-      s->accuracy.why, sizeof s->accuracy.why,
-      "midpoint with a step of %.3g s, %.3g times that of verlet-events, which would take %.2g "
-      "evaluations: twice the step changes the velocity by %.2g m/s, and motions too fast for "
-      "the step amount to %.2g m/s at most",
-      s->step, s->step / a->cheap.step, explicit_evaluations, h->change, h->share);
+                                         .kept = error <= a->target * size,
+                                         .check_evaluations = a->check_evaluations};
+  snprintf(s->accuracy.why, sizeof s->accuracy.why,
+           "midpoint with a step of %.3g s, %.3g times that of verlet-events, which would take "
+           "%.2g force evaluations: twice the step changes the velocity by %.2g m/s, and motions "
+           "too fast for the step contribute at most %.2g m/s",
+           s->step, s->step / a->coarse.step, explicit_evaluations, h->change, h->share);
 }
 
-/* The finest run is the answer; with whoever records it. */
-static strut_status answer(halving *h) {
+/* Delivers the finest run; repeats it where it is recorded. */
+static strut_status deliver_answer(midpoint_runs *h) {
   strut_accuracy *a = h->a;
   if (!a->options->sink_count && !a->options->to) {
-    a->spent -= h->now.force_evaluations;
+    a->check_evaluations -= h->now.force_evaluations;
     *a->summary = h->now;
     h->now = (strut_summary){0};
     return STRUT_OK;
@@ -197,47 +213,48 @@ static strut_status answer(halving *h) {
 }
 
 /*
- * The time of an evaluation with its share of the factor over that of an explicit method, by
- * measurement of trees and nets, halved: the other way takes longer to check than to run.
+ * Time of an evaluation with its share of the factorisation over that of an explicit method, as
+ * measured on trees and nets, halved: the other strategies take longer to check than to run.
  */
-static double dearer(const strut_model *model) {
+static double relative_step_cost(const strut_model *model) {
   double free = 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++) free += model->fixed[i] ? 0.0 : 1.0;
   return 2.0 + sqrt(free) / 8.0;
 }
 
-static strut_status halve_until_kept(halving *h, bool *done) {
+static strut_status halve_until_kept(midpoint_runs *h, bool *done) {
   strut_status status = STRUT_OK;
   strut_span span = strut_experiment_span(&h->a->experiment, h->a->scene);
-  double mostly =
+  double usual_duration =
       span.period > 0.0 ? fmin(span.duration, MOST_PERIODS * span.period) : span.duration;
-  double explicit_evaluations = mostly / h->a->cheap.step;
-  double next = PER_STEP * span.duration / h->e.step, time = dearer(h->watch.model);
+  double explicit_evaluations = usual_duration / h->a->coarse.step;
+  double next = EVALUATIONS_PER_STEP * span.duration / h->e.step,
+         time = relative_step_cost(h->fast_motion.model);
   strut_accuracy_begin_phase(h->a, "midpoint with ever smaller steps");
   for (; !status && !*done && time * next < explicit_evaluations; h->e.step *= 0.5) {
-    status = run_finer(h, done);
+    status = run_with_half_step(h, done);
     next = 2.0 * (double)h->now.force_evaluations;
     if (*done) break;
   }
-  if (!status && *done) status = answer(h);
-  if (!status && *done) tell(h, explicit_evaluations);
+  if (!status && *done) status = deliver_answer(h);
+  if (!status && *done) report_midpoint(h, explicit_evaluations);
   return status;
 }
 
-strut_status strut_accuracy_by_midpoint(strut_accuracy *a, bool *done) {
+strut_status strut_accuracy_try_midpoint(strut_accuracy *a, bool *done) {
   const strut_scene *scene = a->scene;
-  halving h = {.a = a, .e = a->cheap, .change = HUGE_VAL, .moved = HUGE_VAL};
+  midpoint_runs h = {.a = a, .e = a->coarse, .change = HUGE_VAL, .moved = HUGE_VAL};
   *done = false;
   h.e.integrator = strut_integrator_for(STRUT_ROLE_STIFF)->name;
-  h.e.step = first_step(a);
-  bool fits = scene->contact_count == 0 && !a->halving && !a->experiment.steady.wanted &&
-              !jumps(scene) && h.e.step > 0.0;
+  h.e.step = choose_first_step(a);
+  bool fits = scene->contact_count == 0 && !a->single_method && !a->experiment.steady.wanted &&
+              !has_jumping_signal(scene) && h.e.step > 0.0;
   if (!fits) return STRUT_OK;
   strut_status status = STRUT_OK;
   size_t both = 2 * scene->node_count;
-  h.watch.model = a->model;
+  h.fast_motion.model = a->model;
   for (int k = 0; k < 2 && !status; k++)
-    if (!(h.watch.before[k] = strut_arena_allocate(&h.arena, both, sizeof(double))))
+    if (!(h.fast_motion.before[k] = strut_arena_allocate(&h.arena, both, sizeof(double))))
       status = strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
   if (!status) status = halve_until_kept(&h, done);
   strut_summary_free(&h.now);

@@ -1,342 +1,477 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* To an accuracy by way of the steady orbit: cheap to come near it, accurate where it counts. */
+/*
+ * A wanted accuracy by the periodic orbit: the coarse method comes near it, the reference method
+ * corrects it.
+ */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/run/accuracy/orbit_solve.h"
 
-/* From this accuracy on the cheap method's own orbit may do, if the correction confirms it. */
+/* Wanted errors from which on the coarse orbit may be the answer, if the correction confirms it. */
 static const double COARSE = 0.0099;
-/* Below this one the accurate method has the last word. */
+/* Wanted errors below which the reference method itself must become steady. */
 static const double FINE = 0.0019;
-/* Periods in which the motion must become steady, for the search of an orbit to be worth it: of a run that ends
-   when it is, and of one whose window is asked for, which repeated runs answer more surely. */
+/*
+ * Periods that the transient must leave room for before an orbit is worth searching: of a run that
+ * ends when it is steady, and of one with a given window, where repeated runs are more reliable.
+ */
 static const double LEAST = 20.0, LEAST_OF_RUN = 60.0;
-/* A first correction is believed without a second one if it is this part of what is enough. */
+/* A first correction below this part of the tolerated one needs no second. */
 static const double SMALL = 0.15;
-/* Of the work allowed, what may be spent before runs are repeated instead. */
+/* Part of the budget for the orbit; the rest is kept for repeated runs. */
 static const double PART_OF_BUDGET = 0.6;
-/* Work that the whole run by the cheap method may take, over that done so far. */
+/* The whole run is made as a check where it costs at most this many times the work so far. */
 static const double WHOLE_RUN = 2.0;
 enum { MOST_CORRECTIONS = 4 };
-/* Periods in which a motion should have become steady, and those in which a method that did not at
-   first is given another chance, before it is taken to be irregular. */
+/*
+ * Periods in which a motion normally becomes steady, and those of a second chance before it is
+ * called irregular.
+ */
 static const double FIRST = 150.0, CHANCE = 12.0;
 /*
- * An irregular motion's mean is taken if known to so many times what is wanted, and what it is known to
- * is said: finer steps do not help there, and to average over longer is for whoever needs it.
+ * Accept an irregular motion's mean if its confidence interval is within MEAN times the wanted
+ * error; report the interval. Smaller steps would not narrow it.
  */
 static const double MEAN = 20.0;
-/* Periods in which the accurate method should be steady from where corrections failed, and where it is
-   to have the last word. */
+/*
+ * Periods in which the reference method should be steady after a failed correction, and where only
+ * its own steady motion counts.
+ */
 static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
 
-static strut_status allocate(strut_orbit_solve *w, const strut_model *model) {
+static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model *model) {
   size_t length = (size_t)model->length;
-  w->end.q = strut_arena_allocate(&w->arena, length, sizeof(double));
-  w->end.v = strut_arena_allocate(&w->arena, length, sizeof(double));
-  w->base = strut_arena_allocate(&w->arena, 2 * length + 1, sizeof(double));
-  w->orbit.y = strut_arena_allocate(&w->arena, 2 * length + 1, sizeof(double));
-  if (w->end.q && w->end.v && w->base && w->orbit.y) return STRUT_OK;
-  return strut_fail(w->a->error, STRUT_NO_MEMORY, "out of memory");
+  solve->end_state.q = strut_arena_allocate(&solve->arena, length, sizeof(double));
+  solve->end_state.v = strut_arena_allocate(&solve->arena, length, sizeof(double));
+  solve->fixed_point = strut_arena_allocate(&solve->arena, 2 * length + 1, sizeof(double));
+  solve->orbit.y = strut_arena_allocate(&solve->arena, 2 * length + 1, sizeof(double));
+  if (solve->end_state.q && solve->end_state.v && solve->fixed_point && solve->orbit.y)
+    return STRUT_OK;
+  return strut_fail(solve->a->error, STRUT_NO_MEMORY, "out of memory");
 }
 
 /*
- * The cheap method until the motion repeats itself. Its steps meet the grid here and there in
- * another way each period, which may keep it from repeating itself very closely: then less must do.
- * *steady is false where even that is not reached.
+ * Runs the coarse method until the motion repeats itself. Its fixed steps meet the events
+ * differently in each period, which limits how closely the motion repeats: the first tolerance is
+ * therefore loose. *steady is false where even that is not reached.
  */
-static strut_status run_cheap(strut_orbit_solve *w, bool *steady) {
-  strut_accuracy *a = w->a;
-  double periods = strut_accuracy_periods(a), first = fmin(FIRST, periods);
-  strut_status status = allocate(w, a->model);
-  /* without ground transients may well be slow, with it motions may be irregular */
+static strut_status run_coarse(strut_orbit_solve *solve, bool *steady) {
+  strut_accuracy *a = solve->a;
+  double periods = strut_accuracy_transient_periods(a), first = fmin(FIRST, periods);
+  strut_status status = allocate_arrays(solve, a->model);
+  /* without ground transients may be slow; with it motions may be irregular */
   bool may_be_slow = a->model->contacts.count == 0;
   if (status) return status;
   strut_accuracy_begin_phase(a, "waiting for steady motion");
-  status =
-      strut_orbit_solve_run(w, a->cheap, fmax(0.1, 16.0 * a->wanted), 3, first, false, &w->run);
-  if (!status && w->run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow && periods > first) {
+  status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmax(0.1, 16.0 * a->target), 3,
+                                              first, false, &solve->coarse_run);
+  if (!status && solve->coarse_run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow &&
+      periods > first) {
     strut_summary more = {0};
-    status = strut_orbit_solve_run(w, a->cheap, fmin(0.005, 0.5 * a->wanted), 5, periods - first,
-                                   true, &more);
-    if (!status) strut_summary_append(&w->run, &more);
+    status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmin(0.005, 0.5 * a->target), 5,
+                                                periods - first, true, &more);
+    if (!status) strut_summary_append(&solve->coarse_run, &more);
     strut_summary_free(&more);
   }
-  *steady = !status && w->run.steady.kind == STRUT_MOTION_PERIODIC &&
-            strut_accuracy_orbit_answers(a, &w->run.steady);
+  *steady = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC &&
+            strut_accuracy_orbit_covers_window(a, &solve->coarse_run.steady);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
-/* The end of the run so far as fixed point of the cheap map. */
-static void take_end(strut_orbit_solve *w) {
-  strut_orbit_solve_keep_end(w);
-  memcpy(w->base, w->orbit.y, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
-  w->travel = w->run.velocity * w->cheap.period * w->cheap.repeats;
+/* Takes the end of the coarse run as fixed point of the coarse map. */
+static void take_end_as_fixed_point(strut_orbit_solve *solve) {
+  strut_orbit_solve_copy_end_to_orbit(solve);
+  memcpy(solve->fixed_point, solve->orbit.y,
+         (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
+  solve->travel = solve->coarse_run.velocity * solve->coarse_map.period * solve->coarse_map.repeats;
 }
 
-static strut_status make_maps(strut_orbit_solve *w, int32_t repeats) {
-  strut_accuracy *a = w->a;
-  a->spent += w->cheap.evaluations + w->fine.evaluations;
-  strut_orbit_solve_count(w);
-  w->counted = 0;
-  strut_period_map_free(&w->cheap);
-  strut_period_map_free(&w->fine);
-  w->accurate = a->cheap;
-  w->accurate.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-  w->accurate.tolerance = fmin(2.5e-6, fmax(1e-12, a->wanted * STRUT_TOLERANCE_PER_ERROR));
-  w->accurate.step = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
-  strut_status status = strut_period_map_create(a->model, &a->cheap, repeats, &w->cheap, a->error);
+static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
+  strut_accuracy *a = solve->a;
+  a->check_evaluations += solve->coarse_map.evaluations + solve->reference_map.evaluations;
+  strut_orbit_solve_count_evaluations(solve);
+  solve->counted = 0;
+  strut_period_map_free(&solve->coarse_map);
+  strut_period_map_free(&solve->reference_map);
+  solve->reference = a->coarse;
+  solve->reference.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
+  solve->reference.tolerance = fmin(2.5e-6, fmax(1e-12, a->target * STRUT_TOLERANCE_PER_ERROR));
+  solve->reference.step = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
+  strut_status status =
+      strut_period_map_create(a->model, &a->coarse, repeats, &solve->coarse_map, a->error);
   if (!status)
-    status = strut_period_map_create(a->model, &w->accurate, repeats, &w->fine, a->error);
+    status = strut_period_map_create(a->model, &solve->reference, repeats, &solve->reference_map,
+                                     a->error);
   if (status) return status;
-  w->cheap.interrupt = w->fine.interrupt = a->options->interrupt;
-  w->cheap.most_evaluations = w->fine.most_evaluations = strut_accuracy_left(a);
-  w->cheap.time = w->fine.time = w->end.time;
-  take_end(w);
+  solve->coarse_map.interrupt = solve->reference_map.interrupt = a->options->interrupt;
+  solve->coarse_map.most_evaluations = solve->reference_map.most_evaluations =
+      strut_accuracy_evaluations_left(a);
+  solve->coarse_map.time = solve->reference_map.time = solve->end_state.time;
+  take_end_as_fixed_point(solve);
   return STRUT_OK;
 }
 
 /*
- * Corrects until the next correction is expected to be small enough: each defect should be much
+ * Corrects until the next correction is expected to be small enough. Each defect should be much
  * smaller than the one before, and the velocity follows it in proportion.
  */
-static strut_status correct(strut_orbit_solve *w, double enough, int least) {
+static strut_status correct_orbit(strut_orbit_solve *solve, double enough, int least) {
   double defect = HUGE_VAL;
-  w->error = HUGE_VAL;
+  solve->error = HUGE_VAL;
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
-    strut_status status = strut_orbit_correct(&w->cheap, &w->fine, w->base, w->travel,
-                                              0.1 * enough * w->cheap.period, &w->orbit);
-    status = strut_orbit_solve_map_status(w, status);
+    strut_status status =
+        strut_orbit_correct(&solve->coarse_map, &solve->reference_map, solve->fixed_point,
+                            solve->travel, 0.1 * enough * solve->coarse_map.period, &solve->orbit);
+    status = strut_orbit_solve_check_maps(solve, status);
     if (status) return status;
-    if (!w->orbit.converged || w->orbit.defect > 0.7 * defect) return STRUT_OK;
-    /* the first correction is taken to be right to a half, later ones by what they achieved */
-    double better = k == 0 ? 0.5 : fmax(0.1, w->orbit.defect / defect);
-    defect = w->orbit.defect;
-    w->error = better * fabs(w->orbit.correction);
-    bool small = fabs(w->orbit.correction) <= SMALL * enough;
-    if ((k + 1 >= least || small) && w->error <= enough) return STRUT_OK;
+    if (!solve->orbit.converged || solve->orbit.defect > 0.7 * defect) return STRUT_OK;
+    /* assume that the first correction is right to a half; later ones by their own reduction */
+    double better = k == 0 ? 0.5 : fmax(0.1, solve->orbit.defect / defect);
+    defect = solve->orbit.defect;
+    solve->error = better * fabs(solve->orbit.correction);
+    bool small = fabs(solve->orbit.correction) <= SMALL * enough;
+    if ((k + 1 >= least || small) && solve->error <= enough) return STRUT_OK;
   }
   return STRUT_OK;
 }
 
-/* The motion on the orbit, by the accurate method: for what is recorded and told of contacts. */
-static strut_status run_orbit(strut_orbit_solve *w, strut_summary *summary) {
-  strut_accuracy *a = w->a;
-  strut_experiment e = w->accurate;
+/* Runs the orbit by the reference method, for recordings and contact figures. */
+static strut_status run_orbit(strut_orbit_solve *solve, strut_summary *summary) {
+  strut_accuracy *a = solve->a;
+  strut_experiment e = solve->reference;
   double last = e.output_last;
   e.measure_last = 0.0;
-  strut_orbit_solve_start_later_runs(w);
+  strut_orbit_solve_copy_orbit_to_end(solve);
   e.steady.wanted = false;
-  bool ran_on = w->found > STRUT_WAY_CORRECTED && w->last.steady.repeats > 0;
-  e.periods = ran_on ? w->last.steady.repeats : w->cheap.repeats;
+  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
+  e.periods = ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
   if (a->options->sink_count && last > e.periods) e.periods = last;
   e.output_last = 0.0;
   strut_run_options options = *a->options;
   strut_accuracy_begin_phase(a, "running the orbit");
-  options.from = &w->end;
+  options.from = &solve->end_state;
   options.progress = NULL;
   return strut_accuracy_run(a, &e, &options, summary);
 }
 
-/* What this way has cost goes to the account of the next one. */
-static void give_up(strut_orbit_solve *w, strut_summary *orbit) {
-  w->a->spent += w->run.force_evaluations + w->cheap.evaluations + w->fine.evaluations +
-                 w->last.force_evaluations + orbit->force_evaluations;
+/* Charges the cost of a failed orbit search to the checks of the next strategy. */
+static void charge_costs(strut_orbit_solve *solve, strut_summary *orbit) {
+  solve->a->check_evaluations += solve->coarse_run.force_evaluations +
+                                 solve->coarse_map.evaluations + solve->reference_map.evaluations +
+                                 solve->last_run.force_evaluations + orbit->force_evaluations;
   strut_summary_free(orbit);
 }
 
-static void release(strut_orbit_solve *w) {
-  strut_period_map_free(&w->cheap);
-  strut_period_map_free(&w->fine);
-  strut_summary_free(&w->run);
-  strut_summary_free(&w->last);
-  strut_arena_free(&w->arena);
+static void free_solve(strut_orbit_solve *solve) {
+  strut_period_map_free(&solve->coarse_map);
+  strut_period_map_free(&solve->reference_map);
+  strut_summary_free(&solve->coarse_run);
+  strut_summary_free(&solve->last_run);
+  strut_arena_free(&solve->arena);
 }
 
 /*
- * From nearly steady to the fixed point of the cheap map: by extrapolation, or, where that fails, by
- * running on. *steady is false where there is none.
+ * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where
+ * that fails, by running on. *steady is false where there is none.
  */
-static strut_status settle_cheap(strut_orbit_solve *w, bool *steady) {
-  strut_accuracy *a = w->a;
+static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
+  strut_accuracy *a = solve->a;
   bool found = false;
-  double enough = 0.1 * a->wanted * strut_accuracy_scale(a, w->run.velocity) * w->cheap.period;
-  strut_status status =
-      strut_orbit_limit(&w->cheap, enough * w->cheap.repeats, w->base, &w->travel, &found);
-  status = strut_orbit_solve_map_status(w, status);
+  double enough = 0.1 * a->target * strut_accuracy_velocity_scale(a, solve->coarse_run.velocity) *
+                  solve->coarse_map.period;
+  strut_status status = strut_orbit_limit(&solve->coarse_map, enough * solve->coarse_map.repeats,
+                                          solve->fixed_point, &solve->travel, &found);
+  status = strut_orbit_solve_check_maps(solve, status);
   if (status) return status;
   *steady = true;
   if (!found) {
     strut_summary more = {0};
-    status =
-        strut_orbit_solve_run(w, a->cheap, fmin(0.002, 0.1 * a->wanted), 5, CHANCE, true, &more);
+    status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmin(0.002, 0.1 * a->target), 5,
+                                                CHANCE, true, &more);
     *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC &&
-              more.steady.repeats == w->cheap.repeats;
-    if (!status) strut_summary_append(&w->run, &more);
+              more.steady.repeats == solve->coarse_map.repeats;
+    if (!status) strut_summary_append(&solve->coarse_run, &more);
     strut_summary_free(&more);
-    take_end(w);
+    take_end_as_fixed_point(solve);
   }
-  w->run.velocity = w->travel / (w->cheap.period * w->cheap.repeats);
-  memcpy(w->orbit.y, w->base, (2 * (size_t)w->cheap.model->length + 1) * sizeof(double));
-  w->settled = (strut_orbit_solve_cost){w->cheap.evaluations, w->cheap.events, w->cheap.applied};
+  solve->coarse_run.velocity =
+      solve->travel / (solve->coarse_map.period * solve->coarse_map.repeats);
+  memcpy(solve->orbit.y, solve->fixed_point,
+         (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
+  solve->until_steady = (strut_orbit_solve_cost){
+      solve->coarse_map.evaluations, solve->coarse_map.events, solve->coarse_map.applied};
   return status;
 }
 
-/* The cheap method's orbit corrected, or what else has the answer near it. */
-static strut_status finish(strut_orbit_solve *w) {
-  strut_accuracy *a = w->a;
-  double size = strut_accuracy_scale(a, w->run.velocity),
-         all = fmax(20.0, strut_accuracy_periods(a));
+/* Corrects the coarse orbit; where that is not enough, runs the reference method from it. */
+static strut_status correct_or_rerun(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity),
+         all = fmax(20.0, strut_accuracy_transient_periods(a));
   strut_status status = STRUT_OK;
-  w->error = HUGE_VAL;
-  if (strut_orbit_solve_is_stuck(w)) {
-    status = strut_orbit_solve_stuck(w);
-    return status || w->found ? status : strut_orbit_solve_accurate(w, false, all);
+  solve->error = HUGE_VAL;
+  if (strut_orbit_solve_is_stuck(solve)) {
+    status = strut_orbit_solve_confirm_stuck(solve);
+    return status || solve->answer ? status : strut_orbit_solve_run_reference(solve, false, all);
   }
   strut_accuracy_begin_phase(a, "correcting the orbit");
-  bool last_word = a->wanted < FINE; /* the accurate method goes on itself: come near enough */
-  double enough = (last_word ? 3.0 : 0.3) * a->wanted * size;
-  status = correct(w, enough, a->wanted >= COARSE || last_word ? 1 : 2);
+  bool last_word =
+      a->target <
+      FINE; /* the reference method runs on from the orbit, so that a rough one suffices */
+  double enough = (last_word ? 3.0 : 0.3) * a->target * size;
+  status = correct_orbit(solve, enough, a->target >= COARSE || last_word ? 1 : 2);
   if (status) return status;
-  double moved = fabs(w->orbit.velocity - w->run.velocity) + w->error;
-  if (a->wanted >= COARSE && moved <= 0.8 * a->wanted * size)
-    w->found = STRUT_WAY_CHEAP;
-  else if (!last_word && strut_orbit_solve_tolerance_share(w) <= 0.8)
-    w->found = STRUT_WAY_CORRECTED;
-  if (w->found) return STRUT_OK;
-  status = strut_orbit_solve_accurate(w, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
+  double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity) + solve->error;
+  if (a->target >= COARSE && moved <= 0.8 * a->target * size)
+    solve->answer = STRUT_ORBIT_COARSE;
+  else if (!last_word && strut_orbit_solve_error_share(solve) <= 0.8)
+    solve->answer = STRUT_ORBIT_CORRECTED;
+  if (solve->answer) return STRUT_OK;
+  status = strut_orbit_solve_run_reference(solve, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
   if (status) return status;
-  if (!w->found) return strut_orbit_solve_disputed(w);
-  return strut_orbit_solve_check(w);
+  if (!solve->answer) return strut_orbit_solve_average_disputed(solve);
+  return strut_orbit_solve_check_tolerance(solve);
 }
 
 /*
- * The motion may be irregular; or it becomes periodic after all. Else the accurate method is left to
- * go on.
+ * The coarse run found no period. Averages an irregular motion, or corrects an orbit that appears
+ * after all; otherwise the reference method runs on.
  */
-static strut_status find_without_orbit(strut_orbit_solve *w) {
+static strut_status find_without_fixed_point(strut_orbit_solve *solve) {
   bool periodic = false;
-  strut_status status = strut_orbit_solve_irregular(w, &periodic);
-  if (status || w->found) return status;
-  if (!periodic || !strut_accuracy_orbit_answers(w->a, &w->run.steady))
-    return strut_orbit_solve_accurate(w, true, fmax(20.0, strut_accuracy_periods(w->a)));
-  status = make_maps(w, w->run.steady.repeats);
-  return status ? status : finish(w);
+  strut_status status = strut_orbit_solve_average_irregular(solve, &periodic);
+  if (status || solve->answer) return status;
+  if (!periodic || !strut_accuracy_orbit_covers_window(solve->a, &solve->coarse_run.steady))
+    return strut_orbit_solve_run_reference(solve, true,
+                                           fmax(20.0, strut_accuracy_transient_periods(solve->a)));
+  status = create_maps(solve, solve->coarse_run.steady.repeats);
+  return status ? status : correct_or_rerun(solve);
 }
 
 /*
- * Where the cheap method nearly repeats itself, but not quite, the accurate one may: its steps meet no
- * grid.
+ * The coarse method nearly repeats itself: fixed steps may be what prevents it, and the reference
+ * method has none.
  */
-static strut_status find_without_cheap(strut_orbit_solve *w) {
-  strut_status status = strut_orbit_solve_accurate(w, true, CHANCE);
-  return status || w->found ? status : find_without_orbit(w);
+static strut_status find_by_reference(strut_orbit_solve *solve) {
+  strut_status status = strut_orbit_solve_run_reference(solve, true, CHANCE);
+  return status || solve->answer ? status : find_without_fixed_point(solve);
 }
 
-/* The orbit, as accurately as is wanted. */
-static strut_status find_orbit(strut_orbit_solve *w, bool steady) {
-  strut_status status = make_maps(w, steady ? w->run.steady.repeats : 1);
-  w->error = HUGE_VAL;
+/* Finds the orbit to the wanted accuracy. */
+static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
+  strut_status status = create_maps(solve, steady ? solve->coarse_run.steady.repeats : 1);
+  solve->error = HUGE_VAL;
   if (status) return status;
-  if (!steady) return find_without_orbit(w);
-  status = settle_cheap(w, &steady);
+  if (!steady) return find_without_fixed_point(solve);
+  status = find_coarse_fixed_point(solve, &steady);
   if (status) return status;
-  if (!steady && w->cheap.repeats > 1) {
-    status = make_maps(w, 1);
-    w->settled = (strut_orbit_solve_cost){0};
+  if (!steady && solve->coarse_map.repeats > 1) {
+    status = create_maps(solve, 1);
+    solve->until_steady = (strut_orbit_solve_cost){0};
   }
   if (status) return status;
-  return steady ? finish(w) : find_without_cheap(w);
+  return steady ? correct_or_rerun(solve) : find_by_reference(solve);
 }
 
 /*
- * Does the run that the way ended with speak for the scene's window? It has to have become steady before
- * that begins, counted from the scene's start.
+ * Does the last run represent the window of the scene? It must have become steady before the window
+ * begins, counted from the start of the scene.
  */
-static bool answers(const strut_orbit_solve *w) {
-  const strut_accuracy *a = w->a;
-  strut_steady_summary steady = w->last.steady;
+static bool window_is_steady(const strut_orbit_solve *solve) {
+  const strut_accuracy *a = solve->a;
+  strut_steady_summary steady = solve->last_run.steady;
   if (a->experiment.steady.wanted) return true;
-  double periods = (double)(w->run.steady.periods + steady.periods);
-  if (periods > 2.0 * strut_accuracy_periods(a)) return false;
+  double periods = (double)(solve->coarse_run.steady.periods + steady.periods);
+  if (periods > 2.0 * strut_accuracy_transient_periods(a)) return false;
   steady.periods = 0;
-  return steady.kind != STRUT_MOTION_PERIODIC || strut_accuracy_orbit_answers(a, &steady);
+  return steady.kind != STRUT_MOTION_PERIODIC || strut_accuracy_orbit_covers_window(a, &steady);
 }
 
 /*
- * Orbits need not be isolated: a structure that creeps within its stick bands may drift along a family of
- * them, more slowly than the watch for steady motion sees. Where the whole run costs the cheap method not
- * much more than what has been done, it is made, and must be as fast in its window as on the orbit.
+ * Orbits need not be isolated: a structure that creeps within its stick bands may drift along a
+ * family of them, more slowly than the steady detector notices. Where the whole run is affordable
+ * it is made, and its velocity must agree with that of the orbit.
  */
-static strut_status check_window(strut_orbit_solve *w) {
-  strut_accuracy *a = w->a;
-  bool of_orbit = w->found >= STRUT_WAY_CHEAP && w->found <= STRUT_WAY_STUCK;
-  double periods = a->experiment.periods, before = (double)w->run.steady.periods;
-  double work = (double)w->run.force_evaluations / fmax(1.0, before) * periods;
+static strut_status check_window(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  bool of_orbit = solve->answer >= STRUT_ORBIT_COARSE && solve->answer <= STRUT_ORBIT_STUCK;
+  double periods = a->experiment.periods, before = (double)solve->coarse_run.steady.periods;
+  double work = (double)solve->coarse_run.force_evaluations / fmax(1.0, before) * periods;
   if (!of_orbit || a->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
     return STRUT_OK;
-  strut_experiment whole = a->cheap;
+  strut_experiment whole = a->coarse;
   strut_summary run = {0};
   strut_run_options options = {.without_ledger = true,
                                .interrupt = a->options->interrupt,
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,
                                .from = a->options->from};
-  whole.step = w->cheap.dt;
-  strut_accuracy_begin_phase(a, "the whole run by the cheapest method");
+  whole.step = solve->coarse_map.dt;
+  strut_accuracy_begin_phase(a, "checking by the whole run");
   strut_status status = strut_accuracy_run(a, &whole, &options, &run);
-  a->spent += run.force_evaluations;
-  double away = fabs(run.velocity - w->run.velocity);
-  if (!status && !(away <= 0.3 * a->wanted * strut_accuracy_scale(a, run.velocity)))
-    w->found = STRUT_WAY_NONE;
+  a->check_evaluations += run.force_evaluations;
+  double away = fabs(run.velocity - solve->coarse_run.velocity);
+  if (!status && !(away <= 0.3 * a->target * strut_accuracy_velocity_scale(a, run.velocity)))
+    solve->answer = STRUT_ORBIT_NONE;
   strut_summary_free(&run);
   return status;
 }
 
-/* The motion on the orbit found, which should go as fast as that was found to. */
-static strut_status confirm(strut_orbit_solve *w, strut_summary *orbit) {
-  strut_accuracy *a = w->a;
-  if (w->found > STRUT_WAY_CORRECTED && !answers(w)) w->found = STRUT_WAY_NONE;
-  strut_status status = check_window(w);
-  if (status || !w->found) return status;
-  status = run_orbit(w, orbit);
-  double away = fabs(orbit->velocity - w->orbit.velocity);
-  if (status || w->found > STRUT_WAY_CORRECTED ||
-      away <= 0.6 * a->wanted * strut_accuracy_scale(a, w->run.velocity))
+/* Runs the orbit once more; its velocity must agree with that of the orbit. */
+static strut_status confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit) {
+  strut_accuracy *a = solve->a;
+  if (solve->answer > STRUT_ORBIT_CORRECTED && !window_is_steady(solve))
+    solve->answer = STRUT_ORBIT_NONE;
+  strut_status status = check_window(solve);
+  if (status || !solve->answer) return status;
+  status = run_orbit(solve, orbit);
+  double away = fabs(orbit->velocity - solve->orbit.velocity);
+  if (status || solve->answer > STRUT_ORBIT_CORRECTED ||
+      away <= 0.6 * a->target * strut_accuracy_velocity_scale(a, solve->coarse_run.velocity))
     return status;
-  w->found = STRUT_WAY_NONE;
-  a->spent += orbit->force_evaluations; /* its own velocity does not confirm the orbit */
+  solve->answer = STRUT_ORBIT_NONE;
+  a->check_evaluations += orbit->force_evaluations; /* the run disagrees, so it counts as a check */
   strut_summary_free(orbit);
   *orbit = (strut_summary){0};
-  status = strut_orbit_solve_accurate(w, true, a->wanted < FINE ? LONG_TRIAL : TRIAL);
-  if (!status && !w->found) status = strut_orbit_solve_disputed(w);
-  return status ? status : run_orbit(w, orbit);
+  status = strut_orbit_solve_run_reference(solve, true, a->target < FINE ? LONG_TRIAL : TRIAL);
+  if (!status && !solve->answer) status = strut_orbit_solve_average_disputed(solve);
+  return status ? status : run_orbit(solve, orbit);
 }
 
-strut_status strut_accuracy_by_orbit(strut_accuracy *a, bool *done) {
-  strut_orbit_solve w = {.a = a};
+/* ---- the report ---- */
+
+static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary *to) {
+  double step = solve->coarse_map.dt, tolerance = solve->reference.tolerance;
+  double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity);
+  size_t size = sizeof to->why;
+  switch (solve->answer) {
+    case STRUT_ORBIT_COARSE:
+      snprintf(to->why, size,
+               "verlet-events with a step of %.3g s is accurate enough: correcting its orbit by a "
+               "period of adaptive (tolerance %.1g) changes the velocity by %.2g m/s",
+               step, tolerance, moved);
+      return;
+    case STRUT_ORBIT_STUCK:
+      snprintf(to->why, size,
+               "verlet-events with a step of %.3g s: all contacts stick for the whole period, and "
+               "twice the step changes the velocity by %.2g m/s",
+               0.5 * step, moved);
+      return;
+    case STRUT_ORBIT_IRREGULAR:
+      snprintf(
+          to->why, size,
+          "the motion does not repeat itself: mean velocities over many periods, by verlet-events "
+          "with steps of %.3g s and %.3g s, agree to %.2g m/s including their scatter",
+          step, 0.5 * step, solve->error);
+      return;
+    case STRUT_ORBIT_DISPUTED:
+      snprintf(
+          to->why, size,
+          "verlet-events with a step of %.3g s finds a periodic motion and adaptive (tolerance "
+          "%.1g) does not: their mean velocities and that with half the step agree to %.2g m/s",
+          step, tolerance, solve->error);
+      return;
+    default:
+      snprintf(
+          to->why, size,
+          "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "
+          "corrected by periods of adaptive (tolerance %.1g), which changed the velocity by %.2g "
+          "m/s%s",
+          step, tolerance, moved,
+          solve->answer == STRUT_ORBIT_REFERENCE ? "; adaptive then ran until it was steady itself"
+                                                 : "");
+  }
+}
+
+/* Estimated error of the velocity [m/s]. */
+static double estimate_error(const strut_orbit_solve *solve, const strut_summary *orbit) {
+  double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
+  double apart = fabs(orbit->velocity - solve->orbit.velocity);
+  double method = solve->reference.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 * size;
+  if (solve->answer >= STRUT_ORBIT_IRREGULAR) return solve->error;
+  double error = fmax(solve->error, apart) + method;
+  return solve->answer == STRUT_ORBIT_COARSE
+             ? error + fabs(solve->orbit.velocity - solve->coarse_run.velocity)
+             : error;
+}
+
+/* Sums steps, evaluations and duration of all parts of the answer. */
+static void add_costs(const strut_orbit_solve *solve, strut_summary *s) {
+  const strut_orbit_solve_cost *settled = &solve->until_steady;
+  int64_t later = solve->coarse_map.applied - settled->applied, fine = solve->reference_map.applied;
+  s->steps = solve->coarse_run.steps + settled->applied * solve->coarse_map.steps;
+  s->events = solve->coarse_run.events + settled->events;
+  s->force_evaluations = solve->coarse_run.force_evaluations + settled->evaluations;
+  s->duration = solve->coarse_run.duration + (double)settled->applied * solve->coarse_map.period;
+  if (solve->answer == STRUT_ORBIT_COARSE) return;
+  s->steps +=
+      later * solve->coarse_map.steps + fine * solve->reference_map.steps + solve->last_run.steps;
+  s->events += solve->coarse_map.events - settled->events + solve->reference_map.events +
+               solve->last_run.events;
+  s->force_evaluations += solve->coarse_map.evaluations - settled->evaluations +
+                          solve->reference_map.evaluations + solve->last_run.force_evaluations;
+  s->duration += (double)(later + fine) * solve->coarse_map.period + solve->last_run.duration;
+}
+
+static void report_orbit(strut_orbit_solve *solve, const strut_summary *orbit) {
+  strut_accuracy *a = solve->a;
+  strut_summary *s = a->summary;
+  bool coarse_suffices = solve->answer == STRUT_ORBIT_COARSE;
+  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
+  double error = estimate_error(solve, orbit);
+  int64_t corrections = solve->coarse_map.evaluations - solve->until_steady.evaluations +
+                        solve->reference_map.evaluations;
+  *s = *orbit;
+  s->velocity = coarse_suffices ? solve->coarse_run.velocity : solve->orbit.velocity;
+  s->velocity_spread = ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
+  s->settle_time = solve->coarse_run.settle_time;
+  s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
+  if (ran_on) s->steady.periods += solve->coarse_run.steady.periods;
+  s->steady.periods += solve->until_steady.applied;
+  s->steady.interval = error;
+  add_costs(solve, s);
+  s->step = solve->coarse_map.dt;
+  s->step_limit = solve->coarse_run.step_limit;
+  s->wall_time = solve->coarse_run.wall_time;
+  bool adaptive = solve->answer == STRUT_ORBIT_CORRECTED || solve->answer == STRUT_ORBIT_REFERENCE;
+  snprintf(s->method, sizeof s->method, "%s%s%s", strut_integrator_for(STRUT_ROLE_COARSE)->name,
+           adaptive ? "+" : "", adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
+  s->accuracy = (strut_accuracy_summary){
+      .wanted = a->target,
+      .expected = error / strut_accuracy_velocity_scale(a, s->velocity),
+      .scale = a->scale,
+      .check_evaluations =
+          a->check_evaluations + orbit->force_evaluations + (coarse_suffices ? corrections : 0)};
+  s->accuracy.kept = s->accuracy.expected <= a->target;
+  explain_orbit(solve, &s->accuracy);
+}
+
+strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
+  strut_orbit_solve solve = {.a = a};
   *done = false;
   bool steady_wanted = a->experiment.steady.wanted;
-  if (strut_accuracy_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
+  if (strut_accuracy_transient_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
   bool steady = false;
   strut_summary orbit = {0};
-  const strut_experiment given = a->cheap;
+  const strut_experiment given = a->coarse;
   a->allowed = (int64_t)(PART_OF_BUDGET * (double)a->budget);
-  a->cheap.refine_rate = 0.5; /* its orbit will be corrected: a short refinement is enough */
-  a->cheap.refine_memory = 3.0;
-  a->cheap.steady.mean_tolerance = MEAN * a->wanted;
-  strut_status status = run_cheap(&w, &steady);
-  bool ran = !status && w.run.status == STRUT_OK;
-  if (ran) status = find_orbit(&w, steady);
-  if (ran && !status) status = confirm(&w, &orbit);
-  *done = !status && w.found;
+  a->coarse.refine_rate =
+      0.5; /* the orbit will be corrected, so that a short refinement suffices */
+  a->coarse.refine_memory = 3.0;
+  a->coarse.steady.mean_tolerance = MEAN * a->target;
+  strut_status status = run_coarse(&solve, &steady);
+  bool ran = !status && solve.coarse_run.status == STRUT_OK;
+  if (ran) status = find_orbit(&solve, steady);
+  if (ran && !status) status = confirm_orbit(&solve, &orbit);
+  *done = !status && solve.answer;
   if (*done)
-    strut_orbit_solve_report(&w, &orbit);
+    report_orbit(&solve, &orbit);
   else
-    give_up(&w, &orbit);
-  a->cheap = given;
+    charge_costs(&solve, &orbit);
+  a->coarse = given;
   a->allowed = a->budget;
-  release(&w);
+  free_solve(&solve);
   return status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT ? STRUT_OK : status;
 }

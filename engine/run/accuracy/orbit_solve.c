@@ -4,14 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-double strut_accuracy_scale(const strut_accuracy *a, double velocity) {
+double strut_accuracy_velocity_scale(const strut_accuracy *a, double velocity) {
   return fmax(fabs(velocity), a->scale);
 }
 
-void strut_orbit_solve_count(strut_orbit_solve *w) {
-  int64_t made = w->cheap.evaluations + w->fine.evaluations;
-  w->a->used += made > w->counted ? made - w->counted : 0;
-  w->counted = made;
+void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve) {
+  int64_t made = solve->coarse_map.evaluations + solve->reference_map.evaluations;
+  solve->a->used += made > solve->counted ? made - solve->counted : 0;
+  solve->counted = made;
 }
 
 void strut_summary_append(strut_summary *whole, strut_summary *part) {
@@ -28,11 +28,12 @@ void strut_summary_append(strut_summary *whole, strut_summary *part) {
   whole->steady.periods = periods;
 }
 
-strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, double tolerance,
-                                   int32_t successive, double periods, bool from_end,
-                                   strut_summary *summary) {
-  strut_accuracy *a = w->a;
-  strut_snapshot from = w->end;
+strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_experiment e,
+                                                double tolerance, int32_t successive,
+                                                double periods, bool from_end,
+                                                strut_summary *summary) {
+  strut_accuracy *a = solve->a;
+  strut_snapshot from = solve->end_state;
   e.steady.wanted = true;
   e.steady.tolerance = tolerance;
   e.steady.floor = tolerance * a->scale;
@@ -45,13 +46,256 @@ strut_status strut_orbit_solve_run(strut_orbit_solve *w, strut_experiment e, dou
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,
                                .from = from_end ? &from : a->options->from,
-                               .to = &w->end};
+                               .to = &solve->end_state};
   return strut_accuracy_run(a, &e, &options, summary);
 }
 
-void strut_orbit_solve_keep_end(strut_orbit_solve *w) {
-  size_t length = (size_t)w->cheap.model->length;
-  memcpy(w->orbit.y, w->end.q, length * sizeof(double));
-  memcpy(w->orbit.y + length, w->end.v, length * sizeof(double));
-  w->orbit.y[2 * length] = w->end.refined;
+void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve) {
+  size_t length = (size_t)solve->coarse_map.model->length;
+  memcpy(solve->orbit.y, solve->end_state.q, length * sizeof(double));
+  memcpy(solve->orbit.y + length, solve->end_state.v, length * sizeof(double));
+  solve->orbit.y[2 * length] = solve->end_state.refined;
+}
+
+/* ---- the reference method and the check of its tolerance ---- */
+
+/* Periods in which a finer tolerance should become steady from the orbit of a coarser one. */
+static const double TRIAL = 40.0;
+enum { MOST_CHECKS = 4 };
+
+strut_status strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status) {
+  if (status) return strut_fail(solve->a->error, status, "out of memory");
+  strut_orbit_solve_count_evaluations(solve);
+  if (strut_period_map_spent(&solve->coarse_map) || strut_period_map_spent(&solve->reference_map))
+    return strut_fail(solve->a->error, STRUT_WORK_LIMIT,
+                      "the work budget was used up while the orbit was corrected");
+  if (!strut_period_map_interrupted(&solve->coarse_map)) return STRUT_OK;
+  return strut_fail(solve->a->error, STRUT_INTERRUPTED,
+                    "interrupted at t = %.9g s, while the orbit was corrected",
+                    solve->coarse_map.time);
+}
+
+double strut_orbit_solve_error_share(const strut_orbit_solve *solve) {
+  double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
+  return solve->error / (solve->a->target * size);
+}
+
+void strut_orbit_solve_copy_orbit_to_end(strut_orbit_solve *solve) {
+  size_t length = (size_t)solve->coarse_map.model->length;
+  memcpy(solve->end_state.q, solve->orbit.y, length * sizeof(double));
+  memcpy(solve->end_state.v, solve->orbit.y + length, length * sizeof(double));
+  solve->end_state.refined = solve->orbit.y[2 * length];
+}
+
+static void accept_reference_run(strut_orbit_solve *solve) {
+  strut_orbit_solve_copy_end_to_orbit(solve);
+  solve->orbit.velocity = solve->last_run.velocity;
+  solve->error = solve->last_run.steady.interval;
+  solve->answer = STRUT_ORBIT_REFERENCE;
+}
+
+strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
+                                             double periods) {
+  strut_accuracy *a = solve->a;
+  strut_summary more = {0};
+  strut_accuracy_begin_phase(a, "until steady by adaptive");
+  strut_orbit_solve_copy_orbit_to_end(solve);
+  /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
+  if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
+    solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / 25.0);
+    solve->tightened = true;
+  }
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, solve->reference, fmin(0.001, 0.2 * a->target), 4, periods, from_orbit, &more);
+  if (!status) strut_summary_append(&solve->last_run, &more);
+  strut_summary_free(&more);
+  if (!status && solve->last_run.steady.kind == STRUT_MOTION_PERIODIC) accept_reference_run(solve);
+  return status;
+}
+
+/*
+ * Repeats a sensitive orbit with a tenth of the tolerance. It is accepted if both agree to half of
+ * the wanted error; otherwise the finer result replaces it and is checked likewise.
+ */
+static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  for (int k = 0; k < MOST_CHECKS; k++) {
+    strut_summary finer = {0};
+    strut_orbit_solve_copy_orbit_to_end(solve);
+    solve->reference.tolerance = fmax(1e-12, 0.1 * solve->reference.tolerance);
+    strut_status status = strut_orbit_solve_run_until_steady(
+        solve, solve->reference, fmin(0.001, 0.2 * a->target), 4, TRIAL, true, &finer);
+    bool periodic = !status && finer.steady.kind == STRUT_MOTION_PERIODIC;
+    double apart = periodic ? fabs(finer.velocity - solve->orbit.velocity) : HUGE_VAL;
+    bool stands =
+        apart <= 0.5 * a->target * strut_accuracy_velocity_scale(a, solve->orbit.velocity);
+    if (stands || !periodic) {
+      a->check_evaluations += finer.force_evaluations;
+      solve->error = fmax(solve->error, stands ? apart : 0.0);
+      solve->reference.tolerance *= 10.0;
+    } else {
+      strut_summary_append(&solve->last_run, &finer);
+      accept_reference_run(solve);
+      solve->error = fmax(solve->error, 0.5 * apart);
+    }
+    strut_summary_free(&finer);
+    if (status || stands || !periodic) return status;
+  }
+  return STRUT_OK;
+}
+
+/*
+ * Corrects the orbit once by a period with a tenth of the tolerance; where that changes it too
+ * much, runs on with that tolerance.
+ */
+static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  size_t both = 2 * (size_t)solve->coarse_map.model->length + 1;
+  strut_experiment finer = solve->reference;
+  strut_period_map map = {.model = NULL};
+  strut_orbit there = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
+  if (!there.y) return strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
+  memcpy(there.y, solve->orbit.y, both * sizeof(double));
+  finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
+  double size = strut_accuracy_velocity_scale(a, solve->orbit.velocity),
+         half = 0.5 * a->target * size;
+  const strut_orbit_solve_cost before = {solve->coarse_map.evaluations, solve->coarse_map.events,
+                                         solve->coarse_map.applied};
+  strut_status status =
+      strut_period_map_create(a->model, &finer, solve->coarse_map.repeats, &map, a->error);
+  if (status) return status;
+  map.interrupt = solve->coarse_map.interrupt, map.time = solve->coarse_map.time;
+  map.most_evaluations = strut_accuracy_evaluations_left(a);
+  status = strut_orbit_correct(&solve->coarse_map, &map, solve->fixed_point, solve->travel,
+                               0.1 * half * solve->coarse_map.period, &there);
+  a->check_evaluations += solve->coarse_map.evaluations - before.evaluations + map.evaluations;
+  a->used += solve->coarse_map.evaluations - before.evaluations + map.evaluations;
+  solve->coarse_map.evaluations = before.evaluations;
+  solve->coarse_map.events = before.events, solve->coarse_map.applied = before.applied;
+  strut_period_map_free(&map);
+  status = strut_orbit_solve_check_maps(solve, status);
+  double apart = there.converged ? fabs(there.velocity - solve->orbit.velocity) : HUGE_VAL;
+  if (status || apart > half) return status ? status : repeat_with_finer_tolerance(solve);
+  solve->error = fmax(solve->error, apart);
+  return STRUT_OK;
+}
+
+strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
+  return solve->tightened ? repeat_with_finer_tolerance(solve)
+                          : correct_with_finer_tolerance(solve);
+}
+
+/* ---- motions without an orbit to correct: irregular or stuck ---- */
+
+/*
+ * Periods over which the mean of an irregular motion is sought, and those added while it is
+ * transient.
+ */
+static const double PERIODS = 136.0, MORE_PERIODS = 544.0;
+/* Periods of the half-step run: half of those above. */
+static const double HALF_PERIODS = 68.0;
+/* Velocities agree if they differ by less than this part of the wanted error. */
+static const double AGREE = 0.4;
+
+static strut_experiment halve_coarse_step(const strut_orbit_solve *solve) {
+  strut_experiment half = solve->a->coarse;
+  half.step *= 0.5;
+  return half;
+}
+
+/* `error` in [m/s]. */
+static void accept_last_run(strut_orbit_solve *solve, strut_orbit_answer end, double error) {
+  strut_orbit_solve_copy_end_to_orbit(solve);
+  solve->orbit.velocity = solve->last_run.velocity;
+  solve->error = error;
+  solve->answer = end;
+}
+
+/*
+ * Widens the interval of a mean over `periods` to that of a mean over the shorter window: it
+ * scatters as the square root of their ratio.
+ */
+static double widen_to_window(const strut_orbit_solve *solve, double interval, double periods) {
+  const strut_experiment *e = &solve->a->experiment;
+  if (e->steady.wanted || !(e->measure_last < periods)) return interval;
+  return interval * (1.0 + sqrt(periods / fmax(1.0, e->measure_last)));
+}
+
+/* Continues the coarse run; solve->coarse_run grows by it. */
+static strut_status continue_coarse_run(strut_orbit_solve *solve, double periods) {
+  strut_summary more = {0};
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, solve->a->coarse, solve->a->target, 5, periods, true, &more);
+  if (!status) strut_summary_append(&solve->coarse_run, &more);
+  strut_summary_free(&more);
+  return status;
+}
+
+strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic) {
+  strut_accuracy *a = solve->a;
+  strut_summary half = {0};
+  strut_status status = STRUT_OK;
+  solve->answer = STRUT_ORBIT_NONE;
+  if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
+    status = continue_coarse_run(solve, PERIODS);
+  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)
+    status = continue_coarse_run(solve, MORE_PERIODS);
+  *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
+  if (status || solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
+  status = strut_orbit_solve_run_until_steady(solve, halve_coarse_step(solve), a->target, 5,
+                                              HALF_PERIODS, true, &half);
+  if (!status) {
+    strut_summary_append(&solve->last_run, &half);
+    double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
+    if (solve->last_run.steady.kind == STRUT_MOTION_TRANSIENT)
+      solve->last_run.steady.kind = STRUT_MOTION_IRREGULAR; /* too short a run for the detector */
+    accept_last_run(
+        solve, STRUT_ORBIT_IRREGULAR,
+        apart + widen_to_window(solve, solve->coarse_run.steady.interval, HALF_PERIODS));
+  }
+  strut_summary_free(&half);
+  return status;
+}
+
+bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve) {
+  const strut_contact_table *c = &solve->coarse_map.model->contacts;
+  double band = 0.0;
+  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].friction.stick_velocity);
+  return solve->coarse_map.applied > 0 && solve->coarse_map.events == 0 &&
+         fabs(solve->coarse_run.velocity) <= 1.01 * band;
+}
+
+strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  strut_summary half = {0};
+  solve->answer = STRUT_ORBIT_NONE;
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, halve_coarse_step(solve), fmin(0.001, 0.2 * a->target), 4,
+      fmax(20.0, strut_accuracy_transient_periods(a)), false, &half);
+  if (status) {
+    strut_summary_free(&half);
+    return status;
+  }
+  bool periodic = half.steady.kind == STRUT_MOTION_PERIODIC;
+  strut_summary_append(&solve->last_run, &half);
+  double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
+  if (periodic &&
+      apart <= AGREE * a->target * strut_accuracy_velocity_scale(a, solve->last_run.velocity))
+    accept_last_run(solve, STRUT_ORBIT_STUCK, apart + solve->last_run.steady.interval);
+  return STRUT_OK;
+}
+
+strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
+  strut_summary half = {0};
+  double accurate = solve->last_run.velocity;
+  strut_status status = strut_orbit_solve_run_until_steady(
+      solve, halve_coarse_step(solve), solve->a->target, 5, HALF_PERIODS, true, &half);
+  if (!status) {
+    strut_summary_append(&solve->last_run, &half);
+    double apart = fabs(accurate - solve->coarse_run.velocity);
+    accept_last_run(solve, STRUT_ORBIT_DISPUTED,
+                    apart + fabs(solve->last_run.velocity - solve->coarse_run.velocity));
+  }
+  strut_summary_free(&half);
+  return status;
 }

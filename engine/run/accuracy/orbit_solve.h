@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What the parts of the way to an accuracy by the steady orbit share. Only accuracy_*.c include this.
+ * Finding the periodic orbit for a wanted accuracy: state and steps shared by accuracy_orbit.c and
+ * orbit_solve.c.
  */
 #ifndef STRUT_ENGINE_RUN_ACCURACY_ORBIT_SOLVE_H
 #define STRUT_ENGINE_RUN_ACCURACY_ORBIT_SOLVE_H
@@ -8,93 +9,96 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/orbit/orbit.h"
 
-/** Largest error of the accurate method's velocity over its tolerance, by random points. */
+/** Largest tolerance of the reference method per velocity error; measured at random points. */
 static const double STRUT_TOLERANCE_PER_ERROR = 1.0 / 1500.0;
 
-/** What the cheap map has cost until it was steady. */
+/** Cost of the coarse map up to the steady motion. */
 typedef struct strut_orbit_solve_cost {
   int64_t evaluations, events, applied;
 } strut_orbit_solve_cost;
 
-/** Which run or correction has the answer. */
-typedef enum strut_orbit_solve_end {
-  STRUT_WAY_NONE,
-  STRUT_WAY_CHEAP,     /* the cheap method, which a correction confirms */
-  STRUT_WAY_CORRECTED, /* its orbit, corrected */
-  STRUT_WAY_ACCURATE,  /* the accurate method ran until it was steady itself */
-  STRUT_WAY_STUCK,     /* the cheap method with half the step, which the whole one confirms */
-  STRUT_WAY_IRREGULAR, /* a mean over many periods, by two steps */
-  STRUT_WAY_DISPUTED   /* periodic by the cheap method, not by the accurate one: means over many */
-} strut_orbit_solve_end;
+/** The run or correction that gives the answer. */
+typedef enum strut_orbit_answer {
+  STRUT_ORBIT_NONE,
+  STRUT_ORBIT_COARSE,    /* the coarse method, confirmed by a correction */
+  STRUT_ORBIT_CORRECTED, /* the corrected coarse orbit */
+  STRUT_ORBIT_REFERENCE, /* the reference method, run until it was steady itself */
+  STRUT_ORBIT_STUCK,     /* the coarse method with half the step, confirmed by the full step */
+  STRUT_ORBIT_IRREGULAR, /* a mean over many periods, by two steps */
+  STRUT_ORBIT_DISPUTED   /* periodic by the coarse method only: means over many periods */
+} strut_orbit_answer;
 
 typedef struct strut_orbit_solve {
   strut_accuracy *a;
-  strut_experiment accurate;
-  strut_period_map cheap, fine;
-  strut_summary run; /* of the cheap method, to its steady state */
-  strut_snapshot end;
-  double *base;  /* (2 length + 1) fixed point of the cheap map */
-  double travel; /* over one application of it [m] */
+  strut_experiment reference; /* with error control */
+  strut_period_map coarse_map, reference_map;
+  strut_summary coarse_run; /* up to the steady state */
+  strut_snapshot end_state;
+  double *fixed_point; /* (2 length + 1) of the coarse map */
+  double travel;       /* over one application of it [m] */
   strut_orbit orbit;
-  double error; /* of orbit.velocity, estimated [m/s] */
-  strut_orbit_solve_cost settled;
-  int64_t counted; /* evaluations of the present maps that a->used contains */
-  strut_orbit_solve_end found;
-  bool tightened;     /* the accurate method's tolerance, for a sensitive orbit */
-  strut_summary last; /* of the run with which the way ended, if there was one */
+  double error;                        /* of orbit.velocity, estimated [m/s] */
+  strut_orbit_solve_cost until_steady; /* of the coarse map */
+  int64_t counted;                     /* evaluations of the present maps already in a->used */
+  strut_orbit_answer answer;
+  bool tightened;         /* the reference tolerance was reduced for a sensitive orbit */
+  strut_summary last_run; /* the run that gave the answer, if any */
   strut_arena arena;
 } strut_orbit_solve;
 
 /** The velocity that errors are relative to [m/s]. */
-double strut_accuracy_scale(const strut_accuracy *a, double velocity);
-/** Adds what the maps have cost since the latest count to a->used. */
-void strut_orbit_solve_count(strut_orbit_solve *way);
-/** Adds what a further part of the run cost to the whole, and takes its results; empties `part`. */
+double strut_accuracy_velocity_scale(const strut_accuracy *a, double velocity);
+/** Adds the evaluations of both maps since the last call to a->used. */
+void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve);
+/** Appends a continuation: costs add up, results are replaced; empties `part`. */
 void strut_summary_append(strut_summary *whole, strut_summary *part);
 /**
- * A run of `experiment` by at most `periods`, from way->end or the scene's start, until it is steady to
- * `tolerance` [1] over `successive` periods; its end is way->end.
+ * Runs `experiment` for at most `periods`, from solve->end_state or the start of the scene, until
+ * it is steady within `tolerance` [1] over `successive` periods. The end becomes solve->end_state.
  */
-strut_status strut_orbit_solve_run(strut_orbit_solve *way, strut_experiment experiment,
-                                   double tolerance, int32_t successive, double periods,
-                                   bool from_end, strut_summary *summary);
-/** The end of the run so far becomes the orbit to go on from. */
-void strut_orbit_solve_keep_end(strut_orbit_solve *way);
+strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve,
+                                                strut_experiment experiment, double tolerance,
+                                                int32_t successive, double periods, bool from_end,
+                                                strut_summary *summary);
+/** Copies solve->end_state to solve->orbit. */
+void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve);
 
-/** Way->orbit becomes what runs go on from. */
-void strut_orbit_solve_start_later_runs(strut_orbit_solve *way);
-/** Of work on the maps, which returned `status`: whether there was memory, and no interrupt. */
-strut_status strut_orbit_solve_map_status(strut_orbit_solve *way, strut_status status);
+/** Copies solve->orbit to solve->end_state, from which later runs start. */
+void strut_orbit_solve_copy_orbit_to_end(strut_orbit_solve *solve);
+/**
+ * Turns the status of map evaluations into an error: out of memory, over budget, or interrupted.
+ */
+strut_status strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status);
 
-/** accuracy_check.c. The error of the orbit's velocity, in parts of what is wanted. */
-double strut_orbit_solve_tolerance_share(const strut_orbit_solve *way);
+/** Error of the orbit velocity over the wanted error [1]. */
+double strut_orbit_solve_error_share(const strut_orbit_solve *solve);
 /**
- * The accurate method by at most `periods` until it is steady: from the orbit found, of which it then is
- * independent, or, where that depends on how it came to be, from the scene's start. way->last is of it,
- * and way->found tells whether it became periodic.
+ * Runs the reference method for at most `periods` until it is steady: from the orbit or, where the
+ * answer depends on history, from the start of the scene. Fills solve->last_run; sets solve->answer
+ * if the motion became periodic.
  */
-strut_status strut_orbit_solve_accurate(strut_orbit_solve *way, bool from_orbit, double periods);
-/** Whether a smaller tolerance would change what strut_orbit_solve_accurate found; takes it where it would. */
-strut_status strut_orbit_solve_check(strut_orbit_solve *way);
+strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
+                                             double periods);
+/** Repeats the reference orbit with a tenth of the tolerance; replaces it where they disagree. */
+strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve);
 /**
- * accuracy_irregular.c. The mean over many periods that do not repeat each other, by the cheap method
- * with its step, whose run was found irregular or is gone on with, and half of it. way->found tells whether there is one; *periodic, that the first of the
- * runs became periodic after all, at way->end, and way->run is of it.
+ * Averages an irregular motion over many periods, by the coarse method with its step and with half
+ * of it. Sets solve->answer if the mean is known. *periodic: the coarse run became periodic after
+ * all, and solve->end_state is on its orbit.
  */
-strut_status strut_orbit_solve_irregular(strut_orbit_solve *way, bool *periodic);
-/** No switch in the periods that the cheap map went through, of a motion within the stick band. */
-bool strut_orbit_solve_is_stuck(const strut_orbit_solve *way);
+strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic);
+/** Did the coarse map pass no event, at a velocity within the stick band? */
+bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve);
 /**
- * Stuck through all of the period: at which speed within the stick band is a matter of how it came to
- * be, not of an orbit. By the cheap method with half the step from the scene's start, where that agrees.
+ * All contacts stick for the whole period. The creep speed then depends on history, so there is no
+ * orbit to correct. Runs the coarse method with half the step from the start of the scene; sets
+ * solve->answer if both agree.
  */
-strut_status strut_orbit_solve_stuck(strut_orbit_solve *way);
+strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve);
 /**
- * Where the accurate method, which way->last is of, found no end to what the cheap one calls periodic:
- * by the cheap one with half the step. Their differences are the error.
+ * The reference method (solve->last_run) did not become periodic, the coarse one did. Averages the
+ * coarse method with half the step; the differences of the means are the error.
  */
-strut_status strut_orbit_solve_disputed(strut_orbit_solve *way);
-/** accuracy_tell.c. Puts together what the parts found and cost. orbit: a run of the motion found. */
-void strut_orbit_solve_report(strut_orbit_solve *way, const strut_summary *orbit);
+strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve);
 
 #endif

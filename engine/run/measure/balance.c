@@ -4,12 +4,12 @@
 #include <float.h>
 #include <math.h>
 
-/* Force evaluations between two looks: what one takes is lost among them. */
-enum { EVALUATIONS = 256 };
-/* Of the energy moved; rounding errors of so many units in the last place for each step. */
+/* Force evaluations between two samples, which make the cost of a sample negligible. */
+enum { EVALUATIONS_PER_SAMPLE = 256 };
+/* Part of the exchanged energy; rounding errors of this many units in the last place per step. */
 static const double OPEN = 0.01, ROUNDING = 16.0 * DBL_EPSILON;
 
-static double change(double a, double b) { return fabs(a - b); }
+static double absolute_change(double a, double b) { return fabs(a - b); }
 
 void strut_balance_fill(const strut_model *model, strut_state *state, const strut_energies *begin,
                         double t, strut_energy *e) {
@@ -28,36 +28,37 @@ void strut_balance_fill(const strut_model *model, strut_state *state, const stru
   e->residual = end.kinetic + end.elastic + end.gravity + end.contact - e->initial - e->drive_work -
                 e->load_work - e->belt_work + e->dissipated_members + e->dissipated_contact +
                 e->dissipated_friction;
-  e->moved = change(end.kinetic, begin->kinetic) + change(end.elastic, begin->elastic) +
-             change(end.gravity, begin->gravity) + change(end.contact, begin->contact) +
-             fabs(loads) + w[STRUT_POWER_EXCHANGED];
+  e->moved = absolute_change(end.kinetic, begin->kinetic) +
+             absolute_change(end.elastic, begin->elastic) +
+             absolute_change(end.gravity, begin->gravity) +
+             absolute_change(end.contact, begin->contact) + fabs(loads) + w[STRUT_POWER_EXCHANGED];
 }
 
 void strut_balance_begin(const strut_state *state, const strut_energies *begin, double t,
-                         int evaluations, strut_balance_monitor *watch) {
-  int64_t every = EVALUATIONS / evaluations;
-  *watch =
+                         int evaluations, strut_balance_monitor *monitor) {
+  int64_t every = EVALUATIONS_PER_SAMPLE / evaluations;
+  *monitor =
       (strut_balance_monitor){.every = every > 0 ? every : 1, .swing = begin->kinetic, .time = t};
-  watch->next = state->ledger ? state->step + watch->every : INT64_MAX;
+  monitor->next = state->ledger ? state->step + monitor->every : INT64_MAX;
 }
 
 void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
-                          double t, strut_balance_monitor *watch, strut_energy *e) {
+                          double t, strut_balance_monitor *monitor, strut_energy *e) {
   strut_balance_fill(model, state, begin, t, e);
-  watch->swing = fmax(watch->swing, e->kinetic);
-  e->moved = fmax(e->moved, watch->swing); /* what swings may end as it began */
-  double change = e->residual - watch->residual;
-  if (fabs(change) > fabs(watch->worst)) {
-    watch->worst = change;
-    watch->from = watch->time, watch->to = t;
+  monitor->swing = fmax(monitor->swing, e->kinetic);
+  e->moved = fmax(e->moved, monitor->swing); /* an oscillation may end as it began */
+  double change = e->residual - monitor->residual;
+  if (fabs(change) > fabs(monitor->worst)) {
+    monitor->worst = change;
+    monitor->from = monitor->time, monitor->to = t;
   }
-  watch->residual = e->residual, watch->time = t;
-  while (watch->next <= state->step) watch->next += watch->every;
+  monitor->residual = e->residual, monitor->time = t;
+  while (monitor->next <= state->step) monitor->next += monitor->every;
 }
 
 strut_balance strut_balance_judge(const strut_energy *e, int64_t steps) {
-  double there = fabs(e->initial) + e->kinetic + e->elastic + fabs(e->gravity) + e->contact;
-  double rounding = ROUNDING * ((double)steps + 100.0) * (there + e->moved);
+  double stored = fabs(e->initial) + e->kinetic + e->elastic + fabs(e->gravity) + e->contact;
+  double rounding = ROUNDING * ((double)steps + 100.0) * (stored + e->moved);
   bool open = fabs(e->residual) > OPEN * e->moved && fabs(e->residual) > rounding;
   return open ? STRUT_BALANCE_OPEN : STRUT_BALANCE_CLOSED;
 }

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "engine/model/pose.h"
-#include "engine/run/measure/hermite.h"
 
 /* A mark this close to a step's end, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;

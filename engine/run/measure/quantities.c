@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "engine/run/measure/columns.h"
-#include "engine/run/measure/hermite.h"
 #include "engine/run/measure/quantity_program.h"
+#include "engine/run/measure/time_grid.h"
 
 /* A mark this close to a step's end, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;

@@ -6,10 +6,10 @@
 
 #include "engine/integrate/limit/step_limit.h"
 
-/* Force evaluations between two looks, iterations for one. */
-enum { EVALUATIONS = 256, LOOK = 1, FIRST = 30 };
-/* By how much, in logarithms, an unstable motion has grown when nothing is left of the true one. */
-static const double HOPELESS = 16.0;
+/* Force evaluations between two samples, power iterations per sample and at the start. */
+enum { EVALUATIONS_PER_SAMPLE = 256, ITERATIONS = 1, FIRST_ITERATIONS = 30 };
+/* Logarithm of the growth at which an unstable motion has replaced the true one. */
+static const double LOST_MOTION = 16.0;
 
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
 typedef struct product {
@@ -40,9 +40,9 @@ static void apply_contact(void *context, int32_t i, const strut_closed_contact *
   p->image[c->at[i] + 1] += push * c->normal[1];
 }
 
-/* So that no motion is left out for ever. */
-static void stir(const strut_model *model, strut_step_limit_monitor *g, strut_monitored_set *w,
-                 double size) {
+/* Adds noise to a motion, so that no eigenvector is missed for ever. */
+static void perturb_motion(const strut_model *model, strut_step_limit_monitor *g,
+                           strut_monitored_set *w, double size) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
     g->noise = g->noise * 6364136223846793005u + 1442695040888963407u;
     if (!model->fixed[i]) w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
@@ -50,16 +50,17 @@ static void stir(const strut_model *model, strut_step_limit_monitor *g, strut_mo
 }
 
 /*
- * One step of the power iteration: the motion's quotient, which lies below the eigenvalue. The motion
- * is the inverse mass times the last image, so that its size in the mass is known.
+ * One step of the power iteration: the Rayleigh quotient of the motion, which lies below the
+ * eigenvalue. The motion is the inverse mass times the last image, so that its norm in the mass is
+ * known.
  */
-static void iterate(const strut_model *model, const strut_state *state, strut_step_limit_monitor *g,
-                    strut_monitored_set *w) {
+static void iterate_power(const strut_model *model, const strut_state *state,
+                          strut_step_limit_monitor *g, strut_monitored_set *w) {
   int32_t n = 2 * model->node_count;
   double work = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
   memset(g->image, 0, (size_t)model->length * sizeof *g->image);
   product p = {model, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
-  /* where the ground's dampers are implicit, steps are refined while it is touched */
+  /* implicit ground dampers: steps are refined while the ground is touched */
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_tangent_visit(model, state->q, state->rest, -HUGE_VAL, closed, &p, apply_member,
                       apply_contact);
@@ -72,7 +73,7 @@ static void iterate(const strut_model *model, const strut_state *state, strut_st
     largest = fmax(largest, fabs(g->divided[i]));
   }
   if (!(largest > 0.0 && largest < HUGE_VAL)) {
-    stir(model, g, w, 1.0);
+    perturb_motion(model, g, w, 1.0);
     w->weight = w->strength = 0.0;
     return;
   }
@@ -82,33 +83,36 @@ static void iterate(const strut_model *model, const strut_state *state, strut_st
 }
 
 /*
- * A shape's own limit; none where memory is out. Where only a bound of it is to be had, and the
- * motions watched are those of this shape, no less than they say: a bound alone is no reason to stop.
+ * Step limit of a shape; HUGE_VAL where memory is out. Where only a bound is available and the
+ * iterated motions are of this shape, at least the limit that they show: a bound alone must not
+ * stop a run.
  */
-static double limit_at(const strut_model *model, const strut_step_limit_monitor *g, const double *q,
-                       const double *rest, bool watched) {
+static double find_limit(const strut_model *model, const strut_step_limit_monitor *g,
+                         const double *q, const double *rest, bool watched) {
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
   if (strut_step_limit_at_shape(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
   double bound = limit.of[g->method->region], seen = HUGE_VAL;
   if (!limit.bound || !watched) return bound;
-  for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->watch[i].strength);
+  for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->set[i].strength);
   return fmax(bound, seen);
 }
 
-static void compute(const strut_model *model, const strut_state *state,
-                    strut_step_limit_monitor *g) {
-  g->known_limit = limit_at(model, g, state->q, state->rest, true);
+static void update_limit(const strut_model *model, const strut_state *state,
+                         strut_step_limit_monitor *g) {
+  g->known_limit = find_limit(model, g, state->q, state->rest, true);
   for (int i = 0; i < g->count; i++) {
-    strut_monitored_set *w = &g->watch[i];
+    strut_monitored_set *w = &g->set[i];
     w->known = w->strength;
-    /* the limit goes down with 1/strength at most: so far it must rise to bring it to the step */
+    /*
+     * the limit falls at most with 1/strength: recompute when strength could bring it to the step
+     */
     w->alarm = fmax(1.0, w->strength * fmax(1.01, 0.99 * g->known_limit / g->step));
   }
 }
 
-/* The step is too large now, and has been for so many steps. */
-static void note_below(strut_step_limit_monitor *g, double time, int64_t steps) {
+/* Records that the step is above the limit, for the last `steps` steps. */
+static void record_violation(strut_step_limit_monitor *g, double time, int64_t steps) {
   double limit = g->known_limit;
   double growth = strut_region_at(g->method->region)->growth;
   if (!(g->lowest > 0.0)) g->first_time = time;
@@ -116,7 +120,7 @@ static void note_below(strut_step_limit_monitor *g, double time, int64_t steps) 
   g->grown = g->below ? g->grown + growth * fmin(g->step / limit - 1.0, 1.0) * (double)steps : 0.0;
   g->steps_below += steps;
   g->below = true;
-  g->hopeless = g->hopeless || g->grown > HOPELESS;
+  g->motion_lost = g->motion_lost || g->grown > LOST_MOTION;
 }
 
 void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state,
@@ -126,60 +130,61 @@ void strut_step_limit_monitor_sample(const strut_model *model, const strut_state
   g->last = state->step;
   g->next = state->step + g->every;
   for (int i = 0; i < g->count; i++) {
-    strut_monitored_set *w = &g->watch[i];
-    stir(model, g, w, 1e-6);
-    for (int k = 0; k < LOOK; k++) iterate(model, state, g, w);
+    strut_monitored_set *w = &g->set[i];
+    perturb_motion(model, g, w, 1e-6);
+    for (int k = 0; k < ITERATIONS; k++) iterate_power(model, state, g, w);
     again = again || w->strength >= w->alarm || (g->below && w->strength < 0.99 * w->known);
   }
   if (g->count > 0) {
     memcpy(g->shape, state->q, (size_t)model->length * sizeof *g->shape);
     memcpy(g->rest, state->rest, (size_t)model->members.slots * sizeof *g->rest);
   }
-  if (again) compute(model, state, g);
+  if (again) update_limit(model, state, g);
   if (g->known_limit < g->step)
-    note_below(g, (double)state->step * g->step, steps);
+    record_violation(g, (double)state->step * g->step, steps);
   else
     g->below = false;
 }
 
 double strut_step_limit_monitor_last_limit(const strut_model *model,
                                            const strut_step_limit_monitor *g) {
-  return g->count > 0 ? limit_at(model, g, g->shape, g->rest, false) : HUGE_VAL;
+  return g->count > 0 ? find_limit(model, g, g->shape, g->rest, false) : HUGE_VAL;
 }
 
 void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state,
                                     strut_step_limit_monitor *g) {
   if (g->count == 0) return;
   double before = strut_step_limit_monitor_last_limit(model, g);
-  g->known_limit = fmin(before, limit_at(model, g, state->q, state->rest, false));
-  if (g->known_limit < g->step) note_below(g, (double)g->last * g->step, 0);
+  g->known_limit = fmin(before, find_limit(model, g, state->q, state->rest, false));
+  if (g->known_limit < g->step) record_violation(g, (double)g->last * g->step, 0);
 }
 
 bool strut_step_limit_monitor_create(const strut_model *model, strut_state *state,
                                      const strut_integrator *method, double step,
-                                     strut_step_limit_monitor *guard) {
+                                     strut_step_limit_monitor *monitor) {
   const strut_region_data *region = strut_region_at(method->region);
-  *guard =
+  *monitor =
       (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
   if (region->sets == 0 || (model->plan & STRUT_TERM_RIGID)) return true;
-  guard->known_limit = HUGE_VAL;
-  guard->count = region->sets;
+  monitor->known_limit = HUGE_VAL;
+  monitor->count = region->sets;
   for (int i = 0; i < region->sets; i++)
-    guard->watch[i].stiff = region->set[i].stiff, guard->watch[i].damp = region->set[i].damp;
-  double **const all[] = {&guard->watch[0].motion, &guard->watch[1].motion, &guard->image,
-                          &guard->divided, &guard->scratch};
-  guard->shape = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-  guard->rest = strut_arena_allocate(&state->arena, (size_t)model->members.slots, sizeof(double));
-  if (!guard->shape || !guard->rest) return false;
+    monitor->set[i].stiff = region->set[i].stiff, monitor->set[i].damp = region->set[i].damp;
+  double **const all[] = {&monitor->set[0].motion, &monitor->set[1].motion, &monitor->image,
+                          &monitor->divided, &monitor->scratch};
+  monitor->shape = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+  monitor->rest = strut_arena_allocate(&state->arena, (size_t)model->members.slots, sizeof(double));
+  if (!monitor->shape || !monitor->rest) return false;
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     if (!(*all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double))))
       return false;
-  guard->every = EVALUATIONS / method->evaluations;
-  guard->last = guard->next = state->step;
-  for (int i = 0; i < guard->count; i++) {
-    guard->watch[i].alarm = 1.0;
-    stir(model, guard, &guard->watch[i], 1.0);
-    for (int k = 0; k < FIRST; k++) iterate(model, state, guard, &guard->watch[i]);
+  monitor->every = EVALUATIONS_PER_SAMPLE / method->evaluations;
+  monitor->last = monitor->next = state->step;
+  for (int i = 0; i < monitor->count; i++) {
+    monitor->set[i].alarm = 1.0;
+    perturb_motion(model, monitor, &monitor->set[i], 1.0);
+    for (int k = 0; k < FIRST_ITERATIONS; k++)
+      iterate_power(model, state, monitor, &monitor->set[i]);
   }
   return true;
 }
@@ -189,16 +194,16 @@ strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *g,
                                            strut_error *error) {
   const char *name = g->method->name;
   if (g->lowest > 0.0)
-    return strut_fail(error, STRUT_DIVERGED,
-                      "the structure has become stiffer: at t = %.9g s the largest stable step of "
-                      "%s, %.4g s at the start, fell below the step %g s, then to %.4g s, and the "
-                      "motion since is not the structure's; use solver.step <= %.2g s, or --force "
-                      "to run on all the same",
-                      g->first_time, name, start_limit, g->step, g->lowest, 0.9 * g->lowest);
-  return strut_fail(error, STRUT_DIVERGED,
-                    "by t = %.9g s most of the energy has come from nowhere: shapes on the way are "
-                    "stiffer than the start, whose largest stable step of %s is %.4g s, and do not "
-                    "bear the step %g s; use solver.step <= %.2g s, or --force to run on all the "
-                    "same",
-                    (double)state->step * g->step, name, start_limit, g->step, 0.75 * g->step);
+    return strut_fail(
+        error, STRUT_DIVERGED,
+        "the structure has become stiffer: at t = %.9g s the largest stable step of %s, %.4g s at "
+        "the start, fell below the step %g s, then to %.4g s, and the motion since then is "
+        "numerical; use solver.step <= %.2g s, or --force to continue anyway",
+        g->first_time, name, start_limit, g->step, g->lowest, 0.9 * g->lowest);
+  return strut_fail(
+      error, STRUT_DIVERGED,
+      "by t = %.9g s most of the energy has appeared without a source: the structure became "
+      "stiffer than at the start, where the largest stable step of %s is %.4g s, and too stiff for "
+      "the step %g s; use solver.step <= %.2g s, or --force to continue anyway",
+      (double)state->step * g->step, name, start_limit, g->step, 0.75 * g->step);
 }

@@ -4,21 +4,81 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/orbit/extrapolation.h"
+#include "engine/base/vec.h"
 
-/* The sum over a disturbance ends when it moves the structure so much less than at its height. */
-static const double REMAINDER = 0.02;
-enum { WINDOW = STRUT_EXTRAPOLATION_WINDOW, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12 };
+/*
+ * The sum over a disturbance ends when its effect on the travel falls below this part of its
+ * largest.
+ */
+static const double DECAYED = 0.02;
+/*
+ * Members of a sequence that are combined; stored; most periods of a disturbance, and those after
+ * which it must have decayed; cycles of extrapolation.
+ */
+enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12, MOST_CYCLES = 8 };
+/*
+ * The limit of a sequence from a few of its members: reduced rank extrapolation (Eddy 1979; Mesina
+ * 1977; Sidi 1991). Finds the combination of successive differences, with weights of sum 1, that is
+ * smallest; the members are then combined with the same weights.
+ */
 
-/* A disturbance and what has come of it after the latest periods; entry k % KEPT is after k. */
-typedef struct trail {
-  double *d[KEPT], *sum[KEPT]; /* (2 length + 1) what is left of it; all until then */
-  double gone[KEPT];           /* the travel that all until then causes [m] */
+/* Larger weights lose more digits than extrapolation gains. */
+static const double MOST_WEIGHT = 100.0;
+
+/* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
+static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
+  for (int32_t i = 0; i < n; i++) x[i] = 1.0;
+  for (int32_t p = 0; p < n; p++) {
+    if (!(a[p][p] > 0.0)) return false;
+    for (int32_t i = p + 1; i < n; i++) {
+      double f = a[i][p] / a[p][p];
+      for (int32_t j = p; j < n; j++) a[i][j] -= f * a[p][j];
+      x[i] -= f * x[p];
+    }
+  }
+  for (int32_t i = n - 1; i >= 0; i--) {
+    for (int32_t j = i + 1; j < n; j++) x[i] -= a[i][j] * x[j];
+    x[i] /= a[i][i];
+  }
+  return true;
+}
+
+/*
+ * Fills weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= WINDOW. False
+ * where the system is singular or the weights would amplify errors.
+ */
+static bool find_extrapolation_weights(const strut_period_map *map, double *const *d, int32_t count,
+                                       double *weight) {
+  int32_t length = map->model->length, nodes = 2 * map->model->node_count;
+  double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
+  double in = map->model->size, speed = in * STRUT_TAU / map->period;
+  for (int32_t i = 0; i < count; i++)
+    for (int32_t j = 0; j <= i; j++) {
+      double product = 0.0;
+      for (int32_t k = 0; k < nodes; k++)
+        product +=
+            d[i][k] * d[j][k] / (in * in) + d[i][length + k] * d[j][length + k] / (speed * speed);
+      a[i][j] = a[j][i] = product;
+    }
+  for (int32_t i = 0; i < count; i++) a[i][i] *= 1.0 + 1e-10;
+  if (!solve_ones(a, count, weight)) return false;
+  for (int32_t i = 0; i < count; i++) sum += weight[i];
+  if (!(fabs(sum) > 0.0)) return false;
+  for (int32_t i = 0; i < count; i++) most = fmax(most, fabs(weight[i] /= sum));
+  return most < MOST_WEIGHT;
+}
+
+/* ---- the correction of an orbit ---- */
+
+/* A disturbance and its development over the latest periods; entry k % KEPT is after period k. */
+typedef struct disturbance {
+  double *d[KEPT], *sum[KEPT]; /* (2 length + 1) the disturbance; its sum so far */
+  double gone[KEPT];           /* travel that the sum so far causes [m] */
   double *limit, *work;
   double travel; /* extrapolated [m]; NAN where there is none */
-} trail;
+} disturbance;
 
-static bool make_trail(size_t both, strut_arena *arena, trail *t) {
+static bool allocate_disturbance(size_t both, strut_arena *arena, disturbance *t) {
   bool ready = (t->limit = strut_arena_allocate(arena, both, sizeof(double)));
   ready = ready && (t->work = strut_arena_allocate(arena, both, sizeof(double)));
   for (int k = 0; k < KEPT && ready; k++)
@@ -28,16 +88,16 @@ static bool make_trail(size_t both, strut_arena *arena, trail *t) {
 }
 
 /*
- * The sums' limit after m periods, by extrapolation, into t->limit and t->travel. Returns the size of
- * what the combination leaves of the disturbance.
+ * Extrapolates the sums after m periods into t->limit and t->travel. Returns the size of the
+ * combined disturbance.
  */
-static double extrapolate(const strut_period_map *map, int m, trail *t) {
+static double extrapolate_disturbance(const strut_period_map *map, int m, disturbance *t) {
   double *d[WINDOW], c[WINDOW];
   int n = m < WINDOW ? m : WINDOW;
   size_t both = 2 * (size_t)map->model->length + 1;
   for (int i = 0; i < n; i++) d[i] = t->d[(m - n + i + 1) % KEPT];
   t->travel = (double)NAN;
-  if (n < 2 || !strut_extrapolation_weights(map, d, n, c)) return HUGE_VAL;
+  if (n < 2 || !find_extrapolation_weights(map, d, n, c)) return HUGE_VAL;
   t->travel = 0.0;
   memset(t->limit, 0, both * sizeof(double));
   memset(t->work, 0, both * sizeof(double));
@@ -53,63 +113,143 @@ static double extrapolate(const strut_period_map *map, int m, trail *t) {
 }
 
 /*
- * What C makes of the disturbance t->d[0] of `base`, summed over the periods, into t->limit; returns
- * the sum of the travel it causes, NAN where it does not die out. It ends where two periods in a row
- * add less than `enough` [m], or where two extrapolations in a row differ by less.
+ * Propagates the disturbance t->d[0] of `base` by C and sums it over the periods into t->limit;
+ * returns the travel it causes, NAN where it does not decay. Ends where two periods in a row, or
+ * the change between two extrapolations in a row, contribute less than `enough` [m].
  */
-static double follow(strut_period_map *cheap, const double *base, double travel, double enough,
-                     trail *t) {
-  int32_t both = 2 * cheap->model->length + 1;
+static double propagate_disturbance(strut_period_map *coarse, const double *base, double travel,
+                                    double enough, disturbance *t) {
+  int32_t both = 2 * coarse->model->length + 1;
   size_t bytes = (size_t)both * sizeof(double);
-  double first = strut_period_map_size(cheap, t->d[0]), last = first, gone = 0.0, farthest = 0.0;
+  double first = strut_period_map_size(coarse, t->d[0]), last = first, gone = 0.0, farthest = 0.0;
   double last_step = 0.0, guess = (double)NAN;
   memcpy(t->sum[0], t->d[0], bytes);
   for (int m = 1; m <= MOST_PERIODS; m++) {
     const double *before = t->d[(m - 1) % KEPT], *sum = t->sum[(m - 1) % KEPT];
     double *d = t->d[m % KEPT], *total = t->sum[m % KEPT];
     for (int32_t i = 0; i < both; i++) t->work[i] = base[i] + before[i];
-    double step = strut_period_map_apply(cheap, t->work) - travel;
-    strut_period_map_subtract(cheap, base, t->work, d);
-    double now = strut_period_map_size(cheap, d);
+    double step = strut_period_map_apply(coarse, t->work) - travel;
+    strut_period_map_subtract(coarse, base, t->work, d);
+    double now = strut_period_map_size(coarse, d);
     t->gone[(m - 1) % KEPT] = gone += step;
     for (int32_t i = 0; i < both; i++) total[i] = sum[i] + d[i];
     if (!isfinite(step) || !(now < 30.0 * first) || (m >= LOST && now > first)) return (double)NAN;
     farthest = fmax(farthest, fabs(step));
-    double little = fmax(REMAINDER * farthest, enough);
+    double little = fmax(DECAYED * farthest, enough);
     if (fmax(fabs(step), fabs(last_step)) <= little && fmax(now, last) <= 0.3 * first) {
       memcpy(t->limit, total, bytes);
       return gone;
     }
-    double left = extrapolate(cheap, m, t);
-    if (left <= 0.1 * first && fabs(t->travel - guess) <= little) return t->travel;
+    double rest = extrapolate_disturbance(coarse, m, t);
+    if (rest <= 0.1 * first && fabs(t->travel - guess) <= little) return t->travel;
     last = now, last_step = step, guess = t->travel;
   }
   return (double)NAN;
 }
 
-strut_status strut_orbit_correct(strut_period_map *cheap, strut_period_map *accurate,
+strut_status strut_orbit_correct(strut_period_map *coarse, strut_period_map *reference,
                                  const double *base, double travel, double enough,
                                  strut_orbit *orbit) {
-  size_t both = 2 * (size_t)cheap->model->length + 1;
+  size_t both = 2 * (size_t)coarse->model->length + 1;
   strut_arena arena = {0};
-  trail t = {.limit = NULL};
+  disturbance t = {.limit = NULL};
   double *end = strut_arena_allocate(&arena, both, sizeof(double));
   orbit->converged = false;
-  if (!end || !make_trail(both, &arena, &t)) {
+  if (!end || !allocate_disturbance(both, &arena, &t)) {
     strut_arena_free(&arena);
     return STRUT_NO_MEMORY;
   }
   memcpy(end, orbit->y, both * sizeof *end);
-  double gone = strut_period_map_apply(accurate, end);
-  strut_period_map_subtract(cheap, orbit->y, end, t.d[0]);
-  orbit->defect = strut_period_map_size(cheap, t.d[0]);
-  double more = isfinite(gone) ? follow(cheap, base, travel, enough, &t) : (double)NAN;
+  double gone = strut_period_map_apply(reference, end);
+  strut_period_map_subtract(coarse, orbit->y, end, t.d[0]);
+  orbit->defect = strut_period_map_size(coarse, t.d[0]);
+  double more =
+      isfinite(gone) ? propagate_disturbance(coarse, base, travel, enough, &t) : (double)NAN;
   if (isfinite(more)) {
-    double period = cheap->period * cheap->repeats;
+    double period = coarse->period * coarse->repeats;
     for (size_t i = 0; i < both; i++) orbit->y[i] += t.limit[i];
     orbit->velocity = (gone + more) / period;
     orbit->correction = more / period;
     orbit->converged = true;
+  }
+  strut_arena_free(&arena);
+  return STRUT_OK;
+}
+
+/* ---- the limit of a sequence of periods without running all of them ---- */
+
+/* A window of periods: y[k + 1] = C(y[k]), d[k] their difference, travel[k] the travel. */
+typedef struct window {
+  double *y[WINDOW + 1], *d[WINDOW], *best;
+  double travel[WINDOW], size[WINDOW];
+} window;
+
+static bool allocate_window(size_t both, strut_arena *arena, window *w) {
+  bool ready = true;
+  for (int k = 0; k <= WINDOW && ready; k++)
+    ready = (w->y[k] = strut_arena_allocate(arena, both, sizeof(double)));
+  for (int k = 0; k < WINDOW && ready; k++)
+    ready = (w->d[k] = strut_arena_allocate(arena, both, sizeof(double)));
+  return ready && (w->best = strut_arena_allocate(arena, both, sizeof(double)));
+}
+
+/* Extrapolates into w->best; takes the end of the latest period where that fails. */
+static void extrapolate_periods(const strut_period_map *map, window *w) {
+  double c[WINDOW];
+  size_t both = 2 * (size_t)map->model->length + 1;
+  memcpy(w->best, w->y[WINDOW], both * sizeof(double));
+  if (!find_extrapolation_weights(map, w->d, WINDOW, c)) return;
+  for (size_t k = 0; k < both; k++) {
+    double x = w->y[WINDOW][k];
+    for (int i = 0; i < WINDOW; i++) x += c[i] * (w->y[i + 1][k] - w->y[WINDOW][k]);
+    w->best[k] = x;
+  }
+}
+
+/* Estimates the remaining travel per application from the decay of the differences. */
+static double estimate_remaining_travel(const window *w) {
+  double effect = 0.0, first = w->size[0], last = w->size[WINDOW - 1];
+  for (int k = 1; k < WINDOW; k++)
+    effect = fmax(effect, fabs(w->travel[k] - w->travel[k - 1]) / fmax(w->size[k - 1], 1e-300));
+  double rate = first > 0.0 ? pow(last / first, 1.0 / (WINDOW - 1)) : 0.0;
+  if (!(rate < 0.98)) rate = 0.98;
+  return effect * last * rate / (1.0 - rate);
+}
+
+strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, double *travel,
+                               bool *found) {
+  size_t both = 2 * (size_t)map->model->length + 1, bytes = both * sizeof(double);
+  strut_arena arena = {0};
+  window w = {.best = NULL};
+  *found = false;
+  if (!allocate_window(both, &arena, &w)) {
+    strut_arena_free(&arena);
+    return STRUT_NO_MEMORY;
+  }
+  double before = HUGE_VAL; /* the last difference before extrapolation */
+  bool jumped = false;
+  for (int cycle = 0; cycle < MOST_CYCLES && !*found; cycle++) {
+    memcpy(w.y[0], y, bytes);
+    for (int k = 0; k < WINDOW; k++) {
+      memcpy(w.y[k + 1], w.y[k], bytes);
+      w.travel[k] = strut_period_map_apply(map, w.y[k + 1]);
+      strut_period_map_subtract(map, w.y[k], w.y[k + 1], w.d[k]);
+      w.size[k] = strut_period_map_size(map, w.d[k]);
+      if (!isfinite(w.travel[k])) cycle = MOST_CYCLES;
+    }
+    if (cycle == MOST_CYCLES) break;
+    if (jumped && w.size[WINDOW - 1] > before)
+      break; /* extrapolation led away: the motion is not steady */
+    if (estimate_remaining_travel(&w) <= enough) {
+      memcpy(y, w.y[WINDOW], bytes);
+      *travel = w.travel[WINDOW - 1];
+      *found = true;
+      break;
+    }
+    before = w.size[WINDOW - 1];
+    extrapolate_periods(map, &w);
+    memcpy(y, w.best, bytes);
+    jumped = true;
   }
   strut_arena_free(&arena);
   return STRUT_OK;

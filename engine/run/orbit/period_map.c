@@ -6,8 +6,8 @@
 
 #include "engine/base/vec.h"
 
-/* Members and nodes times steps between two looks at the interrupt flag. */
-static const int64_t STRETCH = 200000;
+/* Members and nodes times steps between two checks of the interrupt flag. */
+static const int64_t CHUNK_WORK = 200000;
 
 strut_status strut_period_map_create(const strut_model *model, const strut_experiment *experiment,
                                      int32_t repeats, strut_period_map *map, strut_error *error) {
@@ -48,23 +48,26 @@ bool strut_period_map_spent(const strut_period_map *map) {
   return map->most_evaluations > 0 && map->evaluations > map->most_evaluations;
 }
 
-/* Of the application under way. */
-static bool used_up(const strut_period_map *map) {
+/* Is the limit exceeded, the present application included? */
+static bool is_spent_now(const strut_period_map *map) {
   return map->most_evaluations > 0 &&
          map->evaluations + map->state->evaluations > map->most_evaluations;
 }
 
-/* In stretches so long that looking around costs nothing, and so short that nobody waits. */
-static void advance(strut_period_map *map) {
+/*
+ * Advances in chunks long enough for the checks to cost nothing, and short enough to interrupt
+ * promptly.
+ */
+static void advance_application(strut_period_map *map) {
   const strut_model *model = map->model;
   strut_state *state = map->state;
-  int64_t most = STRETCH / (model->members.count + model->node_count + 1) + 1;
+  int64_t most = CHUNK_WORK / (model->members.count + model->node_count + 1) + 1;
   int64_t left = map->steps * map->repeats;
   state->interrupt = map->interrupt;
   if (map->most_evaluations > 0)
     state->most_evaluations =
         map->most_evaluations > map->evaluations ? map->most_evaluations - map->evaluations : 1;
-  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !used_up(map)) {
+  while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !is_spent_now(map)) {
     int64_t count = left < most ? left : most;
     map->method->advance(model, state, map->workspace, map->dt, count);
     left -= count;
@@ -83,7 +86,7 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   state->refined_until = map->time + y[2 * model->length];
   strut_measure_track(model, state, &map->measure, &from, &speed);
   if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
-  advance(map);
+  advance_application(map);
   map->evaluations += state->evaluations;
   map->events += state->events;
   map->applied += map->repeats;

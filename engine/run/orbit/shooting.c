@@ -8,13 +8,13 @@
 
 #include "engine/base/vec.h"
 
-static const double DIFFERENCE = 1e-6; /* of the scaled unknowns */
-static const double EXACT = 1e-13;     /* a residual of that size is rounding */
-static const double GOOD = 1e-8;       /* above this the orbit is not called found */
+static const double DIFFERENCE = 1e-6; /* step of the central differences, in scaled unknowns */
+static const double ROUNDING = 1e-13;  /* residuals below this are rounding */
+static const double CONVERGED = 1e-8;  /* largest residual of an orbit that counts as found */
 enum { MOST_ROUNDS = 8, MOST_HALVINGS = 6 };
 
 /* Unknowns are free coordinates over the size, then their velocities over size times 2 pi f. */
-typedef struct shot {
+typedef struct shooting_problem {
   strut_period_map *map;
   size_t count, both;
   size_t *place;  /* (count) of an unknown in y */
@@ -25,9 +25,9 @@ typedef struct shot {
   double *f, *change;           /* (count) */
   double *here, *there, *trial; /* (both) */
   strut_arena arena;
-} shot;
+} shooting_problem;
 
-static bool allocate(shot *s) {
+static bool allocate_problem(shooting_problem *s) {
   strut_arena *a = &s->arena;
   size_t n = s->count, square = n * n;
   return (s->place = strut_arena_allocate(a, n, sizeof *s->place)) &&
@@ -42,7 +42,7 @@ static bool allocate(shot *s) {
          (s->trial = strut_arena_allocate(a, s->both, sizeof(double)));
 }
 
-static void choose_unknowns(shot *s) {
+static void choose_unknowns(shooting_problem *s) {
   const strut_model *m = s->map->model;
   size_t k = 0, nodes = (size_t)m->node_count, half = s->count / 2;
   for (size_t i = 0; i < 2 * nodes; i++) {
@@ -55,8 +55,11 @@ static void choose_unknowns(shot *s) {
   }
 }
 
-/* What is left over after one application from y: f scaled; the end is in s->there. */
-static double leftover(shot *s, const double *y, double *travel) {
+/*
+ * Evaluates one application from y: scaled residual in f, end in s->there; returns the largest
+ * residual.
+ */
+static double evaluate_residual(shooting_problem *s, const double *y, double *travel) {
   memcpy(s->there, y, s->both * sizeof(double));
   double gone = strut_period_map_apply(s->map, s->there), most = 0.0;
   if (travel) *travel = gone;
@@ -68,8 +71,8 @@ static double leftover(shot *s, const double *y, double *travel) {
   return most;
 }
 
-/* The derivative at y by central differences; false where the motion was lost. */
-static bool differentiate(shot *s, const double *y) {
+/* Differentiates the map at y by central differences; false where the motion was lost. */
+static bool differentiate(shooting_problem *s, const double *y) {
   size_t n = s->count;
   for (size_t j = 0; j < n; j++) {
     for (int side = -1; side <= 1; side += 2) {
@@ -88,7 +91,7 @@ static bool differentiate(shot *s, const double *y) {
 }
 
 /* change = -(J - 1)^-1 f by elimination with pivots; false where it is singular. */
-static bool solve(shot *s) {
+static bool solve_newton_step(shooting_problem *s) {
   size_t n = s->count;
   double *a = s->work, *x = s->change;
   memcpy(a, s->matrix, n * n * sizeof(double));
@@ -117,14 +120,17 @@ static bool solve(shot *s) {
   return true;
 }
 
-/* Along the change, halved until the leftover falls; the new leftover, or the old one. */
-static double search_line(shot *s, double before, double *travel) {
+/*
+ * Line search along the change, halved until the residual falls; returns the new residual, or the
+ * old one.
+ */
+static double search_line(shooting_problem *s, double before, double *travel) {
   double part = 1.0;
   for (int k = 0; k < MOST_HALVINGS && !strut_period_map_interrupted(s->map); k++, part *= 0.5) {
     double gone;
     memcpy(s->trial, s->here, s->both * sizeof(double));
     for (size_t i = 0; i < s->count; i++) s->trial[s->place[i]] += part * s->change[i] * s->unit[i];
-    double left = leftover(s, s->trial, &gone);
+    double left = evaluate_residual(s, s->trial, &gone);
     if (left < before) {
       memcpy(s->here, s->trial, s->both * sizeof(double));
       *travel = gone;
@@ -134,27 +140,30 @@ static double search_line(shot *s, double before, double *travel) {
   return before;
 }
 
-/* Newton's method from s->here until nothing improves; the derivative is that of the last place. */
-static double iterate(shot *s, double *travel, strut_steady_summary *found) {
-  double left = leftover(s, s->here, travel);
+/*
+ * Newton's method from s->here until the residual stops falling; the matrix is the derivative at
+ * the last point.
+ */
+static double iterate_newton(shooting_problem *s, double *travel, strut_steady_summary *found) {
+  double left = evaluate_residual(s, s->here, travel);
   for (int round = 0; round < MOST_ROUNDS; round++) {
     if (!differentiate(s, s->here)) return HUGE_VAL;
-    if (left <= EXACT) break;
-    leftover(s, s->here, NULL);
-    if (!solve(s)) {
+    if (left <= ROUNDING) break;
+    evaluate_residual(s, s->here, NULL);
+    if (!solve_newton_step(s)) {
       snprintf(found->reason, sizeof found->reason,
-               "the period map has another neutral direction, so that no single orbit is there");
+               "the period map has another neutral direction, so that the orbit is not isolated");
       break;
     }
     double before = left;
     left = search_line(s, before, travel);
     found->iterations++;
-    if (left > 0.5 * before || (left <= GOOD * 1e-2 && left > 0.1 * before)) break;
+    if (left > 0.5 * before || (left <= CONVERGED * 1e-2 && left > 0.1 * before)) break;
   }
   return left;
 }
 
-static void take_multipliers(shot *s, strut_steady_summary *found) {
+static void find_multipliers(shooting_problem *s, strut_steady_summary *found) {
   size_t n = s->count;
   gsl_matrix_view view = gsl_matrix_view_array(s->work, n, n);
   gsl_eigen_nonsymm_workspace *w = gsl_eigen_nonsymm_alloc(n);
@@ -164,7 +173,7 @@ static void take_multipliers(shot *s, strut_steady_summary *found) {
   if (w && values && gsl_eigen_nonsymm(&view.matrix, values, w) == 0) {
     size_t kept = 0, room = n - (s->map->travels ? 1 : 0);
     if (room > STRUT_MOST_MULTIPLIERS) room = STRUT_MOST_MULTIPLIERS;
-    for (size_t i = 0; i < n; i++) { /* into their order, largest first */
+    for (size_t i = 0; i < n; i++) { /* insertion by magnitude, largest first */
       double re = GSL_REAL(gsl_vector_complex_get(values, i));
       double im = GSL_IMAG(gsl_vector_complex_get(values, i)), size = hypot(re, im);
       size_t at = kept;
@@ -185,32 +194,33 @@ static void take_multipliers(shot *s, strut_steady_summary *found) {
 
 strut_status strut_shoot(strut_period_map *map, double *y, double *travel,
                          strut_steady_summary *found) {
-  shot s = {.map = map, .both = 2 * (size_t)map->model->length + 1};
+  shooting_problem s = {.map = map, .both = 2 * (size_t)map->model->length + 1};
   found->shot = false, found->iterations = 0, found->multiplier_count = 0;
   found->reason[0] = '\0';
   for (int32_t i = 0; i < 2 * map->model->node_count; i++) s.count += map->model->fixed[i] ? 0 : 2;
   if (s.count == 0 || s.count > STRUT_MOST_SHOT) {
     snprintf(found->reason, sizeof found->reason,
-             "%zu coordinates and velocities, where 1 to %d can be shot", s.count, STRUT_MOST_SHOT);
+             "%zu free coordinates and velocities; shooting supports 1 to %d", s.count,
+             STRUT_MOST_SHOT);
     return STRUT_OK;
   }
-  if (!allocate(&s)) {
+  if (!allocate_problem(&s)) {
     strut_arena_free(&s.arena);
     return STRUT_NO_MEMORY;
   }
   choose_unknowns(&s);
   memcpy(s.here, y, s.both * sizeof(double));
-  double gone = 0.0, left = iterate(&s, &gone, found);
+  double gone = 0.0, left = iterate_newton(&s, &gone, found);
   bool interrupted = strut_period_map_interrupted(map);
-  if (!interrupted && left <= GOOD) {
+  if (!interrupted && left <= CONVERGED) {
     found->shot = true;
     found->residual = left;
     memcpy(y, s.here, s.both * sizeof(double));
     *travel = gone;
-    take_multipliers(&s, found);
+    find_multipliers(&s, found);
   } else if (!interrupted && !found->reason[0]) {
     snprintf(found->reason, sizeof found->reason,
-             "Newton's method came no nearer than %.2g of the size", left);
+             "Newton's method did not converge: residual %.2g of the size", left);
   }
   strut_arena_free(&s.arena);
   return interrupted ? STRUT_INTERRUPTED : STRUT_OK;

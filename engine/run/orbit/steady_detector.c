@@ -6,24 +6,27 @@
 
 #include "engine/base/vec.h"
 
-/* Repetitions looked for, in drive periods; the first that holds is reported. */
+/* Repetitions that are tested, in drive periods; the first that holds is reported. */
 static const int32_t repeats[STRUT_REPEATS] = {1, 2, 3, 4, 6, 8};
-/* Velocities below this part of size times frequency are not told from standing still. */
-static const double STANDING = 1e-3;
-/* A shape that repeats itself so well, relative to its motion, differs by rounding. */
+/* Velocities below this part of size times frequency count as standstill. */
+static const double STANDSTILL = 1e-3;
+/* Relative residuals below this are rounding. */
 static const double ROUNDING = 1e-11;
 
-/* Nothing but one period alike is believed before: oscillating transients look so. */
-enum { SLOW = 24 };
-/* Batches of an irregular motion's mean; the least periods that may be called irregular. */
+/*
+ * Repetitions of more than one period are accepted only after these, since oscillating transients
+ * resemble them.
+ */
+enum { LEAST_PERIODS = 24 };
+/* Batches of an irregular motion's mean; fewest periods of an irregular motion. */
 enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
-/* As many factors alike are growth. */
-enum { GROWTH = 3 };
+/* Equal growth factors in a row that prove growth. */
+enum { GROWTH_FACTORS = 3 };
 
-/* When the last signal has begun, ended or run through: before that nothing can be called steady. */
-static double last_change(const strut_scene *scene) {
+/* Time of the last start or end of a signal: no motion is steady before. */
+static double last_signal_event(const strut_scene *scene) {
   double last = 0.0;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
@@ -35,7 +38,7 @@ static double last_change(const strut_scene *scene) {
   return last;
 }
 
-/* Do all signals that go on for ever repeat themselves after n drive periods? */
+/* Do all unlimited signals repeat themselves after n drive periods? */
 static bool drives_repeat(const strut_steady_detector *w, int32_t n) {
   const strut_scene *scene = w->model->scene;
   for (size_t i = 0; i < scene->signal_count; i++) {
@@ -58,10 +61,10 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
       .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance : wanted->tolerance,
       .successive = wanted->successive,
       .stride = 1};
-  w->not_before = (last_change(model->scene) - begin) / period;
+  w->not_before = (last_signal_event(model->scene) - begin) / period;
   if (w->successive < 2) w->successive = 2;
   if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
-  if (!(w->floor > 0.0)) w->floor = STANDING * model->size / period * w->tolerance;
+  if (!(w->floor > 0.0)) w->floor = STANDSTILL * model->size / period * w->tolerance;
   w->travels = model->contacts.count > 0;
   for (int32_t i = 0; i < 2 * model->node_count; i++) w->travels = w->travels && !model->fixed[i];
   bool ready = (w->middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
@@ -74,14 +77,14 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
   return STRUT_NO_MEMORY;
 }
 
-static void take(const strut_state *state, const strut_steady_detector *w, double *out) {
+static void copy_state(const strut_state *state, const strut_steady_detector *w, double *out) {
   size_t length = (size_t)w->model->length;
   memcpy(out, state->q, length * sizeof *out);
   memcpy(out + length, state->v, length * sizeof *out);
 }
 
-/* Mean shift along the ground between two states; 0 where there is no such freedom. */
-static double travel(const strut_steady_detector *w, const double *from, const double *to) {
+/* Mean shift along the ground between two states; 0 where the structure cannot travel. */
+static double mean_travel(const strut_steady_detector *w, const double *from, const double *to) {
   const double *t = w->model->contacts.tangent;
   double sum = 0.0;
   int32_t n = w->model->node_count;
@@ -91,9 +94,9 @@ static double travel(const strut_steady_detector *w, const double *from, const d
 }
 
 /* Largest difference of two shapes: positions over the size, velocities over size times 2 pi f. */
-static double distance(const strut_steady_detector *w, const double *a, const double *b) {
+static double shape_distance(const strut_steady_detector *w, const double *a, const double *b) {
   const double *t = w->model->contacts.tangent;
-  double along = travel(w, a, b), shift[2] = {along * t[0], along * t[1]};
+  double along = mean_travel(w, a, b), shift[2] = {along * t[0], along * t[1]};
   double size = w->model->size, speed = size * STRUT_TAU / w->period, most = 0.0;
   int32_t length = w->model->length;
   for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
@@ -104,15 +107,15 @@ static double distance(const strut_steady_detector *w, const double *a, const do
 }
 
 void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *w) {
-  take(state, w, w->middle);
+  copy_state(state, w, w->middle);
 }
 
 /*
- * What is left of a decay: the sum of the geometric series that goes on from the latest change. It is
- * compared with that of whole repetitions before: within one, changes differ from period to period.
+ * The rest of a decay: the geometric series that continues the latest change. The rate follows from
+ * whole repetitions, since changes differ between the periods of one.
  */
-static double remaining(const double *residual, int64_t now, int32_t n, int32_t over,
-                        double amplitude) {
+static double remaining_decay(const double *residual, int64_t now, int32_t n, int32_t over,
+                              double amplitude) {
   int32_t rounds = (over + n - 1) / n;
   double last = residual[now % STRUT_RING], first = residual[(now - n * rounds) % STRUT_RING];
   if (last <= ROUNDING * amplitude) return 0.0;
@@ -121,9 +124,12 @@ static double remaining(const double *residual, int64_t now, int32_t n, int32_t 
   return rate < 0.9999 ? rate / (1.0 - rate) : HUGE_VAL;
 }
 
-/* From b to a along coordinate i, without the travel `along`, in sizes and sizes times 2 pi f. */
-static double step_of(const strut_steady_detector *w, const double *a, const double *b,
-                      double along, int32_t i, double *speed) {
+/*
+ * Change from b to a of coordinate i without the mean travel `along`, in sizes, and of its velocity
+ * in sizes times 2 pi f.
+ */
+static double scaled_change(const strut_steady_detector *w, const double *a, const double *b,
+                            double along, int32_t i, double *speed) {
   int32_t length = w->model->length;
   double shift = w->travels ? along * w->model->contacts.tangent[i % 2] : 0.0;
   *speed = (a[length + i] - b[length + i]) * w->period / (w->model->size * STRUT_TAU);
@@ -131,18 +137,19 @@ static double step_of(const strut_steady_detector *w, const double *a, const dou
 }
 
 /*
- * How far the present state is from where its repetitions go, if each is the same combination of the
- * two before: so is a decay, and so is a slow beat, whose changes may fall for a while and come back.
+ * Distance of the present state from the limit of its repetitions, if each is the same combination
+ * of the two before: true of a decay, and of a slow beat, whose changes may fall for a while and
+ * grow again.
  */
-static double way_to_go(const strut_steady_detector *w, int64_t now, int32_t n) {
+static double distance_to_limit(const strut_steady_detector *w, int64_t now, int32_t n) {
   const double *at[4];
   double along[3], sum[2][3] = {{0.0}};
   int32_t coordinates = 2 * w->model->node_count;
   for (int k = 0; k < 4; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
-  for (int k = 0; k < 3; k++) along[k] = travel(w, at[k + 1], at[k]);
+  for (int k = 0; k < 3; k++) along[k] = mean_travel(w, at[k + 1], at[k]);
   for (int32_t i = 0; i < coordinates; i++) {
     double d[3], v[3];
-    for (int k = 0; k < 3; k++) d[k] = step_of(w, at[k], at[k + 1], along[k], i, &v[k]);
+    for (int k = 0; k < 3; k++) d[k] = scaled_change(w, at[k], at[k + 1], along[k], i, &v[k]);
     for (int r = 0; r < 2; r++)
       for (int c = 0; c < 3; c++) sum[r][c] += d[r + 1] * d[c] + v[r + 1] * v[c];
   }
@@ -154,31 +161,32 @@ static double way_to_go(const strut_steady_detector *w, int64_t now, int32_t n) 
   }
   double most = 0.0;
   for (int32_t i = 0; i < coordinates; i++) {
-    double v0, v1, d0 = step_of(w, at[0], at[1], along[0], i, &v0);
-    double d1 = step_of(w, at[1], at[2], along[1], i, &v1);
+    double v0, v1, d0 = scaled_change(w, at[0], at[1], along[0], i, &v0);
+    double d1 = scaled_change(w, at[1], at[2], along[1], i, &v1);
     most = fmax(most, fmax(fabs((p + q) * d0 + q * d1), fabs((p + q) * v0 + q * v1)));
   }
   return most / fabs(1.0 - p - q);
 }
 
 /*
- * Does something small grow under the motion that looks steady, in one coordinate or more? Its changes
- * then are each time larger by the same factor; what merely varies keeps no factor.
+ * Does a coordinate of the seemingly steady motion grow? Its changes then increase by a constant
+ * factor each time; mere variation has none.
  */
 static bool something_grows(const strut_steady_detector *w, int64_t now, int32_t n) {
-  const double *at[GROWTH + 2];
-  double along[GROWTH + 1];
-  if (now < (GROWTH + 1) * n || (GROWTH + 1) * n >= STRUT_RING) return false;
-  for (int k = 0; k < GROWTH + 2; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
-  for (int k = 0; k < GROWTH + 1; k++) along[k] = travel(w, at[k + 1], at[k]);
+  const double *at[GROWTH_FACTORS + 2];
+  double along[GROWTH_FACTORS + 1];
+  if (now < (GROWTH_FACTORS + 1) * n || (GROWTH_FACTORS + 1) * n >= STRUT_RING) return false;
+  for (int k = 0; k < GROWTH_FACTORS + 2; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < GROWTH_FACTORS + 1; k++) along[k] = mean_travel(w, at[k + 1], at[k]);
   for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
-    double d[GROWTH + 1], v, least = HUGE_VAL, most = 0.0;
-    for (int k = 0; k < GROWTH + 1; k++) d[k] = fabs(step_of(w, at[k], at[k + 1], along[k], i, &v));
-    for (int k = 0; k < GROWTH; k++) {
+    double d[GROWTH_FACTORS + 1], v, least = HUGE_VAL, most = 0.0;
+    for (int k = 0; k < GROWTH_FACTORS + 1; k++)
+      d[k] = fabs(scaled_change(w, at[k], at[k + 1], along[k], i, &v));
+    for (int k = 0; k < GROWTH_FACTORS; k++) {
       double factor = d[k + 1] > 0.0 ? d[k] / d[k + 1] : 0.0;
       least = fmin(least, factor), most = fmax(most, factor);
     }
-    bool above_rounding = d[GROWTH] > ROUNDING * w->amplitude;
+    bool above_rounding = d[GROWTH_FACTORS] > ROUNDING * w->amplitude;
     if (above_rounding && least > 1.0 && most - 1.0 < 1.25 * (least - 1.0)) return true;
   }
   return false;
@@ -189,12 +197,14 @@ static double mean_velocity(const strut_steady_detector *w, int64_t now, int32_t
   return dx / (periods * w->period);
 }
 
-/* Neighbouring periods still grow alike: a transient may look as if it came back after n of them. */
+/*
+ * Do neighbouring periods still approach each other? A transient may seem to repeat itself after n
+ * of them.
+ */
 static bool still_decays(const strut_steady_detector *w, int64_t now, int32_t n) {
   int32_t over = 2 * n > w->successive ? 2 * n : w->successive;
   if (now <= over + n) return true;
-  double last = 0.0,
-         first = 0.0; /* means over n periods, so that the order within them is no matter */
+  double last = 0.0, first = 0.0; /* means over n periods, whose order then does not matter */
   for (int32_t j = 0; j < n; j++) {
     last += w->residual[0][(now - j) % STRUT_RING];
     first += w->residual[0][(now - over - j) % STRUT_RING];
@@ -207,25 +217,25 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
   int32_t n = repeats[k], over = w->successive;
   if (now < 2 * n + over || (double)now < w->not_before + n + over) return false;
   if (!drives_repeat(w, n)) return false;
-  if (n > 1 && (now < SLOW + 4 * n || still_decays(w, now, n))) return false;
+  if (n > 1 && (now < LEAST_PERIODS + 4 * n || still_decays(w, now, n))) return false;
   int32_t rounds = n * ((over + n - 1) / n);
   double velocity = mean_velocity(w, now, rounds), change = 0.0;
   for (int64_t j = now - over + 1; j <= now; j++)
     change = fmax(change, w->change[k][j % STRUT_RING]);
-  double rest = remaining(w->residual[k], now, n, over, w->amplitude);
+  double rest = remaining_decay(w->residual[k], now, n, over, w->amplitude);
   double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
   double residual = w->residual[k][now % STRUT_RING];
   double still = w->floor * w->period / w->model->size;
   if (!(change <= allowed && change * rest <= allowed)) return false;
-  /* of n > 1, where the transient itself may seem to repeat, more is asked */
+  /* n > 1 must meet a stricter limit, since a transient may seem to repeat */
   double alike = (n > 1 ? 1.0 : 4.0) * fmax(w->tolerance * w->amplitude, still);
   if (!(residual * fmax(rest, 1.0) <= alike)) return false;
   if (residual > ROUNDING * w->amplitude) {
     if (something_grows(w, now, n)) return false;
-    rest = fmax(rest, way_to_go(w, now, n) / residual);
+    rest = fmax(rest, distance_to_limit(w, now, n) / residual);
     if (!(change * rest <= allowed && residual * rest <= alike)) return false;
   }
-  /* irregular motion comes back by chance, but not again and again */
+  /* an irregular motion may return by chance, but not repeatedly */
   int32_t often = n > 1 && 2 * n > over ? 2 * n : over;
   for (int64_t j = now - often + 1; j <= now; j++)
     if (w->residual[k][j % STRUT_RING] > (n > 1 ? alike : 4.0 * alike)) return false;
@@ -237,8 +247,10 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
   return true;
 }
 
-/* Of the whole run, in stretches of equal length that double when there is no more room. */
-static void mark(strut_steady_detector *w, int64_t now, double x) {
+/*
+ * Stores the position at equal intervals over the whole run, which double when the marks are full.
+ */
+static void add_mark(strut_steady_detector *w, int64_t now, double x) {
   w->wander += now > 0 ? w->residual[0][now % STRUT_RING] : 0.0;
   if (now % w->stride != 0) return;
   if (w->marks == STRUT_MARKS) {
@@ -252,7 +264,10 @@ static void mark(strut_steady_detector *w, int64_t now, double x) {
   w->wandered[w->marks++] = w->wander;
 }
 
-/* Mean velocity over the latest 8 batches of `each` stretches, and its interval by Student's t. */
+/*
+ * Mean velocity over the latest 8 batches of `each` intervals, its confidence interval by Student's
+ * t, and the t value of its trend.
+ */
 static double batch_mean(const strut_steady_detector *w, int32_t each, double *interval,
                          double *trend) {
   double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
@@ -273,8 +288,8 @@ static double batch_mean(const strut_steady_detector *w, int32_t each, double *i
 }
 
 /*
- * Do periods differ from their neighbours as much in the latest 8 batches of `each` stretches as in the
- * 8 before: to a fiftieth, or as nearly as the batches' own scatter lets one say?
+ * Is the mean difference of neighbouring periods the same in the latest 8 batches of `each`
+ * intervals as in the 8 before, to 2 % or within the scatter of the batches?
  */
 static bool wanders_evenly(const strut_steady_detector *w, int32_t each) {
   double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
@@ -291,8 +306,8 @@ static bool wanders_evenly(const strut_steady_detector *w, int32_t each) {
 }
 
 /*
- * A motion that never agreed, but whose mean is known: over the last half and the last quarter of
- * the run alike, without trend, while periods differ from their neighbours as much as before.
+ * Recognises an irregular motion whose mean is known: equal over the last half and the last quarter
+ * of the run, without trend, and with an even difference between neighbouring periods.
  */
 static void judge_irregular(strut_steady_detector *w) {
   int32_t stretches = w->marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
@@ -313,16 +328,16 @@ static void judge_irregular(strut_steady_detector *w) {
 bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *w) {
   int64_t now = w->seen++;
   double *latest = w->state[now % STRUT_RING];
-  take(state, w, latest);
+  copy_state(state, w, latest);
   w->place[now % STRUT_RING] = x;
-  if (now > 0) w->amplitude = distance(w, w->middle, latest);
+  if (now > 0) w->amplitude = shape_distance(w, w->middle, latest);
   for (int k = 0; k < STRUT_REPEATS && now >= repeats[k]; k++) {
     int32_t n = repeats[k];
-    w->residual[k][now % STRUT_RING] = distance(w, w->state[(now - n) % STRUT_RING], latest);
+    w->residual[k][now % STRUT_RING] = shape_distance(w, w->state[(now - n) % STRUT_RING], latest);
     if (now < 2 * n) continue;
     w->change[k][now % STRUT_RING] = fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
   }
-  if (!w->known) mark(w, now, x);
+  if (!w->known) add_mark(w, now, x);
   for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);
   int32_t n = w->known ? w->result.repeats : 1;
   int32_t rounds = n * ((w->successive + n - 1) / n);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Watching whether a driven motion has become steady: the period map of its shape.
+ * Detects steady motion of a driven structure by the period map of its shape.
  *
- * At the end of every drive period the state is compared with that of one, two, ... periods before.
- * Where the structure stands on the ground and nothing holds it along it, the travel along the
- * ground is taken out, since a gait repeats its shape and not its place. A motion counts as
- * period-n when several repetitions in a row agree, and what is left of the transient, extrapolated
- * by its own rate of decay, is within the tolerance too: a slow transient is not steady. Nor is
- * anything before the last signal has begun or ended, or where the signals do not repeat themselves.
+ * At the end of every drive period the state is compared with those of 1, 2, ... periods before.
+ * Where the structure stands on the ground and can travel, its travel is removed, since a gait
+ * repeats its shape and not its place. A motion counts as period-n when several repetitions in a
+ * row agree, and the rest of the transient, extrapolated with its own rate of decay, is within the
+ * tolerance too: a slow transient is not steady. Nothing is steady before the last signal has
+ * started or ended, or where the signals do not repeat themselves.
  */
 #ifndef STRUT_ENGINE_RUN_ORBIT_STEADY_DETECTOR_H
 #define STRUT_ENGINE_RUN_ORBIT_STEADY_DETECTOR_H
@@ -24,15 +24,15 @@ typedef struct strut_steady_detector {
   double period;           /* [s] */
   double tolerance, floor; /* [1], [m/s] */
   double mean_tolerance;   /* of an irregular motion's mean [1] */
-  int64_t least_irregular; /* periods before a motion may be called so */
+  int64_t least_irregular; /* fewest periods of an irregular motion */
   int32_t successive;
-  bool travels;              /* the travel along the ground is taken out */
+  bool travels;              /* its travel along the ground is removed */
   int64_t seen;              /* period ends so far, the start being the first */
   double *state[STRUT_RING]; /* (2 length) positions, then velocities; of the latest period ends */
   double *middle;            /* (2 length) within the latest period */
   double place[STRUT_RING];  /* x of the measured point [m] */
-  double amplitude;          /* how far the shape moves within a period [1] */
-  double residual[STRUT_REPEATS][STRUT_RING]; /* of each repetition looked for, per period [1] */
+  double amplitude;          /* range of the shape within a period [1] */
+  double residual[STRUT_REPEATS][STRUT_RING]; /* of each tested repetition, per period [1] */
   double change[STRUT_REPEATS][STRUT_RING];   /* of the velocity [m/s] */
   double not_before;                          /* periods until the last signal has begun or ended */
   double mark[STRUT_MARKS];     /* x of the measured point every `stride` periods [m] */
@@ -46,16 +46,26 @@ typedef struct strut_steady_detector {
   strut_arena arena;
 } strut_steady_detector;
 
-/** For a run from `begin` [s] by periods of `period` [s]. STRUT_OK or STRUT_NO_MEMORY. */
+/**
+ * Creates a detector for a run from `begin` [s] with periods of `period` [s]. STRUT_OK or
+ * STRUT_NO_MEMORY.
+ */
 strut_status strut_steady_detector_create(const strut_model *model, const strut_steady *wanted,
                                           double period, double begin,
-                                          strut_steady_detector *watch);
-/** Within a period, once: how far the shape moves. */
-void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *watch);
-/** At the end of a period, the start included. x: of the measured point. True once it is steady. */
-bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *watch);
-/** Velocity, spread and what was found; whether a motion that did not repeat itself is irregular. */
-void strut_steady_detector_finish(strut_steady_detector *watch, strut_summary *summary);
-void strut_steady_detector_free(strut_steady_detector *watch);
+                                          strut_steady_detector *detector);
+/** Samples the shape once within each period, for its range. */
+void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *detector);
+/**
+ * Samples the end of a period, the start included. x: of the measured point. True once the motion
+ * is steady.
+ */
+bool strut_steady_detector_period(const strut_state *state, double x,
+                                  strut_steady_detector *detector);
+/**
+ * Fills velocity, spread and kind of motion; tests whether a motion that never repeated itself is
+ * irregular.
+ */
+void strut_steady_detector_finish(strut_steady_detector *detector, strut_summary *summary);
+void strut_steady_detector_free(strut_steady_detector *detector);
 
 #endif

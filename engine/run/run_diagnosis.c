@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Errors that end a run, and warnings about its result, each with cause and remedy. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/simulate_parts.h"
+
+/* A run beyond this multiple of the scene's size counts as diverged. */
+static const double RUNAWAY = 1e10;
+int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *state) {
+  double bound = RUNAWAY * (model->size > 0 ? model->size : 1.0);
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double x = state->q[2 * i], y = state->q[2 * i + 1];
+    double vx = state->v[2 * i], vy = state->v[2 * i + 1];
+    if (!(fabs(x) <= bound && fabs(y) <= bound) || isnan(vx + vy)) return i;
+  }
+  return -1;
+}
+
+strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
+  double limit = strut_step_limit_monitor_last_limit(r->model, &r->step_monitor),
+         least = r->summary->step_limit;
+  double seen = (double)r->step_monitor.last * r->dt;
+  const char *remedy = r->dt > 0.5 * fmin(limit, least)
+                           ? "use a smaller step"
+                           : "look for a member or contact that is far too stiff, or a load that "
+                             "grows without bound; a smaller step may also help";
+  if (r->step_monitor.lowest > 0.0 && !r->options->force)
+    return strut_step_limit_monitor_fail(&r->step_monitor, r->state, least, r->error);
+  if (limit < 0.99 * least)
+    return strut_fail(r->error, STRUT_DIVERGED,
+                      "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
+                      "at the start: %.4g s, at t = %.9g s: %.4g s); %s",
+                      r->summary->node_names[node], strut_run_time(r), r->dt, least, seen, limit,
+                      remedy);
+  return strut_fail(r->error, STRUT_DIVERGED,
+                    "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
+                    "at the start: %.4g s); %s",
+                    r->summary->node_names[node], strut_run_time(r), r->dt, least, remedy);
+}
+
+strut_status strut_run_fail_method(const strut_run *r) {
+  static const char *const why[] = {
+      [STRUT_FAILURE_STEP] =
+          "the step needed for the tolerance became too small to advance the time; use a larger "
+          "solver.tolerance, or look for a member of zero length",
+      [STRUT_FAILURE_NEWTON] =
+          "the iteration of the implicit step did not converge; use a smaller step",
+      [STRUT_FAILURE_RIGID] =
+          "the lengths of rigid bars cannot be kept; use a smaller step, or look for bars that "
+          "constrain each other",
+      [STRUT_FAILURE_INTERRUPT] = "it was interrupted"};
+  if (r->state->trouble == STRUT_FAILURE_IMPLICIT)
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g s; use a "
+        "smaller step, or look there for a member whose length passes through zero",
+        r->method->name, strut_run_time(r), r->summary->node_names[r->state->trouble_node], r->dt);
+  return strut_fail(r->error, STRUT_DIVERGED, "%s failed at t = %.9g s: %s", r->method->name,
+                    strut_run_time(r), why[r->state->trouble]);
+}
+
+/*
+ * Has most of the exchanged energy appeared without a source? This happens where motions grow by
+ * numerical instability, also those that slack cables and open contacts bound.
+ */
+static bool has_spurious_energy(const strut_run *r) {
+  strut_energy e;
+  if (!r->state->ledger) return false;
+  if (!(r->dt > 0.5 * r->summary->step_limit))
+    return false; /* far below the limit, the step is not the cause */
+  strut_balance_fill(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
+                     &e);
+  double there = e.kinetic + e.elastic + fabs(e.gravity) + e.contact;
+  return e.residual > 0.5 * (e.moved + fabs(e.initial) + there);
+}
+
+strut_status strut_run_check_step_limit(strut_run *r) {
+  if (r->state->step < r->step_monitor.next) return STRUT_OK;
+  strut_stick_band_sample(r->model, r->state, &r->band);
+  bool unstable = !r->options->force && has_spurious_energy(r);
+  if (unstable && !(r->step_monitor.lowest > 0.0))
+    strut_step_limit_monitor_check(r->model, r->state, &r->step_monitor);
+  if (!unstable) strut_step_limit_monitor_sample(r->model, r->state, &r->step_monitor);
+  if (r->options->force) return STRUT_OK;
+  if (!r->step_monitor.motion_lost && !unstable) return STRUT_OK;
+  return strut_step_limit_monitor_fail(&r->step_monitor, r->state, r->summary->step_limit,
+                                       r->error);
+}
+
+/* ---- warnings ---- */
+
+/* Warns of contacts whose stick band is too narrow for the step. */
+static void warn_of_narrow_bands(const strut_run *r) {
+  strut_summary *s = r->summary;
+  const char *first = NULL;
+  size_t count = 0;
+  double needed = 0.0, times = 0.0;
+  for (size_t i = 0; i < s->contact_count; i++) {
+    if (!(s->contacts[i].band_needed > 0.0)) continue;
+    if (!count++) first = s->contacts[i].node;
+    needed = fmax(needed, s->contacts[i].band_needed);
+    double band = r->model->contacts.entry[i].friction.stick_velocity;
+    times = fmax(times, s->contacts[i].band_needed / band);
+  }
+  char more[40] = "";
+  if (count > 1) snprintf(more, sizeof more, " and %zu more", count - 1);
+  if (count)
+    strut_summary_warn(s, "stick_band",
+                       "node '%s'%s stuck only by chance, if at all: a step changes the slip "
+                       "velocity by %.2g m/s, %.3g times the band; use stick_velocity >= %.2g m/s, "
+                       "a smaller step, or a method with events",
+                       first, more, needed, times, needed);
+}
+
+/* Warns of feet that creep at different speeds and so strain a member. */
+static void warn_of_creep(const strut_run *r) {
+  const strut_band_tie *tie = strut_stick_band_strained(&r->band);
+  if (!tie) return;
+  const strut_scene *scene = r->model->scene;
+  const strut_contact_entry *e = r->model->contacts.entry;
+  strut_summary_warn(r->summary, "stick_creep",
+                     "nodes '%s' and '%s' stick, but creep within their stick bands at different "
+                     "speeds: this strained member '%s' by up to %.2g of the static friction of "
+                     "one of them, which may slip too early; use a method with events, such as "
+                     "rk4-events, or a narrower band with a smaller step",
+                     scene->nodes[e[tie->contact[0]].node].name,
+                     scene->nodes[e[tie->contact[1]].node].name, scene->members[tie->member].name,
+                     tie->worst);
+}
+
+static void warn_of_limit(const strut_run *r) {
+  const strut_step_limit_violation *violation = &r->summary->limit_fell;
+  if (r->summary->status != STRUT_OK || !(violation->limit > 0.0)) return;
+  strut_summary_warn(r->summary, "step_limit",
+                     "the largest stable step fell to %.4g s at t = %.9g s, below the step %g s; "
+                     "use solver.step <= %.2g s",
+                     violation->limit, violation->time, r->summary->step, 0.9 * violation->limit);
+}
+
+/* A drive that changes by more than this part of its member within a step jumps. */
+static const double JUMP = 1e-3;
+
+typedef struct jump {
+  const char *member;
+  double change, time; /* [m], [s] */
+} jump;
+
+/* Finds the largest jump of a drive between two times, relative to its member. */
+static jump find_jump(const strut_run *r, double from, double to) {
+  const strut_scene *scene = r->model->scene;
+  jump found = {.member = NULL};
+  double worst = JUMP;
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    const strut_actuator *a = &scene->actuators[i];
+    double when = 0.0, length = r->model->members.rest[a->member];
+    double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
+    if (!(change > worst * length)) continue;
+    worst = change / length;
+    found = (jump){scene->members[a->member].name, change, when};
+  }
+  return found;
+}
+
+static bool has_touchdowns(const strut_run *r) {
+  for (size_t i = 0; i < r->summary->contact_count; i++)
+    if (r->summary->contacts[i].max_height > 0.0) return true;
+  return false;
+}
+
+/* Events that fixed steps pass over, or NULL. */
+static const char *describe_missed_events(const strut_run *r) {
+  if (r->method->events || r->method->region == STRUT_REGION_ALL) return NULL;
+  bool friction = r->model->plan & STRUT_TERM_FRICTION, cables = r->model->plan & STRUT_TERM_SLACK;
+  bool bounces = has_touchdowns(r);
+  if (bounces && friction) return "touchdowns and changes between sticking and slipping";
+  if (bounces) return "touchdowns";
+  if (friction) return "changes between sticking and slipping";
+  return cables ? "cables that become taut" : NULL;
+}
+
+/* Explains an open balance: likely cause and remedy. */
+static void explain_balance(const strut_run *r, char *text, size_t size) {
+  const strut_balance_monitor *b = &r->balance;
+  bool sudden = fabs(b->worst) > 0.5 * fabs(r->summary->energy.residual);
+  double offset = r->grid.offset, from = b->from + offset, to = b->to + offset;
+  double begin = (double)r->first * r->dt + offset, now = strut_run_time(r);
+  jump j = sudden ? find_jump(r, from - r->dt, to) : find_jump(r, begin + 1e-3 * r->dt, now);
+  const char *over = describe_missed_events(r);
+  if (r->options->chosen) {
+    snprintf(text, size,
+             "; the wanted accuracy applies to the measured quantities only: also measure "
+             "energy.total, or request a higher accuracy");
+    return;
+  }
+  int used = sudden ? snprintf(text, size, ", most of it by t = %.6g s", to) : 0;
+  text += used, size -= (size_t)used;
+  if (j.member)
+    snprintf(
+        text, size,
+        "; likely because the drive of member '%s' changes its length by %.3g m within one step at "
+        "t = %.6g s; spread the change over many steps, use a smaller step, or --accuracy 1%%",
+        j.member, j.change, j.time);
+  else if (over)
+    snprintf(text, size,
+             "; likely because fixed steps pass over %s; use rk4-events, a smaller step, or "
+             "--accuracy 1%%",
+             over);
+  else
+    snprintf(text, size,
+             "; likely because the step of %g s is too large for the fastest motion; use a smaller "
+             "step, or --accuracy 1%%",
+             r->dt);
+}
+
+static void warn_of_balance(const strut_run *r) {
+  strut_summary *s = r->summary;
+  char why[400] = "";
+  if (s->balance != STRUT_BALANCE_OPEN || s->status != STRUT_OK) return;
+  explain_balance(r, why, sizeof why);
+  strut_summary_warn(
+      s, "energy_balance",
+      "the energy balance does not close: %.3g J, %.2g %% of the exchanged energy, %s%s",
+      fabs(s->energy.residual), 100.0 * fabs(s->energy.residual) / s->energy.moved,
+      s->energy.residual > 0.0 ? "appeared without a source" : "disappeared without a sink", why);
+}
+
+/* The residual of the energy balance over the net work done on the structure, in words. */
+static void describe_residual(const strut_energy *e, char *text, size_t size) {
+  double work = fabs(e->drive_work + e->load_work + e->belt_work);
+  double part = fabs(e->residual) / work;
+  if (!(work > 0.0) || !isfinite(part)) return;
+  const char *verdict = part < 1e-3 ? "small" : part < 1e-2 ? "moderate" : "large";
+  snprintf(text, size, "; the energy residual is %s: %.2g %% of the net work done", verdict,
+           100.0 * part);
+}
+
+/* States that the error is unknown where fixed steps pass over events. */
+static void add_caveat(const strut_run *r) {
+  strut_summary *s = r->summary;
+  const char *events = describe_missed_events(r);
+  char residual[160] = "";
+  s->caveat[0] = '\0';
+  if (!events || r->options->chosen || s->status != STRUT_OK) return;
+  if (s->balance != STRUT_BALANCE_NOT_KEPT)
+    describe_residual(&s->energy, residual, sizeof residual);
+  snprintf(
+      s->caveat, sizeof s->caveat,
+      "not known: fixed steps of %s pass over %s%s; --accuracy 1%% chooses the method and step "
+      "and states the error",
+      s->method, events, residual);
+}
+
+void strut_run_warn(const strut_run *r) {
+  add_caveat(r);
+  strut_summary_warn_of_start(r->summary);
+  warn_of_balance(r);
+  warn_of_narrow_bands(r);
+  warn_of_creep(r);
+  warn_of_limit(r);
+}
