@@ -225,7 +225,7 @@ static strut_status detect_steady_motion(strut_run *r) {
   if (past != 0) return STRUT_OK;
   double x, v;
   bool before = r->steady.known;
-  strut_measure_track(r->model, r->state, &r->measure, &x, &v);
+  strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
   strut_status status = r->experiment->steady.shooting ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/simulate_batch.h"
 
+#include <assert.h>
+
 #include "engine/base/subnormals.h"
 #include "engine/integrate/lanes/batch.h"
 #include "engine/run/simulate_parts.h"

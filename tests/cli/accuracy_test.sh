@@ -212,7 +212,7 @@ out_has "known within"
 
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4
-err_has "not both"
+err_has "give either"
 expect 1 run "$crawler" --accuracy 0
 err_has "greater than 0"
 expect 1 run "$crawler" --accuracy 150%

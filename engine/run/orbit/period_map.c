@@ -84,13 +84,13 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   memcpy(state->q, y, bytes);
   memcpy(state->v, y + model->length, bytes);
   state->refined_until = map->time + y[2 * model->length];
-  strut_measure_track(model, state, &map->measure, &from, &speed);
+  strut_measure_tracked_point(model, state, &map->measure, &from, &speed);
   if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
   advance_application(map);
   map->evaluations += state->evaluations;
   map->events += state->events;
   map->applied += map->repeats;
-  strut_measure_track(model, state, &map->measure, &to, &speed);
+  strut_measure_tracked_point(model, state, &map->measure, &to, &speed);
   memcpy(y, state->q, bytes);
   memcpy(y + model->length, state->v, bytes);
   y[2 * model->length] = fmax(0.0, state->refined_until - (double)state->step * map->dt);
