@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/recording.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -219,6 +220,7 @@ static strut_status flush_rows(strut_recording *r, strut_error *error) {
 
 strut_status strut_recording_sample(const strut_model *model, strut_state *state,
                                     strut_recording *r, strut_error *error) {
+  assert(r->sink_count && r->row_count < r->capacity && state->step > r->last);
   double t = strut_time_grid_at(&r->grid, state->step);
   double *row = r->rows + r->row_count++ * r->layout.width;
   strut_forces_observe(model, state, t);

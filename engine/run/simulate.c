@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/simulate.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -316,6 +317,7 @@ static void step_short(strut_run *r) {
  * Denormal numbers of a decayed motion would slow the processor down, so they are flushed to zero.
  */
 void strut_run_step(strut_run *r, int64_t stop) {
+  assert(r->ready && stop > r->state->step);
   unsigned before = strut_subnormals_off();
   if (strut_run_is_short_step_due(r))
     step_short(r);
@@ -335,6 +337,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   int64_t n = r->state->step;
   int32_t lost = strut_run_find_lost_node(r->model, r->state);
   strut_status limit_status = strut_run_check_step_limit(r);
+  assert(r->ready && n >= r->first);
   *stop = n;
   if (limit_status) return limit_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/measure.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "engine/model/pose.h"
@@ -37,6 +38,7 @@ static void place_marks(const strut_span *span, double begin, strut_measurement 
 void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
                           size_t periods, strut_measurement *m) {
   size_t contacts = (size_t)model->contacts.count;
+  assert(periods >= 1);
   m->marks = periods + 1 < m->capacity ? periods + 1 : m->capacity;
   for (size_t i = 0; i < m->marks; i++) m->time[i] = begin + (double)i * period;
   m->next = 0;
@@ -145,6 +147,7 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
                                    strut_measurement *m) {
   strut_marks marks = make_marks(m, step_length(m, state->step));
+  assert(m->quantities);
   strut_measure_step(model, state, m);
   strut_quantities_step(m->quantities, &marks, state);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/quantity_program.h"
 
+#include <assert.h>
 #include <math.h>
 
 static double apply_operation(strut_operation operation, double a, double b) {
@@ -53,10 +54,12 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
     } else {
       int count = count_operands(p->operation);
       top -= (size_t)count;
+      assert(top < d->depth);
       stack[top] = apply_operation(p->operation, stack[top], count > 1 ? stack[top + 1] : 0.0);
       top++;
     }
   }
+  assert(top == 1);
   return stack[0];
 }
 
@@ -113,9 +116,11 @@ strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition
       int count = count_operands(p->operation);
       strut_magnitude none = {0};
       top -= (size_t)count;
+      assert(top < d->depth);
       stack[top] = combine_magnitudes(p->operation, stack[top], count > 1 ? stack[top + 1] : none);
       top++;
     }
   }
+  assert(top == 1);
   return stack[0];
 }

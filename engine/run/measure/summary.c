@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/summary.h"
 
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 
 void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...) {
   size_t i = 0;
+  assert(summary->warning_count <= STRUT_MOST_WARNINGS);
   while (i < summary->warning_count && strcmp(summary->warnings[i].code, code) != 0) i++;
   if (i == STRUT_MOST_WARNINGS) return;
   if (i == summary->warning_count) summary->warning_count++;

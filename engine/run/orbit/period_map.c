@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/orbit/period_map.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
                                      int32_t repeats, strut_period_map *map, strut_error *error) {
   *map = (strut_period_map){.model = model, .repeats = repeats};
   map->period = strut_experiment_span(experiment, model->scene).period;
+  assert(repeats >= 1 && map->period > 0.0 && experiment->step > 0.0);
   map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
   map->dt = map->period / (double)map->steps;
   const strut_time_grid grid = {.step = map->dt, .last = -1};
