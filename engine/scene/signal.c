@@ -186,8 +186,8 @@ static void add_signal(const strut_signal *signals, int32_t index, times *t) {
 }
 
 size_t strut_signal_times(const strut_signal *signals, int32_t index, double from, double to,
-                          double *time, size_t room) {
-  times t = {.from = from, .to = to, .time = time, .capacity = room};
+                          double *time, size_t capacity) {
+  times t = {.from = from, .to = to, .time = time, .capacity = capacity};
   add_signal(signals, index, &t);
   return t.count;
 }
