@@ -16,7 +16,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
 };
 
-static void count_things(const strut_model *model, strut_plan *plan) {
+static void count_elements(const strut_model *model, strut_plan *plan) {
   const strut_scene *scene = model->scene;
   plan->nodes = scene->node_count;
   for (int32_t i = 0; i < 2 * model->node_count; i++) plan->degrees_of_freedom += !model->fixed[i];
@@ -33,7 +33,7 @@ static void count_things(const strut_model *model, strut_plan *plan) {
 
 strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, strut_error *error) {
   *plan = (strut_plan){0};
-  count_things(model, plan);
+  count_elements(model, plan);
   for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
     plan->terms[i] = terms[i];
     plan->terms[i].in = model->plan & terms[i].term;

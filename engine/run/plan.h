@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The plan of a model in figures: what it will cost and how large a step it bears.
- */
+/** Size of a model, its terms and its step limits. */
 #ifndef STRUT_ENGINE_RUN_PLAN_H
 #define STRUT_ENGINE_RUN_PLAN_H
 
 #include "engine/integrate/limit/step_limit.h"
 
-/** A term, whether the model evaluates it, and what it is. */
+/** A term of the model, and whether the model evaluates it. */
 typedef struct strut_plan_term {
   strut_term term;
   const char *name; /* "member dampers" */
-  const char *why;  /* what in a scene asks for it: "a member with damping" */
+  const char *why;  /* what in a scene requires it: "a member with damping" */
   bool in;
 } strut_plan_term;
 
@@ -20,10 +18,10 @@ enum { STRUT_PLAN_TERMS = 10 };
 typedef struct strut_plan {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
   size_t mass_nonzeros;     /* stored entries of M (lower triangle, each coordinate that differs) */
-  size_t factor_nonzeros;   /* of its sparse factor; 0 without one */
+  size_t factor_nonzeros;   /* entries of its sparse factor; 0 without one */
   size_t dense_entries;     /* of dense block inverses */
   size_t bytes;             /* of the compiled model */
-  bool runnable;            /* every free coordinate has mass; else the figures below are 0 */
+  bool runnable;            /* every free coordinate has mass; otherwise the fields below are 0 */
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */

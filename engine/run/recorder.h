@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Channels over time: what a run hands to whoever keeps it.
+ * Channels over time: the rows that a run passes to its sinks.
  *
- * The recorder knows no files. It gathers rows of doubles and passes them, some at a time and
- * between steps, to sinks. A row is the time followed by the channels in the layout's order.
+ * The recorder writes no files. It collects rows of doubles and passes them to the sinks in blocks,
+ * between steps. A row is the time followed by the channels in the order of the layout.
  */
 #ifndef STRUT_ENGINE_RUN_RECORDER_H
 #define STRUT_ENGINE_RUN_RECORDER_H
@@ -32,18 +32,17 @@ typedef struct strut_record_layout {
 } strut_record_layout;
 
 /**
- * Takes a run's rows. A sink that fails stops the run with its status. end is called once if begin
- * succeeded, with the status of the run: a sink that writes files completes them even when the run
- * diverged or was interrupted (and marks them so), and removes them when end is given
- * STRUT_FILE_TROUBLE or STRUT_NO_MEMORY.
+ * Receives the rows of a run. A sink that fails stops the run with its status. end is called once
+ * if begin succeeded, with the status of the run: a sink that writes files completes them even when
+ * the run diverged or was interrupted (and marks them so), and removes them for STRUT_FILE_TROUBLE
+ * or STRUT_NO_MEMORY.
  */
 typedef struct strut_sink {
   void *context;
   strut_status (*begin)(void *context, const strut_record_layout *layout, strut_error *error);
   strut_status (*rows)(void *context, const double *rows, size_t count, strut_error *error);
   strut_status (*end)(void *context, strut_status run_status, strut_error *error);
-  unsigned
-      channels; /* strut_channel bits it is given, in their order; 0: those of the experiment */
+  unsigned channels; /* strut_channel bits of its rows; 0: those of the experiment */
 } strut_sink;
 
 #endif

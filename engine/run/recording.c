@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/recording.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -38,7 +39,7 @@ static const struct {
     {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
 };
 
-/* Names of the items that a channel is about, in the arena; *count of them. */
+/* Names of the items of a channel, in the arena; *count of them. */
 static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
                                      size_t *count) {
   const strut_scene *scene = model->scene;
@@ -57,7 +58,7 @@ static const char *const *item_names(const strut_model *model, strut_channel id,
   return names;
 }
 
-static bool lay_out(const strut_model *model, unsigned wanted, strut_recording *r) {
+static bool create_layout(const strut_model *model, unsigned wanted, strut_recording *r) {
   r->layout.width = 1;
   for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
     if (!(wanted & kinds[k].id)) continue;
@@ -78,12 +79,13 @@ static bool lay_out(const strut_model *model, unsigned wanted, strut_recording *
   return true;
 }
 
-static unsigned wanted_by(const strut_experiment *experiment, const strut_sink *sink) {
+static unsigned requested_channels(const strut_experiment *experiment, const strut_sink *sink) {
   return sink->channels ? sink->channels : experiment->channels;
 }
 
-/* Takes from the whole layout what one sink wants. */
-static void lay_out_part(const strut_recording *r, unsigned wanted, strut_recording_part *part) {
+/* Selects the channels of one sink from the full layout. */
+static void create_part_layout(const strut_recording *r, unsigned wanted,
+                               strut_recording_part *part) {
   part->layout = (strut_record_layout){
       .width = 1, .channels = part->channel, .expected_rows = r->layout.expected_rows};
   for (size_t k = 0; k < r->layout.channel_count; k++) {
@@ -97,11 +99,11 @@ static void lay_out_part(const strut_recording *r, unsigned wanted, strut_record
   part->whole = part->layout.channel_count == r->layout.channel_count;
 }
 
-static bool make_parts(const strut_experiment *experiment, strut_recording *r) {
+static bool create_parts(const strut_experiment *experiment, strut_recording *r) {
   bool all_whole = true;
   r->parts = strut_arena_allocate(&r->arena, r->sink_count, sizeof *r->parts);
   for (size_t s = 0; s < r->sink_count && r->parts; s++) {
-    lay_out_part(r, wanted_by(experiment, r->sinks[s]), &r->parts[s]);
+    create_part_layout(r, requested_channels(experiment, r->sinks[s]), &r->parts[s]);
     all_whole = all_whole && r->parts[s].whole;
   }
   if (r->parts && !all_whole)
@@ -128,10 +130,10 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   r->every = span.record_every;
   size_t members = model->scene->member_count;
   unsigned wanted = 0;
-  for (size_t s = 0; s < sink_count; s++) wanted |= wanted_by(experiment, sinks[s]);
+  for (size_t s = 0; s < sink_count; s++) wanted |= requested_channels(experiment, sinks[s]);
   r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
   r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
-  bool ready = r->length && r->force && lay_out(model, wanted, r);
+  bool ready = r->length && r->force && create_layout(model, wanted, r);
   double expected = (span.duration - span.record_start) / fmax(span.record_every, grid->step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   char what[80];
@@ -142,7 +144,7 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   if (ready) {
     r->capacity = 1 + 65536 / r->layout.width;
     r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
-    ready = r->rows && make_parts(experiment, r);
+    ready = r->rows && create_parts(experiment, r);
   }
   if (!ready) return strut_memory_fail(bytes, what, error);
   return begin_sinks(r, error);
@@ -188,8 +190,9 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
   }
 }
 
-/* The rows of one sink: as they are, or the columns it wants. */
-static const double *rows_for(strut_recording *r, const strut_recording_part *part, size_t count) {
+/* Rows of one sink: the full ones, or a copy of its channels. */
+static const double *select_rows(strut_recording *r, const strut_recording_part *part,
+                                 size_t count) {
   if (part->whole) return r->rows;
   for (size_t i = 0; i < count; i++) {
     const double *row = r->rows + i * r->layout.width;
@@ -203,12 +206,12 @@ static const double *rows_for(strut_recording *r, const strut_recording_part *pa
   return r->picked;
 }
 
-/* Rows that a sink refuses are not offered again. */
-static strut_status hand_over(strut_recording *r, strut_error *error) {
+/* Passes all rows to the sinks; rows that a sink refuses are not offered again. */
+static strut_status flush_rows(strut_recording *r, strut_error *error) {
   size_t count = r->row_count;
   r->row_count = 0;
   for (size_t s = 0; s < r->begun && count; s++) {
-    const double *rows = rows_for(r, &r->parts[s], count);
+    const double *rows = select_rows(r, &r->parts[s], count);
     strut_status status = r->sinks[s]->rows(r->sinks[s]->context, rows, count, error);
     if (status) return status;
   }
@@ -217,6 +220,7 @@ static strut_status hand_over(strut_recording *r, strut_error *error) {
 
 strut_status strut_recording_sample(const strut_model *model, strut_state *state,
                                     strut_recording *r, strut_error *error) {
+  assert(r->sink_count && r->row_count < r->capacity && state->step > r->last);
   double t = strut_time_grid_at(&r->grid, state->step);
   double *row = r->rows + r->row_count++ * r->layout.width;
   strut_forces_observe(model, state, t);
@@ -226,12 +230,12 @@ strut_status strut_recording_sample(const strut_model *model, strut_state *state
     fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);
   r->last = state->step;
   r->sampled++;
-  return r->row_count == r->capacity ? hand_over(r, error) : STRUT_OK;
+  return r->row_count == r->capacity ? flush_rows(r, error) : STRUT_OK;
 }
 
 strut_status strut_recording_finish(strut_recording *r, strut_status run_status,
                                     strut_error *error) {
-  strut_status status = hand_over(r, error);
+  strut_status status = flush_rows(r, error);
   if (status) run_status = status;
   for (size_t s = 0; s < r->begun; s++) {
     strut_error own = {0};

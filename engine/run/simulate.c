@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/simulate.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -225,7 +226,7 @@ static strut_status detect_steady_motion(strut_run *r) {
   if (past != 0) return STRUT_OK;
   double x, v;
   bool before = r->steady.known;
-  strut_measure_track(r->model, r->state, &r->measure, &x, &v);
+  strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
   strut_status status = r->experiment->steady.shooting ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
@@ -316,6 +317,7 @@ static void step_short(strut_run *r) {
  * Denormal numbers of a decayed motion would slow the processor down, so they are flushed to zero.
  */
 void strut_run_step(strut_run *r, int64_t stop) {
+  assert(r->ready && stop > r->state->step);
   unsigned before = strut_subnormals_off();
   if (strut_run_is_short_step_due(r))
     step_short(r);
@@ -335,6 +337,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   int64_t n = r->state->step;
   int32_t lost = strut_run_find_lost_node(r->model, r->state);
   strut_status limit_status = strut_run_check_step_limit(r);
+  assert(r->ready && n >= r->first);
   *stop = n;
   if (limit_status) return limit_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);

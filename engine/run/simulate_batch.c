@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/simulate_batch.h"
 
+#include <assert.h>
+
 #include "engine/base/subnormals.h"
 #include "engine/integrate/lanes/batch.h"
 #include "engine/run/simulate_parts.h"
@@ -75,6 +77,7 @@ static void fill_lane(batch_state *h, int32_t lane) {
 }
 
 static void release_lane(batch_state *h, int32_t lane) {
+  assert(h->lanes[lane].taken && h->taken > 0);
   strut_batch_empty(h->batch, lane);
   h->lanes[lane].taken = false;
   h->taken--;
@@ -91,6 +94,7 @@ static void step_lanes(batch_state *h) {
     const lane_run *s = &h->lanes[l];
     if (!s->taken) continue;
     before[l] = s->run.state->step;
+    assert(s->stop > before[l]);
     left[l] = is_measured(s, before[l]) ? 1 : s->stop - before[l];
   }
   unsigned subnormals = strut_subnormals_off();

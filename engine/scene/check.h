@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The semantic rules of a scene: everything that makes numbers meaningless, all findings at once.
+ * Semantic rules of a scene; all findings are reported at once.
  *
- * The rules are about the plain description, so they hold however it was made. A finding names the
- * thing and the key it is about; a reader of text finds the place by them.
+ * The rules apply to the plain description, however it was made. A finding names its subject and
+ * key, by which a reader of text finds the position.
  */
 #ifndef STRUT_ENGINE_SCENE_CHECK_H
 #define STRUT_ENGINE_SCENE_CHECK_H
@@ -30,11 +30,11 @@ typedef enum strut_subject {
 typedef struct strut_finding {
   strut_subject subject;
   size_t index;        /* into the scene's array of that kind of thing; else 0 */
-  const char *key;     /* the key of the language it is about ("stiffness"), or NULL: the thing */
+  const char *key;     /* key of the language ("stiffness"), or NULL for the subject itself */
   const char *message; /* one sentence without a full stop */
 } strut_finding;
 
-/** Most findings that are stored; later ones are only counted. */
+/** Most stored findings; later ones are only counted. */
 enum { STRUT_FINDINGS_MOST = 1000 };
 
 /** All findings; owns their messages. Zero-initialise it. */
@@ -44,21 +44,22 @@ typedef struct strut_findings {
   strut_arena arena;
 } strut_findings;
 
-/** What the scene is to be used for: a run needs masses, a step and a duration; statics do not. */
+/** Purpose of the scene: a run needs masses, a step and a duration; statics does not. */
 typedef enum strut_purpose {
   STRUT_FOR_STATICS,
   STRUT_FOR_RUN,
-  STRUT_FOR_RUN_STEP_LATER, /* for a run whose step, or the accuracy it is chosen by, is told later */
-  STRUT_FOR_ANY /* for a run where the scene says anything about one, else for statics */
+  STRUT_FOR_RUN_STEP_LATER, /* for a run whose step or accuracy is given later */
+  STRUT_FOR_ANY             /* for a run where the scene describes one, otherwise for statics */
 } strut_purpose;
 
 /** Appends every finding. Returns STRUT_OK (none new), STRUT_BAD_SCENE or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                          strut_findings *findings);
 /**
- * What a valid scene has that is hardly meant, each cause once: rest lengths that drives take below
- * zero, nodes that begin inside the ground, members that join the same two nodes, masses that no member
- * holds. A warning's key is a word for programs, such as "inside_ground". STRUT_OK or STRUT_NO_MEMORY.
+ * Warns of properties of a valid scene that are rarely intended, once per cause: rest lengths that
+ * drives take below zero, nodes that start inside the ground, members that join the same two nodes,
+ * masses that no member holds. The key of a warning is an identifier for programs, such as
+ * "inside_ground". STRUT_OK or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_setup_warn(const strut_setup *setup, strut_findings *warnings);
 STRUT_API void strut_findings_free(strut_findings *findings);

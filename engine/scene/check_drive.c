@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rules about what acts on the structure and about the experiment. See check.h. */
+/* Rules about ground, signals, drives, loads and the experiment. See check.h. */
 #include <math.h>
 #include <stdio.h>
 
@@ -32,7 +32,7 @@ static bool check_table(strut_checker *checker, size_t index, const char *owner)
   return true;
 }
 
-/* Terms and depth of a sum, whose own terms have been checked before it. */
+/* Counts terms and depth of a sum, whose terms have been checked before. */
 static bool check_sum(strut_checker *checker, size_t index, const char *owner, uint32_t *size,
                       uint32_t *depth) {
   const strut_signal *s = &checker->scene->signals[index];
@@ -49,7 +49,7 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
                            "term %zu of %s is not a signal that comes before it", i + 1, owner);
       return false;
     }
-    if (checker->wild[term]) return false; /* said there */
+    if (checker->wild[term]) return false; /* reported there */
     terms += size[term];
     if (depth[term] >= depth[index]) depth[index] = depth[term] + 1;
   }
@@ -61,20 +61,20 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   return false;
 }
 
-/* The numbers of a waveform. */
+/* Checks the numbers of a waveform. */
 static bool check_wave(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
   bool wave = s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE;
-  bool fine = strut_find_range(checker, STRUT_ON_SIGNAL, index, "amplitude", owner, s->amplitude,
-                               STRUT_ANY_NUMBER);
+  bool valid = strut_check_range(checker, STRUT_ON_SIGNAL, index, "amplitude", owner, s->amplitude,
+                                 STRUT_ANY_NUMBER);
   if (wave)
-    fine &= strut_find_range(checker, STRUT_ON_SIGNAL, index, "frequency", owner, s->frequency,
-                             STRUT_ABOVE_ZERO);
-  fine &=
-      strut_find_range(checker, STRUT_ON_SIGNAL, index, "phase", owner, s->phase, STRUT_ANY_NUMBER);
-  fine &=
-      strut_find_range(checker, STRUT_ON_SIGNAL, index, "start", owner, s->start, STRUT_ANY_NUMBER);
-  if (!fine) return false;
+    valid &= strut_check_range(checker, STRUT_ON_SIGNAL, index, "frequency", owner, s->frequency,
+                               STRUT_ABOVE_ZERO);
+  valid &= strut_check_range(checker, STRUT_ON_SIGNAL, index, "phase", owner, s->phase,
+                             STRUT_ANY_NUMBER);
+  valid &= strut_check_range(checker, STRUT_ON_SIGNAL, index, "start", owner, s->start,
+                             STRUT_ANY_NUMBER);
+  if (!valid) return false;
   if (s->kind == STRUT_RAMP && !isfinite(s->stop))
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
   else if (!(s->stop > s->start))
@@ -86,22 +86,22 @@ static bool check_wave(strut_checker *checker, size_t index, const char *owner) 
   return false;
 }
 
-/* What a message calls a signal: by its name, or by the first that uses it. */
+/* Formats the name of a signal for messages: its own, or that of its first user. */
 static void call_signal(char owner[200], const strut_scene *scene, const size_t *user, size_t i) {
   char thing[200];
   size_t u = user[i];
   if (scene->signals[i].name || !u) {
-    strut_called(owner, "signal", scene->signals[i].name, i);
+    strut_format_name(owner, "signal", scene->signals[i].name, i);
     return;
   }
   bool actuator = u <= scene->actuator_count;
   size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
-  strut_called(thing, actuator ? "actuator" : "load",
-               actuator ? scene->actuators[index].name : scene->loads[index].name, index);
+  strut_format_name(thing, actuator ? "actuator" : "load",
+                    actuator ? scene->actuators[index].name : scene->loads[index].name, index);
   snprintf(owner, 200, "the signal of %.180s", thing);
 }
 
-/* For each signal 1 + the number of the actuator that uses it, loads counted on; 0: nobody. */
+/* Finds for each signal 1 + the number of the actuator that uses it, loads counted on; 0: none. */
 static void find_users(const strut_scene *scene, size_t *user) {
   for (size_t i = scene->load_count; i-- > 0;)
     if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
@@ -109,7 +109,7 @@ static void find_users(const strut_scene *scene, size_t *user) {
   for (size_t i = scene->actuator_count; i-- > 0;)
     if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
       user[scene->actuators[i].signal] = 1 + i;
-  for (size_t i = scene->signal_count; i-- > 0;) /* a sum comes after its terms */
+  for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
     for (size_t t = 0; scene->signals[i].kind == STRUT_SUM && t < scene->signals[i].term_count;
          t++) {
       int32_t term = scene->signals[i].terms[t];
@@ -151,7 +151,7 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
     return;
   }
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
-    strut_find_range(
+    strut_check_range(
         checker, STRUT_ON_CONTACT, index, strut_friction_key(p), owner, strut_friction_value(f, p),
         strut_friction_needs(f->law, p) && strut_friction_above_zero(p) ? STRUT_ABOVE_ZERO
                                                                         : STRUT_NOT_NEGATIVE);
@@ -160,10 +160,10 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
 void strut_check_ground(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->ground;
-  strut_find_range(checker, STRUT_ON_GROUND, 0, "height", "the ground", g->height,
-                   STRUT_ANY_NUMBER);
-  strut_find_range(checker, STRUT_ON_GROUND, 0, "belt_speed", "the ground", g->belt_speed,
-                   STRUT_ANY_NUMBER);
+  strut_check_range(checker, STRUT_ON_GROUND, 0, "height", "the ground", g->height,
+                    STRUT_ANY_NUMBER);
+  strut_check_range(checker, STRUT_ON_GROUND, 0, "belt_speed", "the ground", g->belt_speed,
+                    STRUT_ANY_NUMBER);
   if (!(fabs(g->slope) < QUARTER_TURN))
     strut_report_finding(
         checker, STRUT_ON_GROUND, 0, "slope",
@@ -184,61 +184,61 @@ void strut_check_ground(strut_checker *checker) {
       continue;
     }
     char owner[200];
-    strut_called(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
+    strut_format_name(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
     if (i && c->node <= scene->contacts[i - 1].node)
       strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
                            "%s is out of order: contacts follow their nodes, one for each at most",
                            owner);
-    strut_find_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
-                     STRUT_ABOVE_ZERO);
-    strut_find_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
-                     STRUT_NOT_NEGATIVE);
-    strut_find_range(checker, STRUT_ON_CONTACT, i, "dissipation", owner, c->dissipation,
-                     STRUT_NOT_NEGATIVE);
+    strut_check_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
+                      STRUT_ABOVE_ZERO);
+    strut_check_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
+                      STRUT_NOT_NEGATIVE);
+    strut_check_range(checker, STRUT_ON_CONTACT, i, "dissipation", owner, c->dissipation,
+                      STRUT_NOT_NEGATIVE);
     check_friction(checker, i, owner);
   }
 }
 
-static bool there(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }
+static bool exists(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }
 
 void strut_check_drives(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   char owner[200];
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
-    strut_called(owner, "actuator", a->name, i);
-    if (!there(a->member, scene->member_count))
+    strut_format_name(owner, "actuator", a->name, i);
+    if (!exists(a->member, scene->member_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
                            "%s drives a member that does not exist", owner);
     else if (scene->bar_model == STRUT_BARS_RIGID && scene->members[a->member].kind == STRUT_BAR)
       strut_report_finding(
           checker, STRUT_ON_ACTUATOR, i, "member",
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
-    if (!there(a->signal, scene->signal_count))
+    if (!exists(a->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];
-    strut_called(owner, "load", l->name, i);
-    if (!there(l->node, scene->node_count))
+    strut_format_name(owner, "load", l->name, i);
+    if (!exists(l->node, scene->node_count))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "node",
                            "%s acts on a node that does not exist", owner);
     if (!isfinite(l->force[0]) || !isfinite(l->force[1]))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "force", "the force of %s is not finite",
                            owner);
-    if (l->signal != -1 && !there(l->signal, scene->signal_count))
+    if (l->signal != -1 && !exists(l->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_LOAD, i, "signal",
                            "%s has a signal that does not exist", owner);
   }
 }
 
-/* The length of the run: its duration, or the period it is counted in. */
+/* Checks the length of the run: its duration, or its period. */
 static bool check_length(strut_checker *checker) {
   const strut_experiment *e = checker->experiment;
-  if (!strut_find_range(checker, STRUT_ON_RUN, 0, "duration", "the run", e->duration,
-                        STRUT_NOT_NEGATIVE) ||
-      !strut_find_range(checker, STRUT_ON_RUN, 0, "periods", "the run", e->periods,
-                        STRUT_NOT_NEGATIVE))
+  if (!strut_check_range(checker, STRUT_ON_RUN, 0, "duration", "the run", e->duration,
+                         STRUT_NOT_NEGATIVE) ||
+      !strut_check_range(checker, STRUT_ON_RUN, 0, "periods", "the run", e->periods,
+                         STRUT_NOT_NEGATIVE))
     return false;
   if (e->duration > 0.0 && e->periods > 0.0) {
     strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
@@ -246,21 +246,21 @@ static bool check_length(strut_checker *checker) {
     return false;
   }
   if (e->periods == 0.0) return e->duration > 0.0;
-  if (!there(e->period_signal, checker->scene->signal_count)) {
+  if (!exists(e->period_signal, checker->scene->signal_count)) {
     strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
-                         "a run in periods needs a signal to count them of");
+                         "a run in periods needs the signal that has the period");
     return false;
   }
-  if (checker->wild[e->period_signal]) return false; /* said there */
+  if (checker->wild[e->period_signal]) return false; /* reported there */
   double period = strut_signal_period(checker->scene->signals, e->period_signal);
   if (period > 0.0 && isfinite(period * e->periods)) return true;
   if (period > 0.0 && isfinite(period))
-    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods", "the run is longer than any number");
+    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods", "the duration of the run overflows");
   else
     strut_report_finding(
         checker, STRUT_ON_RUN, 0, "of",
-        "'%s' has no period: the run can be counted in periods of a sine, a half-sine, a "
-        "square, or a sum whose periods fit into its longest one",
+        "'%s' has no period: the run can be given in periods of a sine, a half-sine, a square, or "
+        "a sum whose longest period is a multiple of the others",
         e->period_of ? e->period_of : "the signal");
   return false;
 }
@@ -275,20 +275,20 @@ static void check_window(strut_checker *checker, strut_subject subject, const ch
                        last, periods ? "periods" : "s", whole, periods ? "periods" : "s");
 }
 
-/* The step, and the number of steps that it leads to. */
+/* Checks the step and the resulting number of steps. */
 static void check_step(strut_checker *checker, bool length_known) {
   const strut_experiment *e = checker->experiment;
   if (!e->integrator || !*e->integrator)
     strut_report_finding(checker, STRUT_ON_SOLVER, 0, "integrator",
                          "the solver names no integrator");
   if (e->step == 0.0) {
-    if (checker->purpose == STRUT_FOR_RUN && !checker->step_told && !(e->accuracy > 0.0))
+    if (checker->purpose == STRUT_FOR_RUN && !checker->step_given_later && !(e->accuracy > 0.0))
       strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
                            "the solver has no step, expected a time such as '0.1 ms'");
     return;
   }
-  if (!strut_find_range(checker, STRUT_ON_SOLVER, 0, "step", "the solver", e->step,
-                        STRUT_ABOVE_ZERO) ||
+  if (!strut_check_range(checker, STRUT_ON_SOLVER, 0, "step", "the solver", e->step,
+                         STRUT_ABOVE_ZERO) ||
       !length_known)
     return;
   double duration = strut_experiment_span(e, checker->scene).duration;
@@ -312,11 +312,11 @@ void strut_check_experiment(strut_checker *checker) {
   } limits[] = {
       {"speed", settle->speed}, {"acceleration", settle->acceleration}, {"limit", settle->limit}};
   for (size_t i = 0; i < 3 && settle->wanted; i++)
-    strut_find_range(checker, STRUT_ON_INITIAL, 0, limits[i].key, "settling", limits[i].value,
-                     STRUT_ABOVE_ZERO);
+    strut_check_range(checker, STRUT_ON_INITIAL, 0, limits[i].key, "settling", limits[i].value,
+                      STRUT_ABOVE_ZERO);
   if (settle->wanted)
-    strut_find_range(checker, STRUT_ON_INITIAL, 0, "evaluations", "settling", settle->evaluations,
-                     STRUT_NOT_NEGATIVE);
+    strut_check_range(checker, STRUT_ON_INITIAL, 0, "evaluations", "settling", settle->evaluations,
+                      STRUT_NOT_NEGATIVE);
   if (settle->wanted && !isfinite(settle->step))
     strut_report_finding(checker, STRUT_ON_INITIAL, 0, "step",
                          "the step of settling is not finite");
@@ -329,20 +329,20 @@ void strut_check_experiment(strut_checker *checker) {
   if (e->steady.wanted && !(e->periods > 0.0) && checker->purpose == STRUT_FOR_RUN)
     strut_report_finding(
         checker, STRUT_ON_RUN, 0, "measure",
-        "steady motion is looked for from period to period: the run needs 'periods' and 'of'");
+        "steady motion is detected from period to period: the run needs 'periods' and 'of'");
   bool length_known = check_length(checker);
   if (checker->purpose == STRUT_FOR_RUN && e->duration == 0.0 && e->periods == 0.0)
     strut_report_finding(checker, STRUT_ON_RUN, 0, NULL,
                          "the run has neither a duration nor periods");
   check_step(checker, length_known);
-  if (e->measure_node != -1 && !there(e->measure_node, scene->node_count))
+  if (e->measure_node != -1 && !exists(e->measure_node, scene->node_count))
     strut_report_finding(checker, STRUT_ON_RUN, 0, "node", "the measured node does not exist");
-  bool measure = strut_find_range(checker, STRUT_ON_RUN, 0, "last", "the measuring window",
-                                  e->measure_last, STRUT_NOT_NEGATIVE);
-  bool output = strut_find_range(checker, STRUT_ON_OUTPUT, 0, "last", "the output", e->output_last,
-                                 STRUT_NOT_NEGATIVE);
-  strut_find_range(checker, STRUT_ON_OUTPUT, 0, "every", "the output", e->output_every,
-                   STRUT_NOT_NEGATIVE);
+  bool measure = strut_check_range(checker, STRUT_ON_RUN, 0, "last", "the measuring window",
+                                   e->measure_last, STRUT_NOT_NEGATIVE);
+  bool output = strut_check_range(checker, STRUT_ON_OUTPUT, 0, "last", "the output", e->output_last,
+                                  STRUT_NOT_NEGATIVE);
+  strut_check_range(checker, STRUT_ON_OUTPUT, 0, "every", "the output", e->output_every,
+                    STRUT_NOT_NEGATIVE);
   if (!length_known) return;
   if (measure) check_window(checker, STRUT_ON_RUN, "cannot measure over", e->measure_last);
   if (output) check_window(checker, STRUT_ON_OUTPUT, "cannot record", e->output_last);

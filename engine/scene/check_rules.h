@@ -1,37 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the rules of the check share. Internal to engine/scene.
- */
+/** Shared by the rules of the check; internal to engine/scene. */
 #ifndef STRUT_ENGINE_SCENE_CHECK_RULES_H
 #define STRUT_ENGINE_SCENE_CHECK_RULES_H
 
 #include "engine/scene/check.h"
 
-/** One check under way. */
+/** State of a check. */
 typedef struct strut_checker {
   const strut_scene *scene;
   const strut_experiment *experiment;
   strut_purpose purpose;
-  bool step_told; /* the scene need not have one */
+  bool step_given_later; /* the step is given later */
   strut_findings *findings;
   bool out_of_memory;
-  bool *loose; /* (member_count) true where a member's ends do not exist: other rules skip it */
-  bool *wild;  /* (signal_count) true where a signal must not be evaluated */
+  bool *
+      loose; /* (member_count) true where an end of the member does not exist: other rules skip it */
+  bool *wild; /* (signal_count) true where a signal must not be evaluated */
 } strut_checker;
 
-/** Adds a finding; remembers when memory is out. */
+/** Adds a finding; sets out_of_memory where that fails. */
 void strut_report_finding(strut_checker *checker, strut_subject subject, size_t index,
                           const char *key, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/** A name for messages: "member 'm1'", or "member number 3" where it has none. */
-const char *strut_called(char buffer[200], const char *kind, const char *name, size_t index);
+/** Formats a name for messages: "member 'm1'", or "member number 3" without one. */
+const char *strut_format_name(char buffer[200], const char *kind, const char *name, size_t index);
 
 typedef enum strut_range { STRUT_ANY_NUMBER, STRUT_NOT_NEGATIVE, STRUT_ABOVE_ZERO } strut_range;
 
-/** Finds a number that is not finite or outside its range; returns true where it is fine. */
-bool strut_find_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
-                      const char *owner, double value, strut_range range);
+/** Reports a number that is not finite or outside its range; returns true where it is valid. */
+bool strut_check_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
+                       const char *owner, double value, strut_range range);
 
 /** The rules, one function for each kind of thing. */
 void strut_check_names(strut_checker *checker);

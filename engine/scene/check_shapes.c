@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rules about configurations and about the search for equilibria. See check.h. */
+/* Rules about configurations and the search for equilibria. See check.h. */
 #include <math.h>
 #include <stdio.h>
 
 #include "engine/scene/check_rules.h"
 
-/* What sets of contact nodes are looked at with. */
+/* State for checking sets of contact nodes. */
 typedef struct sets_check {
   strut_checker *checker;
   bool *touches;   /* (node_count) may touch the ground */
-  uint64_t *stamp; /* (node_count) the set that named it last */
+  uint64_t *stamp; /* (node_count) the last set that contains it */
   uint64_t now;
 } sets_check;
 
-/* One set, whose rule `subject`, `index`, `key` are about. False: something is wrong with it. */
+/* Checks one set; the finding is about `subject`, `index`, `key`. False: it is invalid. */
 static bool check_set(sets_check *check, const strut_node_set *set, strut_subject subject,
                       size_t index, const char *key, const char *owner) {
   strut_checker *checker = check->checker;
@@ -32,7 +32,7 @@ static bool check_set(sets_check *check, const strut_node_set *set, strut_subjec
       return false;
     }
     char node[200];
-    strut_called(node, "node", scene->nodes[n].name, (size_t)n);
+    strut_format_name(node, "node", scene->nodes[n].name, (size_t)n);
     bool twice = check->stamp[n] == check->now;
     check->stamp[n] = check->now;
     if (check->touches[n] && !twice) continue;
@@ -63,11 +63,11 @@ static void check_positions(strut_checker *checker, size_t index, const char *ow
   for (size_t i = 0; i < scene->node_count; i++) {
     const double *drawn = scene->nodes[i].position;
     if (isfinite(c->position[i][0]) && isfinite(c->position[i][1])) continue;
-    if (!isfinite(drawn[0]) || !isfinite(drawn[1])) continue; /* said at the node */
+    if (!isfinite(drawn[0]) || !isfinite(drawn[1])) continue; /* reported at the node */
     char node[200];
     strut_report_finding(checker, STRUT_ON_CONFIGURATION, index, NULL,
                          "the position of %s in %s is not finite",
-                         strut_called(node, "node", scene->nodes[i].name, i), owner);
+                         strut_format_name(node, "node", scene->nodes[i].name, i), owner);
     return;
   }
 }
@@ -107,7 +107,7 @@ void strut_check_shapes(strut_checker *checker) {
   for (size_t i = 0; !checker->out_of_memory && i < scene->configuration_count; i++) {
     const strut_configuration *c = &scene->configurations[i];
     char owner[200];
-    strut_called(owner, "configuration", c->name, i);
+    strut_format_name(owner, "configuration", c->name, i);
     check_positions(checker, i, owner);
     check_sets(&check, c->sets, c->set_count, STRUT_ON_CONFIGURATION, i, "contacts", owner);
   }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The experiment done on a scene: how its start is found, the method, step and duration of a run,
- * what is measured and recorded, and how equilibria are searched for.
+ * The experiment on a scene: how its start is found, method, step and duration of a run, what is
+ * measured and recorded, and how equilibria are searched.
  *
  * A scene compiles to one model, on which any number of experiments can run. Indices refer to the
- * scene's arrays.
+ * arrays of the scene.
  */
 #ifndef STRUT_ENGINE_SCENE_EXPERIMENT_H
 #define STRUT_ENGINE_SCENE_EXPERIMENT_H
@@ -14,18 +14,18 @@
 
 enum { STRUT_USUAL_BUDGET = 20 }; /* see strut_experiment.budget */
 
-/** Coming to rest before t = 0: actuators, loads with a signal and the belt are off. */
+/** Settling before t = 0: actuators, loads with a signal and the belt are off. */
 typedef struct strut_settle {
   bool wanted;
-  bool friction;       /* kept; off by default, as in the paper: then nothing holds on a slope */
+  bool
+      friction; /* friction is kept; off by default, as in the paper: then nothing holds on a slope */
   double speed;        /* at rest when every speed is below this [m/s]; paper 1e-8 */
   double acceleration; /* and every acceleration below this [m/s^2]; paper 1e-8 */
-  double limit;        /* gives up after this much simulated time [s] */
-  double
-      evaluations; /* and after this many evaluations of the forces; 0: STRUT_SETTLE_EVALUATIONS */
-  double step;     /* of the Runge-Kutta method that settles [s]; 0: the experiment's, whatever its
+  double limit;        /* limit of the simulated time [s] */
+  double evaluations;  /* limit of the force evaluations; 0: STRUT_SETTLE_EVALUATIONS */
+  double step;  /* of the Runge-Kutta method that settles [s]; 0: the experiment's, whatever its
                           method; below zero: chosen by the stability limit */
-  bool perturb;    /* leave an equilibrium that is unstable, and settle again */
+  bool perturb; /* leave an unstable equilibrium and settle again */
 } strut_settle;
 
 static const double STRUT_SETTLE_EVALUATIONS = 4e7;
@@ -42,25 +42,24 @@ typedef enum strut_channel {
 enum { STRUT_MOST_STARTS = 1000000000 };
 #define STRUT_MOST_SEED 9007199254740992.0 /* 2^53: every seed is a number of the language */
 
-/** How all equilibria are looked for. */
+/** How equilibria are searched. */
 typedef struct strut_search {
-  size_t support_count;     /* sets of contact nodes to hold in turn; 0: every one that is needed */
+  size_t support_count;     /* sets of contact nodes to hold in turn; 0: all that are needed */
   strut_node_set *supports; /* (support_count) of each set the first node is pinned, others roll */
-  int64_t starts;           /* random starts for each set, up to STRUT_MOST_STARTS; 0: until
-                               little can be missing */
-  uint64_t seed;            /* up to STRUT_MOST_SEED */
+  int64_t
+      starts; /* random starts for each set, up to STRUT_MOST_STARTS; 0: until few equilibria can be missing */
+  uint64_t seed; /* up to STRUT_MOST_SEED */
 } strut_search;
 
-/** Stopping when the motion repeats itself, in a run by periods. */
+/** Stops a run by periods when the motion repeats itself. */
 typedef struct strut_steady {
   bool wanted;
   double tolerance;   /* of the measured velocity, relative to it [1]; default 0.005 */
   double floor;       /* differences below this count as none [m/s]; 0: taken from the scene */
-  int32_t successive; /* so many repetitions in a row must agree; default 5 */
+  int32_t successive; /* repetitions in a row that must agree; default 5 */
   double
-      mean_tolerance; /* of an irregular motion's mean velocity [1], where the run goes on from one
-                            that was long enough already; 0: tolerance */
-  bool shooting;      /* finish the orbit by Newton's method, and give its Floquet multipliers */
+      mean_tolerance; /* of an irregular motion's mean velocity [1], where the run continues one that was long enough; 0: tolerance */
+  bool shooting;      /* complete the orbit by shooting, with its Floquet multipliers */
 } strut_steady;
 
 /**
@@ -80,20 +79,20 @@ typedef struct strut_steady {
 #define STRUT_INTEGRATOR_WORD(row, word) "|" word
 #define STRUT_INTEGRATOR_WORDS (&("" STRUT_INTEGRATORS(STRUT_INTEGRATOR_WORD))[1])
 
-/** How the start is found, what to integrate, for how long, and what to measure. */
+/** Start, method, duration and measurements of an experiment. */
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
   double step;            /* dt [s], > 0; of an adaptive method the largest; 0: it is chosen */
   double tolerance;       /* of an adaptive method, relative [1]; default 1e-6 */
-  double refine;          /* after a touchdown steps so much shorter [1], by methods that do; 0:
-                             taken from the scene; 1: none */
-  double refine_time;     /* for so long [s]; 0: taken from the scene */
-  double refine_rate;     /* taken from the scene: fastest rate of a closed contact times the short
+  double
+      refine; /* factor of shorter steps after a touchdown [1], by methods that refine; 0: taken from the scene; 1: none */
+  double refine_time;   /* duration of the refinement [s]; 0: taken from the scene */
+  double refine_rate;   /* taken from the scene: fastest rate of a closed contact times the short
                              step [1]; default 0.25 */
-  double refine_memory;   /* taken from the scene: so many relaxation times long [1]; default 8 */
-  double accuracy;        /* wanted of the measured quantity, relative [1]: method and step are
-                             chosen by it; 0: they are as given */
-  double budget;          /* work allowed for that, in fine runs by a fixed step */
+  double refine_memory; /* taken from the scene: in relaxation times [1]; default 8 */
+  double
+      accuracy; /* wanted relative error of the measured quantity [1], by which method and step are chosen; 0: they are as given */
+  double budget; /* work allowed for it, in fine runs with a fixed step */
   strut_steady steady;
   strut_settle settle;   /* before t = 0 */
   strut_search search;   /* of equilibria */
@@ -101,13 +100,12 @@ typedef struct strut_experiment {
   double periods;        /* number of periods of signal `period_signal`; 0 when in seconds */
   int32_t period_signal; /* or -1 */
   const char *period_of; /* the name the file used for it, or NULL */
-  double measure_last;   /* window: the last so many periods (if periods > 0), else seconds; 0 =
-                             the whole run */
-  int32_t measure_node;  /* whose velocity (14) is measured; -1: the centre of mass */
+  double measure_last;  /* window: the last periods (if periods > 0) or seconds; 0: the whole run */
+  int32_t measure_node; /* whose velocity (14) is measured; -1: the centre of mass */
   size_t quantity_count;
   strut_quantity_definition *quantities; /* (quantity_count) measured beside that velocity */
   double output_every; /* sampling interval [s]; 0: a thousandth of the recorded time */
-  double output_last;  /* record only the last so many periods or seconds; 0: all */
+  double output_last;  /* record only the last periods or seconds; 0: all */
   unsigned channels;   /* strut_channel bits; default position, length, force */
 } strut_experiment;
 
@@ -117,14 +115,14 @@ typedef struct strut_setup {
   strut_experiment experiment;
 } strut_setup;
 
-/** The experiment where nothing is said of it. */
+/** The default experiment. */
 STRUT_API strut_experiment strut_experiment_default(void);
-/** A scene by strut_scene_init, with the default experiment. */
+/** Initialises the scene by strut_scene_init and the experiment by its default. */
 STRUT_API void strut_setup_init(strut_setup *setup);
 /** Frees all that the scene and the experiment own, and zeroes both. */
 STRUT_API void strut_setup_free(strut_setup *setup);
 
-/** Duration, drive period and measuring window that the experiment amounts to, all in [s]. */
+/** Duration, drive period and measuring window of the experiment, in [s]. */
 typedef struct strut_span {
   double duration;
   double period;       /* 0 when the run is given in seconds */

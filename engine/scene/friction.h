@@ -2,8 +2,8 @@
 /**
  * Friction laws: one row and two functions for each.
  *
- * Reader, writer, checks, step limit, contact modes and the forces loop over these tables, so that a
- * law is added here and nowhere else; docs/recipes.md shows how.
+ * Reader, writer, checks, step limit, contact modes and forces loop over these tables, so that a
+ * law is added only here; see docs/recipes.md.
  */
 #ifndef STRUT_ENGINE_SCENE_FRICTION_H
 #define STRUT_ENGINE_SCENE_FRICTION_H
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/** What the states of a contact are under a law. */
+/** Contact states under a law. */
 typedef enum strut_friction_class {
   STRUT_FRICTION_ABSENT,      /* no force */
   STRUT_FRICTION_STICK_BAND,  /* balances the other forces below the speed stick_velocity */
@@ -128,7 +128,7 @@ static inline double strut_friction_value(const strut_friction *friction, int pa
   return *strut_friction_parameter(&copy, parameter);
 }
 
-/** x with its sign only: -1, 0 or 1. */
+/** Sign of x: -1, 0 or 1. */
 static inline double strut_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 /*
@@ -181,7 +181,7 @@ static inline double strut_friction_slope_SMOOTH(const strut_friction *f, double
   return normal * f->mu_kinetic / f->width;
 }
 
-/** What the contact's states are; see strut_friction_class. */
+/** Contact states of a law; see strut_friction_class. */
 static inline strut_friction_class strut_friction_states(strut_friction_law law) {
   switch (law) {
 #define STRUT_FRICTION_ROW(NAME, word, states, needs)                                              \

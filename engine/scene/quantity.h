@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Measured quantities: an expression of columns of the motion, and how the window reduces it to a
- * number.
- *
- * An expression is a short program in postfix order, for a stack of numbers. The parser compiles it,
- * with every name resolved and every dimension checked; the engine evaluates it after each step of
+ * Measured quantities: an expression of columns of the motion, and its reduction to a number over
  * the window.
+ *
+ * An expression is a short program in postfix order for a stack of numbers. The parser compiles it,
+ * with all names resolved and dimensions checked; the engine evaluates it after each step of the
+ * window.
  */
 #ifndef STRUT_ENGINE_SCENE_QUANTITY_H
 #define STRUT_ENGINE_SCENE_QUANTITY_H
@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Whom a column is about: how it is written, and what its items index. */
+/** Owner of a column: how the column is written, and what its items index. */
 typedef enum strut_column_owner {
   STRUT_COLUMN_OF_RUN,     /* the word alone: time */
   STRUT_COLUMN_OF_NODE,    /* NODE.y */
@@ -114,10 +114,10 @@ typedef struct strut_instruction {
   strut_operation operation;
   strut_column column; /* of COLUMN */
   double number;       /* of NUMBER, SI */
-  const char *unit;    /* of NUMBER: what is written behind it, such as "kg m s^-2"; or NULL */
+  const char *unit;    /* of NUMBER: unit as written, such as "kg m s^-2"; or NULL */
 } strut_instruction;
 
-/** How the window makes one number of a quantity's values. */
+/** Reduction of the values of a quantity over the window. */
 typedef enum strut_reduction {
   STRUT_TAKE_MEAN,
   STRUT_TAKE_MIN,

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The scene: what the user wrote, as a plain and editable description in SI units.
+ * The scene: the input of the user as a plain, editable description in SI units.
  *
- * A scene owns all its texts and arrays in one arena (strut_scene_free releases them). Things refer
- * to each other by index into the arrays; -1 means none. Whatever fills a scene, strut_setup_check
- * decides whether it is valid, and strut_model_compile turns it into numbers to run.
+ * A scene owns all its texts and arrays in one arena (strut_scene_free releases them). Items refer
+ * to each other by array index; -1 means none. However a scene was filled, strut_setup_check
+ * decides whether it is valid, and strut_model_compile turns it into a model to run.
  */
 #ifndef STRUT_ENGINE_SCENE_SCENE_H
 #define STRUT_ENGINE_SCENE_SCENE_H
@@ -94,10 +94,10 @@ typedef struct strut_load {
   int32_t signal;  /* or -1 */
 } strut_load;
 
-/** A parameter as it was used, for the record only: the scene's numbers already contain it. */
+/** A parameter as used, for the record only: the numbers of the scene already contain it. */
 typedef struct strut_parameter {
   const char *name;
-  const char *text; /* what was written, e.g. "10 Hz" */
+  const char *text; /* as written, such as "10 Hz" */
   double value;     /* SI; NAN where it is a text, such as a configuration's name */
 } strut_parameter;
 
@@ -114,12 +114,12 @@ typedef struct strut_node_set {
   int32_t *node; /* (count) */
 } strut_node_set;
 
-/** A shape with a name: a place to start from, and what an equilibrium is called by. */
+/** A named shape: a start, and the name of an equilibrium of that shape. */
 typedef struct strut_configuration {
   const char *name;
-  bool shaped;           /* some position was given; else contacts alone tell it */
+  bool shaped;           /* some position was given; otherwise contacts alone identify it */
   double (*position)[2]; /* (node_count) [m]; as drawn where the scene gives none */
-  size_t set_count;      /* sets of contact nodes on any of which it stands; 0: not said */
+  size_t set_count;      /* sets of contact nodes on which it may stand; 0: not given */
   strut_node_set *sets;  /* (set_count) */
 } strut_configuration;
 
@@ -144,15 +144,18 @@ typedef struct strut_scene {
   strut_arena arena;         /* owns every text and array above */
 } strut_scene;
 
-/** Prefilled structs: zero where nothing is said above, names empty, indices -1. */
+/** Default structs: zero except where stated above, names empty, indices -1. */
 STRUT_API void strut_scene_init(strut_scene *scene);
 STRUT_API strut_node strut_node_default(void);
 STRUT_API strut_member strut_member_default(void);
 STRUT_API strut_contact strut_contact_default(void);
-/** Frees all that the scene owns and zeroes it. */
+/** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
 
-/** The four ways to say a member's prestress, and its stiffness, from the drawn shape. */
+/**
+ * The four equivalent descriptions of the prestress of a member, and its stiffness, in the drawn
+ * shape.
+ */
 typedef struct strut_rest {
   double drawn_length;  /* [m] */
   double length;        /* rest length lambda_0 [m] */
@@ -163,8 +166,9 @@ typedef struct strut_rest {
 } strut_rest;
 
 /**
- * Resolves how a member's rest length was given. With c: L0 = L - t/c; with EA: L0 = EA L/(EA + t).
- * Returns false where that is impossible (pretension without stiffness, rest length not >= 0).
+ * Resolves the rest length of a member from its description. With c: L0 = L - t/c; with EA: L0 = EA
+ * L/(EA + t). Returns false where that is impossible (pretension without stiffness, rest length not
+ * >= 0).
  */
 STRUT_API bool strut_member_rest(const strut_scene *scene, size_t member, strut_rest *rest);
 

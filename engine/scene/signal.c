@@ -12,14 +12,14 @@ strut_signal strut_signal_default(strut_signal_kind kind) {
   return (strut_signal){.kind = kind, .stop = (double)INFINITY};
 }
 
-static inline void wave(const strut_signal *s, double turns, double *value, double *rate) {
+static inline void evaluate_wave(const strut_signal *s, double turns, double *value, double *rate) {
   double sine, cosine;
   strut_sincos_turns(turns, &sine, &cosine);
   *value = s->amplitude * sine;
   *rate = s->amplitude * STRUT_TAU * s->frequency * cosine;
 }
 
-static void ramp(const strut_signal *s, double t, double *value, double *rate) {
+static void evaluate_ramp(const strut_signal *s, double t, double *value, double *rate) {
   *value = *rate = 0.0;
   if (t >= s->stop) {
     *value = s->amplitude;
@@ -29,7 +29,7 @@ static void ramp(const strut_signal *s, double t, double *value, double *rate) {
   }
 }
 
-static void table(const strut_signal *s, double t, double *value, double *rate) {
+static void evaluate_table(const strut_signal *s, double t, double *value, double *rate) {
   size_t low = 0, high = s->point_count; /* points before `low` are at or before t */
   while (low < high) {
     size_t middle = low + (high - low) / 2;
@@ -46,24 +46,24 @@ static void table(const strut_signal *s, double t, double *value, double *rate) 
   *rate = rise / span;
 }
 
-/* All but sines, which strut_signal_evaluate looks at first. */
-static void evaluate(const strut_signal *signals, int32_t index, double t, double turns,
-                     double *value, double *rate) {
+/* Evaluates all kinds but the sine, which strut_signal_evaluate handles first. */
+static void evaluate_other(const strut_signal *signals, int32_t index, double t, double turns,
+                           double *value, double *rate) {
   const strut_signal *s = &signals[index];
   *value = *rate = 0.0;
   if (s->kind == STRUT_RAMP) {
-    ramp(s, t, value, rate);
+    evaluate_ramp(s, t, value, rate);
     return;
   }
   if (s->kind == STRUT_TABLE) {
-    table(s, t, value, rate);
+    evaluate_table(s, t, value, rate);
     return;
   }
   if (t < s->start || t >= s->stop) return;
   switch (s->kind) {
     case STRUT_CONSTANT: *value = s->amplitude; break;
     case STRUT_HALF_SINE:
-      if (turns < 0.5) wave(s, turns, value, rate);
+      if (turns < 0.5) evaluate_wave(s, turns, value, rate);
       break;
     case STRUT_SQUARE: *value = turns - floor(turns) < 0.5 ? s->amplitude : -s->amplitude; break;
     default:
@@ -81,9 +81,9 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
   const strut_signal *s = &signals[index];
   double turns = s->frequency * (t - s->start) + s->phase;
   if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
-    wave(s, turns, value, rate);
+    evaluate_wave(s, turns, value, rate);
   else
-    evaluate(signals, index, t, turns, value, rate);
+    evaluate_other(signals, index, t, turns, value, rate);
 }
 
 /* The first multiple of half a period after t, counted from where the phase is 0. */
@@ -154,40 +154,40 @@ double strut_signal_period(const strut_signal *signals, int32_t index) {
 
 /* ---- when signals turn or jump, and by how much ---- */
 
-/* Of each wave that many turns and as many zeros are looked at: the next ones are like them. */
+/* Turns and zeros per wave that are tested: later ones resemble them. */
 enum { WAVES = 8, MOST_TIMES = 256 };
 
 typedef struct times {
   double from, to, *time;
-  size_t count, room;
+  size_t count, capacity;
 } times;
 
-static void add(times *t, double time) {
-  if (time >= t->from && time <= t->to && t->count < t->room) t->time[t->count++] = time;
+static void add_time(times *t, double time) {
+  if (time >= t->from && time <= t->to && t->count < t->capacity) t->time[t->count++] = time;
 }
 
-/* Zeros and turns, a quarter of a period apart. */
+/* Adds zeros and turns, a quarter of a period apart. */
 static void add_wave(const strut_signal *s, times *t) {
   double begin = fmax(t->from, s->start);
   double quarter = floor(4.0 * (s->frequency * (begin - s->start) + s->phase));
   for (int k = 0; k < 2 * WAVES; k++)
-    add(t, s->start + (0.25 * (quarter + k) - s->phase) / s->frequency);
+    add_time(t, s->start + (0.25 * (quarter + k) - s->phase) / s->frequency);
 }
 
 static void add_signal(const strut_signal *signals, int32_t index, times *t) {
   const strut_signal *s = &signals[index];
-  add(t, s->start);
-  add(t, s->stop);
+  add_time(t, s->start);
+  add_time(t, s->stop);
   if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE)
     add_wave(s, t);
-  for (size_t i = 0; s->kind == STRUT_TABLE && i < s->point_count; i++) add(t, s->time[i]);
+  for (size_t i = 0; s->kind == STRUT_TABLE && i < s->point_count; i++) add_time(t, s->time[i]);
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
     add_signal(signals, s->terms[i], t);
 }
 
 size_t strut_signal_times(const strut_signal *signals, int32_t index, double from, double to,
-                          double *time, size_t room) {
-  times t = {.from = from, .to = to, .time = time, .room = room};
+                          double *time, size_t capacity) {
+  times t = {.from = from, .to = to, .time = time, .capacity = capacity};
   add_signal(signals, index, &t);
   return t.count;
 }

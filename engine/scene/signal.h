@@ -52,7 +52,7 @@ STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index,
                                      double *value, double *rate);
 
 /**
- * The first time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.
+ * First time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.
  */
 STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t index, double t);
 
@@ -63,13 +63,13 @@ STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t in
 STRUT_API double strut_signal_period(const strut_signal *signals, int32_t index);
 
 /**
- * Times from `from` to `to` at which the signal may turn, jump or be steepest, in no order; the first
- * ones of each wave. Fills up to `room` of them and returns how many.
+ * Finds times from `from` to `to` at which the signal may turn, jump or be steepest, in no order;
+ * the first ones of each wave. Fills at most `capacity` of them and returns their number.
  */
 STRUT_API size_t strut_signal_times(const strut_signal *signals, int32_t index, double from,
-                                    double to, double *time, size_t room);
+                                    double to, double *time, size_t capacity);
 
-/** The most that the signal changes within a step of `step` [s] at such a time, and that time. */
+/** Largest change of the signal within `step` [s] at such a time; *when: that time. */
 STRUT_API double strut_signal_jump(const strut_signal *signals, int32_t index, double step,
                                    double from, double to, double *when);
 

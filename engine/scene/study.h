@@ -2,10 +2,10 @@
 /**
  * A study: one model at many points, as a plain description.
  *
- * Points are the grid of all axes crossed, the last axis fastest. An axis gives one parameter of the
- * model or several together, each by a list or by a range that is never written out, so that a billion
- * points need no memory. Variants of the model are the first axis, of the one column "variant". All
- * texts and arrays are owned by whoever filled the study.
+ * Points are the product of all axes, the last axis fastest. An axis gives one or several
+ * parameters of the model, by a list or by a range that is never expanded, so that a billion points
+ * need no memory. Variants of the model are the first axis, with the single column "variant". Texts
+ * and arrays are owned by the creator of the study.
  */
 #ifndef STRUT_ENGINE_SCENE_STUDY_H
 #define STRUT_ENGINE_SCENE_STUDY_H
@@ -37,7 +37,7 @@ typedef struct strut_study_column {
   const char *const *words; /* (count of the axis) of a LIST of words */
 } strut_study_column;
 
-/** What a parameter is at a point. */
+/** Value of a parameter at a point. */
 typedef struct strut_study_value {
   double number;    /* SI */
   const char *word; /* of a text parameter, else NULL */
@@ -49,7 +49,9 @@ typedef struct strut_study_axis {
   strut_study_column *columns; /* (column_count) they go together */
 } strut_study_axis;
 
-/** What of a run's summary is kept: X(NAME, word of the language). The table's order. */
+/**
+ * Values kept of the summary of a run: X(NAME, word of the language), in the order of the table.
+ */
 #define STRUT_KEEP_TABLE(X)                                                                        \
   X(VELOCITY, "velocity")                                                                          \
   X(SPREAD, "velocity_spread")                                                                     \
@@ -85,16 +87,16 @@ typedef enum strut_keep {
       STRUT_KEEP_COUNT
 } strut_keep;
 
-/** What is drawn, in the order of the language. */
+/** Kinds of figures, in the order of the language. */
 typedef enum strut_study_figure_kind {
   STRUT_FIGURE_LINES,    /* of the table: x, y, series */
   STRUT_FIGURE_MAP,      /* of the table: x, y, color */
-  STRUT_FIGURE_MOTION,   /* lines of what runs recorded, node by node */
-  STRUT_FIGURE_PERIOD,   /* ways of the nodes over the last period of each run */
+  STRUT_FIGURE_MOTION,   /* lines of recorded runs, node by node */
+  STRUT_FIGURE_PERIOD,   /* node trajectories over the last period of each run */
   STRUT_FIGURE_SNAPSHOTS /* shapes of each run */
 } strut_study_figure_kind;
 
-/** A drawing of the table, or of what runs recorded. */
+/** A figure of the table or of recorded runs. */
 typedef struct strut_study_figure {
   const char *name;
   strut_study_figure_kind kind;

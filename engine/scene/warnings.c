@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is valid, yet hardly meant: each cause once, with the first names. See check.h. */
+/*
+ * Warnings about valid scenes: properties that are rarely intended, once per cause with the first
+ * names. See check.h.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,17 +13,19 @@
 
 enum { NAMED = 3, SAMPLES = 1000, MOST_TIMES = 256 };
 
-/* Nodes lie this many times deeper than all weight on one of them would press it, or this part of
-   the structure's size: then it is no depth at which they rest. */
+/*
+ * Nodes start inside the ground if they are this many times deeper than all weight on one of them
+ * would press it, and deeper than this part of the size of the structure.
+ */
 static const double DEEPER = 10.0, DEEP = 1e-6;
 
-/* The things that one warning is about. */
+/* Items of one warning. */
 typedef struct named {
   size_t count, first; /* index of the first */
   char names[600];
 } named;
 
-static void name(named *all, size_t index, const char *text) {
+static void add_name(named *all, size_t index, const char *text) {
   size_t used = strlen(all->names);
   if (!all->count) all->first = index;
   if (all->count < NAMED)
@@ -29,7 +34,7 @@ static void name(named *all, size_t index, const char *text) {
 }
 
 /* "a, b, c and 2 more" */
-static const char *names_of(named *all) {
+static const char *list_names(named *all) {
   size_t used = strlen(all->names);
   if (all->count > NAMED)
     snprintf(all->names + used, sizeof all->names - used, " and %zu more", all->count - NAMED);
@@ -37,8 +42,8 @@ static const char *names_of(named *all) {
   return all->names;
 }
 
-/* A member's rest length at time t, drives included. */
-static double rest_at(const strut_scene *scene, size_t member, double rest, double t) {
+/* Rest length of a member at time t, drives included. */
+static double rest_length_at(const strut_scene *scene, size_t member, double rest, double t) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     double value, rate;
     if ((size_t)scene->actuators[i].member != member) continue;
@@ -48,12 +53,12 @@ static double rest_at(const strut_scene *scene, size_t member, double rest, doub
   return rest;
 }
 
-/* The shortest rest length up to the time `last` [s], and when it is met. */
-static double shortest(const strut_scene *scene, double last, size_t member, double rest,
-                       double *when) {
+/* Finds the shortest rest length up to the time `last` [s], and its time. */
+static double find_shortest_rest_length(const strut_scene *scene, double last, size_t member,
+                                        double rest, double *when) {
   double least = (double)INFINITY, time[MOST_TIMES];
   for (int k = 0; k <= SAMPLES; k++) {
-    double t = last * k / SAMPLES, length = rest_at(scene, member, rest, t);
+    double t = last * k / SAMPLES, length = rest_length_at(scene, member, rest, t);
     if (length < least) least = length, *when = t;
   }
   for (size_t i = 0; i < scene->actuator_count; i++) {
@@ -61,7 +66,7 @@ static double shortest(const strut_scene *scene, double last, size_t member, dou
     size_t count =
         strut_signal_times(scene->signals, scene->actuators[i].signal, 0.0, last, time, MOST_TIMES);
     for (size_t k = 0; k < count; k++) {
-      double length = rest_at(scene, member, rest, time[k]);
+      double length = rest_length_at(scene, member, rest, time[k]);
       if (length < least) least = length, *when = time[k];
     }
   }
@@ -79,21 +84,21 @@ static void warn_of_rest_lengths(strut_checker *checker) {
     strut_rest rest;
     double t = 0.0;
     if (earlier < i || !strut_member_rest(scene, member, &rest)) continue;
-    double least = shortest(scene, last, member, rest.length, &t);
+    double least = find_shortest_rest_length(scene, last, member, rest.length, &t);
     if (!(least < -1e-9 * rest.length)) continue;
     if (!below.count) worst = least, when = t;
-    name(&below, member, scene->members[member].name);
+    add_name(&below, member, scene->members[member].name);
   }
   if (!below.count) return;
-  strut_report_finding(
-      checker, STRUT_ON_MEMBER, below.first, "rest_length_below_zero",
-      "the drive takes the rest length of '%s' to %.4g m at t = %.4g s, below zero, where a "
-      "member has no meaning; give it a smaller amplitude or a longer member%s%s",
-      scene->members[below.first].name, worst, when, below.count > 1 ? "; the same of " : "",
-      below.count > 1 ? names_of(&below) : "");
+  strut_report_finding(checker, STRUT_ON_MEMBER, below.first, "rest_length_below_zero",
+                       "the drive takes the rest length of '%s' to %.4g m at t = %.4g s, which is "
+                       "below zero; use a smaller amplitude or a longer member%s%s",
+                       scene->members[below.first].name, worst, when,
+                       below.count > 1 ? "; the same of " : "",
+                       below.count > 1 ? list_names(&below) : "");
 }
 
-/* Deeper in the ground than where anything would rest. */
+/* Warns of nodes that start deeper in the ground than they could rest. */
 static void warn_of_depths(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->ground;
@@ -117,15 +122,14 @@ static void warn_of_depths(strut_checker *checker) {
     if (node->fixed[0] && node->fixed[1]) continue;
     if (!(depth > DEEPER * weight / contact->stiffness && depth > DEEP * size)) continue;
     if (!below.count) depth_of_first = depth;
-    name(&below, (size_t)contact->node, node->name);
+    add_name(&below, (size_t)contact->node, node->name);
   }
   if (below.count)
-    strut_report_finding(
-        checker, STRUT_ON_NODE, below.first, "inside_ground",
-        "node%s %s begin%s inside the ground, '%s' %.3g m deep, and will be thrown out of it; "
-        "raise the structure, or lower ground.height",
-        below.count > 1 ? "s" : "", names_of(&below), below.count > 1 ? "" : "s",
-        scene->nodes[below.first].name, depth_of_first);
+    strut_report_finding(checker, STRUT_ON_NODE, below.first, "inside_ground",
+                         "node%s %s start%s inside the ground, '%s' %.3g m deep, and will be "
+                         "ejected; raise the structure, or lower ground.height",
+                         below.count > 1 ? "s" : "", list_names(&below), below.count > 1 ? "" : "s",
+                         scene->nodes[below.first].name, depth_of_first);
 }
 
 typedef struct pair {
@@ -164,18 +168,17 @@ static void warn_of_pairs(strut_checker *checker) {
     if (pairs[i].low != pairs[i - 1].low || pairs[i].high != pairs[i - 1].high) continue;
     if (only_damps(m) != only_damps(n)) continue; /* a spring and its damper */
     snprintf(text, sizeof text, "'%.80s' and '%.80s'", m->name, n->name);
-    name(&twice, pairs[i].member, text);
+    add_name(&twice, pairs[i].member, text);
   }
   strut_release(pairs);
   if (twice.count)
-    strut_report_finding(
-        checker, STRUT_ON_MEMBER, twice.first, "same_nodes",
-        "members %s join the same two nodes, so that both act there; leave one out if that "
-        "is not meant",
-        names_of(&twice));
+    strut_report_finding(checker, STRUT_ON_MEMBER, twice.first, "same_nodes",
+                         "members %s join the same two nodes, so that both act there; remove one "
+                         "if that is not intended",
+                         list_names(&twice));
 }
 
-/* Where other nodes have members. */
+/* Warns of masses without members, if the scene has members. */
 static void warn_of_loose_masses(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   bool *used = strut_allocate(scene->node_count, sizeof *used);
@@ -189,13 +192,13 @@ static void warn_of_loose_masses(strut_checker *checker) {
   for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
     const strut_node *node = &scene->nodes[i];
     if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))
-      name(&loose, i, node->name);
+      add_name(&loose, i, node->name);
   }
   strut_release(used);
   if (loose.count)
     strut_report_finding(checker, STRUT_ON_NODE, loose.first, "loose_mass",
                          "node%s %s %s mass and can move, but no member holds %s",
-                         loose.count > 1 ? "s" : "", names_of(&loose),
+                         loose.count > 1 ? "s" : "", list_names(&loose),
                          loose.count > 1 ? "have" : "has", loose.count > 1 ? "them" : "it");
 }
 

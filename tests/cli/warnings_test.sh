@@ -73,7 +73,7 @@ nodes: {block: {position: [0, -$depth mm], mass: 1}}
 ground: {stiffness: 1e5, damping: 100, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
 EOF
 done
-told block100.yaml inside_ground "node block begins inside the ground, 'block' 0.1 m deep"
+told block100.yaml inside_ground "node block starts inside the ground, 'block' 0.1 m deep"
 untold block0.0981.yaml
 
 # a member twice; a spring beside its damper

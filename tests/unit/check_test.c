@@ -401,7 +401,7 @@ static void experiment(void **state) {
   e->period_signal = 4;
   expect(&s, STRUT_ON_RUN, 0, "of", "needs a signal");
   e->periods = 1e308, s.signals[0].frequency = 1e-10;
-  expect(&s, STRUT_ON_RUN, 0, "periods", "longer than any number");
+  expect(&s, STRUT_ON_RUN, 0, "periods", "overflows");
   e->measure_last = 11;
   expect(&s, STRUT_ON_RUN, 0, "last", "last 11 periods of a run of 10 periods");
   e->measure_node = 3;

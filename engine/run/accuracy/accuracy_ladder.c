@@ -4,6 +4,7 @@
  * may agree by chance, but as motions. Method, tolerance and longest step all change between runs,
  * so that agreement is not a shared error.
  */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -250,6 +251,7 @@ static strut_status run_next_rung(ladder *l) {
   rung *next = l->runs == 0 ? l->rung : l->now == &l->rung[1] ? &l->rung[2] : &l->rung[1];
   strut_run_options quiet = *l->a->options;
   strut_sink *sinks[] = {&next->track.sink};
+  assert(next != l->now && l->runs < MOST_RUNS);
   l->before = l->now;
   l->now = next;
   strut_summary_free(&next->s);

@@ -3,6 +3,7 @@
  * A wanted accuracy by the periodic orbit: the coarse method comes near it, the reference method
  * corrects it.
  */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -92,6 +93,7 @@ static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
   strut_accuracy *a = solve->a;
   a->check_evaluations += solve->coarse_map.evaluations + solve->reference_map.evaluations;
   strut_orbit_solve_count_evaluations(solve);
+  assert(repeats >= 1);
   solve->counted = 0;
   strut_period_map_free(&solve->coarse_map);
   strut_period_map_free(&solve->reference_map);
@@ -418,6 +420,7 @@ static void add_costs(const strut_orbit_solve *solve, strut_summary *s) {
 static void report_orbit(strut_orbit_solve *solve, const strut_summary *orbit) {
   strut_accuracy *a = solve->a;
   strut_summary *s = a->summary;
+  assert(solve->answer != STRUT_ORBIT_NONE);
   bool coarse_suffices = solve->answer == STRUT_ORBIT_COARSE;
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
   double error = estimate_error(solve, orbit);

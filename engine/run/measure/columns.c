@@ -7,7 +7,7 @@
 #include "engine/forces/forces.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
-static const double FINE = 1e-12, COARSE = 1e-10;
+static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
 
 bool strut_columns_create(const strut_model *model, double step, size_t most, strut_arena *arena,
                           strut_columns *c) {
@@ -22,8 +22,8 @@ bool strut_columns_create(const strut_model *model, double step, size_t most, st
   return c->column && c->value && c->before && c->least && c->most && c->largest;
 }
 
-/* The scene names a contact by its node. */
-static int32_t contact_of(const strut_model *model, int32_t node) {
+/* Finds the contact of a node: the scene refers to contacts by nodes. */
+static int32_t find_contact(const strut_model *model, int32_t node) {
   for (int32_t i = 0; i < model->contacts.count; i++)
     if (model->contacts.entry[i].node == node) return i;
   return -1;
@@ -51,7 +51,7 @@ static void note_needs(strut_columns *c, strut_column_kind kind) {
 
 size_t strut_columns_add(strut_columns *c, strut_column column) {
   if (column.kind == STRUT_COLUMN_NORMAL || column.kind == STRUT_COLUMN_FRICTION)
-    column.item = contact_of(c->model, column.item);
+    column.item = find_contact(c->model, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -62,8 +62,8 @@ size_t strut_columns_add(strut_columns *c, strut_column column) {
   return c->count++;
 }
 
-/* The centre of mass of one component of q or v; *size gets the mean absolute value. */
-static double centre(const strut_model *model, const double *from, double *size) {
+/* Mean of one component of q or v weighted by mass; *size: the same of absolute values. */
+static double mean_by_mass(const strut_model *model, const double *from, double *size) {
   double sum = 0.0, mass = 0.0;
   *size = 0.0;
   for (int32_t i = 0; i < model->node_count; i++) {
@@ -75,12 +75,13 @@ static double centre(const strut_model *model, const double *from, double *size)
   return sum / mass;
 }
 
-/* Above the ground's line, along its normal. */
-static double height_of(const strut_columns *c, const double q[2]) {
+/* Height above the ground, along its normal. */
+static double height_above_ground(const strut_columns *c, const double q[2]) {
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
 }
 
-static double of_member(const strut_columns *c, const strut_state *state, strut_column column) {
+static double evaluate_member(const strut_columns *c, const strut_state *state,
+                              strut_column column) {
   strut_member_values m = strut_member_measure(c->model, state, column.item);
   switch (column.kind) {
     case STRUT_COLUMN_LENGTH: return m.length;
@@ -90,9 +91,9 @@ static double of_member(const strut_columns *c, const strut_state *state, strut_
   }
 }
 
-/* From one node to another, in x and y. */
-static void span(const strut_columns *c, const strut_state *state, strut_column column,
-                 double d[2]) {
+/* Difference of two node positions. */
+static void node_difference(const strut_columns *c, const strut_state *state, strut_column column,
+                            double d[2]) {
   const strut_member_table *t = &c->model->members;
   bool tilt = column.kind == STRUT_COLUMN_TILT;
   size_t a = tilt ? t->from[column.item] : 2 * (size_t)column.item;
@@ -100,8 +101,8 @@ static void span(const strut_columns *c, const strut_state *state, strut_column 
   for (size_t k = 0; k < 2; k++) d[k] = state->q[b + k] - state->q[a + k];
 }
 
-static double of_ledger(const strut_columns *c, const strut_state *state, strut_column_kind kind,
-                        double *size) {
+static double evaluate_ledger(const strut_columns *c, const strut_state *state,
+                              strut_column_kind kind, double *size) {
   const double *w = state->work;
   double sum = w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
   switch (kind) {
@@ -119,9 +120,9 @@ static double of_ledger(const strut_columns *c, const strut_state *state, strut_
   return s->kinetic + s->elastic + s->gravity + s->contact;
 }
 
-/* The value of a column; *size: the largest of the terms that it sums, where that is not the value. */
-static double value_of(const strut_columns *c, const strut_state *state, strut_column column,
-                       double *size) {
+/* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
+static double evaluate_column(const strut_columns *c, const strut_state *state, strut_column column,
+                              double *size) {
   size_t at = 2 * (size_t)(column.item < 0 ? 0 : column.item);
   double d[2];
   switch (column.kind) {
@@ -130,30 +131,30 @@ static double value_of(const strut_columns *c, const strut_state *state, strut_c
     case STRUT_COLUMN_NODE_Y: return state->q[at + 1];
     case STRUT_COLUMN_NODE_VX: return state->v[at];
     case STRUT_COLUMN_NODE_VY: return state->v[at + 1];
-    case STRUT_COLUMN_HEIGHT: return height_of(c, state->q + at);
+    case STRUT_COLUMN_HEIGHT: return height_above_ground(c, state->q + at);
     case STRUT_COLUMN_NORMAL: return column.item < 0 ? 0.0 : state->normal[column.item];
     case STRUT_COLUMN_FRICTION: return column.item < 0 ? 0.0 : state->friction[column.item];
     case STRUT_COLUMN_LENGTH:
     case STRUT_COLUMN_STRETCH:
     case STRUT_COLUMN_RATE:
-    case STRUT_COLUMN_FORCE: return of_member(c, state, column);
+    case STRUT_COLUMN_FORCE: return evaluate_member(c, state, column);
     case STRUT_COLUMN_TILT:
-    case STRUT_COLUMN_ANGLE: span(c, state, column, d); return atan2(d[1], d[0]);
-    case STRUT_COLUMN_DISTANCE: span(c, state, column, d); return hypot(d[0], d[1]);
-    case STRUT_COLUMN_CENTRE_X: return centre(c->model, state->q, size);
-    case STRUT_COLUMN_CENTRE_Y: return centre(c->model, state->q + 1, size);
-    case STRUT_COLUMN_CENTRE_VX: return centre(c->model, state->v, size);
-    case STRUT_COLUMN_CENTRE_VY: return centre(c->model, state->v + 1, size);
+    case STRUT_COLUMN_ANGLE: node_difference(c, state, column, d); return atan2(d[1], d[0]);
+    case STRUT_COLUMN_DISTANCE: node_difference(c, state, column, d); return hypot(d[0], d[1]);
+    case STRUT_COLUMN_CENTRE_X: return mean_by_mass(c->model, state->q, size);
+    case STRUT_COLUMN_CENTRE_Y: return mean_by_mass(c->model, state->q + 1, size);
+    case STRUT_COLUMN_CENTRE_VX: return mean_by_mass(c->model, state->v, size);
+    case STRUT_COLUMN_CENTRE_VY: return mean_by_mass(c->model, state->v + 1, size);
     case STRUT_COLUMN_KINETIC: return c->stored.kinetic;
     case STRUT_COLUMN_ELASTIC: return c->stored.elastic;
     case STRUT_COLUMN_GRAVITY: return c->stored.gravity;
     case STRUT_COLUMN_GROUND: return c->stored.contact;
-    default: return of_ledger(c, state, column.kind, size);
+    default: return evaluate_ledger(c, state, column.kind, size);
   }
 }
 
-/* Forces and energies at the state, where a column needs them. */
-static void prepare(strut_columns *c, strut_state *state) {
+/* Computes forces and energies at the state where a column needs them. */
+static void prepare_state(strut_columns *c, strut_state *state) {
   double t = (double)state->step * c->step + c->shorter;
   if (c->forces)
     strut_forces_observe(c->model, state, t);
@@ -175,9 +176,9 @@ static void note_extremes(strut_columns *c, size_t i, double size) {
 }
 
 void strut_columns_evaluate(strut_columns *c, strut_state *state) {
-  prepare(c, state);
+  prepare_state(c, state);
   for (size_t i = 0; i < c->count; i++) {
-    double size = -1.0, last = c->value[i], now = value_of(c, state, c->column[i], &size);
+    double size = -1.0, last = c->value[i], now = evaluate_column(c, state, c->column[i], &size);
     if (is_angle(c->column[i].kind)) now += STRUT_TAU * round((last - now) / STRUT_TAU);
     c->before[i] = last;
     c->value[i] = now;
@@ -187,24 +188,25 @@ void strut_columns_evaluate(strut_columns *c, strut_state *state) {
 
 void strut_columns_begin(strut_columns *c, strut_state *state) {
   c->fastest = 0.0;
-  prepare(c, state);
+  prepare_state(c, state);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0;
-    c->before[i] = c->value[i] = value_of(c, state, c->column[i], &size);
+    c->before[i] = c->value[i] = evaluate_column(c, state, c->column[i], &size);
     c->least[i] = (double)INFINITY, c->most[i] = -(double)INFINITY, c->largest[i] = 0.0;
     note_extremes(c, i, size < 0.0 ? fabs(c->value[i]) : size);
   }
 }
 
 double strut_columns_span(const strut_columns *c, size_t index) {
-  bool sums = c->column[index].kind == STRUT_COLUMN_TOTAL; /* whose terms vary where it does not */
+  bool sums = c->column[index].kind ==
+              STRUT_COLUMN_TOTAL; /* the terms vary even where the total does not */
   return sums ? c->largest[index] : c->most[index] - c->least[index];
 }
 
 double strut_columns_noise(const strut_columns *c, size_t index) {
   const strut_model *m = c->model;
   int32_t item = c->column[index].item;
-  double length = FINE * m->size;
+  double length = POSITION_ROUNDING * m->size;
   switch (c->column[index].kind) {
     case STRUT_COLUMN_NODE_X:
     case STRUT_COLUMN_NODE_Y:
@@ -215,12 +217,12 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
     case STRUT_COLUMN_CENTRE_X:
     case STRUT_COLUMN_CENTRE_Y: return length;
     case STRUT_COLUMN_TILT:
-    case STRUT_COLUMN_ANGLE: return FINE;
+    case STRUT_COLUMN_ANGLE: return POSITION_ROUNDING;
     case STRUT_COLUMN_NODE_VX:
     case STRUT_COLUMN_NODE_VY:
     case STRUT_COLUMN_CENTRE_VX:
     case STRUT_COLUMN_CENTRE_VY:
-    case STRUT_COLUMN_RATE: return COARSE * c->fastest;
+    case STRUT_COLUMN_RATE: return SUM_ROUNDING * c->fastest;
     case STRUT_COLUMN_FORCE: return length * m->members.stiffness[item];
     case STRUT_COLUMN_NORMAL: return item < 0 ? 0.0 : length * m->contacts.entry[item].stiffness;
     default: return 0.0;

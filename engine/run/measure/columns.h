@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The columns of the motion that measured quantities are made of, evaluated at a state.
- */
+/** Columns of the motion, of which measured quantities are made, evaluated at a state. */
 #ifndef STRUT_ENGINE_RUN_MEASURE_COLUMNS_H
 #define STRUT_ENGINE_RUN_MEASURE_COLUMNS_H
 
@@ -9,39 +7,40 @@
 #include "engine/model/state.h"
 #include "engine/scene/quantity.h"
 
-/** Different columns, each once, and their values now and over the window. */
+/** Distinct columns with their values now and over the window. */
 typedef struct strut_columns {
   const strut_model *model;
-  double step; /* dt [s] */
-  double
-      shorter; /* by how much the latest step was longer than dt: below 0 where the run ends [s] */
+  double step;      /* dt [s] */
+  double shorter;   /* length of the latest step minus dt: below 0 where the run ends [s] */
   double normal[2]; /* of the ground */
   size_t count;
   strut_column *column; /* (count) `item` of CONTACT indexes the model's contacts; -1: no contact */
   double *value;        /* (count) now, SI */
-  double *before;       /* (count) a step before */
+  double *before;       /* (count) one step before */
   double *least, *most; /* (count) over the window */
   double *largest;      /* (count) largest absolute value of the terms that it sums */
   double fastest;       /* largest speed of a node in the window [m/s]; only with `speeds` */
   bool forces;          /* some column needs the forces at the state */
-  bool energies;        /* or the stored energies */
-  bool speeds;          /* some column is a velocity, whose rounding is that of the nodes' speeds */
+  bool energies;        /* some column needs the stored energies */
+  bool speeds;          /* some column is a velocity, whose rounding scales with the node speeds */
   strut_energies stored; /* [J]; with `energies` */
 } strut_columns;
 
-/** Room for `most` columns in the arena. False: out of memory. */
+/** Allocates for `most` columns in the arena. False: out of memory. */
 bool strut_columns_create(const strut_model *model, double step, size_t most, strut_arena *arena,
                           strut_columns *columns);
-/** The index of a column, which is added where it is new. */
+/** Returns the index of a column, added if it is new. */
 size_t strut_columns_add(strut_columns *columns, strut_column column);
-/** Evaluates all at the state; changes forces and rest lengths of the state, which follow from q, v
-    and t. Angles go on from their last value. */
+/**
+ * Evaluates all columns at the state; updates forces and rest lengths of the state, which follow
+ * from q, v and t. Angles continue from their last value.
+ */
 void strut_columns_evaluate(strut_columns *columns, strut_state *state);
-/** Begins the window at the present values. Angles stay within half a turn of 0 here. */
+/** Starts the window at the present values. Angles are within half a turn of 0 here. */
 void strut_columns_begin(strut_columns *columns, strut_state *state);
-/** How far a column, or the terms that it sums, varied in the window, SI. */
+/** Range of a column, or of the terms that it sums, in the window, SI. */
 double strut_columns_span(const strut_columns *columns, size_t index);
-/** What rounding alone makes of a column in the window, SI. */
+/** Rounding error of a column in the window, SI. */
 double strut_columns_noise(const strut_columns *columns, size_t index);
 
 #endif

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/measure.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "engine/model/pose.h"
 
-/* A mark this close to a step's end, in steps, counts as being there. */
+/* A mark this close to the end of a step, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
 
-/* A mean velocity of so little beside the nodes' own is what rounding leaves of a symmetric motion. */
-static const double CANCELLED = 1e-10;
+/* A mean velocity below this part of the node speeds is the rounding of a symmetric motion. */
+static const double SYMMETRY_ROUNDING = 1e-10;
 
-void strut_measure_track(const strut_model *model, const strut_state *state,
-                         const strut_measurement *m, double *x, double *v) {
+void strut_measure_tracked_point(const strut_model *model, const strut_state *state,
+                                 const strut_measurement *m, double *x, double *v) {
   if (m->node >= 0) {
     *x = state->q[2 * m->node];
     *v = state->v[2 * m->node];
@@ -37,7 +38,8 @@ static void place_marks(const strut_span *span, double begin, strut_measurement 
 void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
                           size_t periods, strut_measurement *m) {
   size_t contacts = (size_t)model->contacts.count;
-  m->marks = periods + 1 < m->room ? periods + 1 : m->room;
+  assert(periods >= 1);
+  m->marks = periods + 1 < m->capacity ? periods + 1 : m->capacity;
   for (size_t i = 0; i < m->marks; i++) m->time[i] = begin + (double)i * period;
   m->next = 0;
   m->window_steps = 0;
@@ -46,7 +48,7 @@ void strut_measure_window(const strut_model *model, strut_state *state, double b
 }
 
 strut_status strut_measure_create(const strut_model *model, const strut_experiment *experiment,
-                                  const strut_time_grid *grid, double begin, size_t room,
+                                  const strut_time_grid *grid, double begin, size_t capacity,
                                   strut_measurement *m) {
   *m = (strut_measurement){.grid = *grid, .node = experiment->measure_node};
   strut_span span = strut_experiment_span(experiment, model->scene);
@@ -54,9 +56,9 @@ strut_status strut_measure_create(const strut_model *model, const strut_experime
   double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
   size_t contacts = (size_t)model->contacts.count;
   m->marks = periods < 1.5 ? 2 : (size_t)ceil(periods - 1e-9) + 1;
-  m->room = room > m->marks ? room : m->marks;
-  m->time = strut_arena_allocate(&m->arena, m->room, sizeof *m->time);
-  m->x = strut_arena_allocate(&m->arena, m->room, sizeof *m->x);
+  m->capacity = capacity > m->marks ? capacity : m->marks;
+  m->time = strut_arena_allocate(&m->arena, m->capacity, sizeof *m->time);
+  m->x = strut_arena_allocate(&m->arena, m->capacity, sizeof *m->x);
   m->contact_steps = strut_arena_allocate(&m->arena, contacts, sizeof *m->contact_steps);
   m->max_height = strut_arena_allocate(&m->arena, contacts, sizeof *m->max_height);
   bool wanted = experiment->quantity_count > 0;
@@ -76,22 +78,22 @@ int64_t strut_measure_first_step(const strut_measurement *m) {
   return n > 0 ? (int64_t)n : 0;
 }
 
-static double fastest_node(const strut_model *model, const strut_state *state) {
+static double largest_node_speed(const strut_model *model, const strut_state *state) {
   double most = 0.0;
   for (int32_t i = 0; i < model->node_count; i++)
     most = fmax(most, hypot(state->v[2 * i], state->v[2 * i + 1]));
   return most;
 }
 
-static strut_marks marks_of(const strut_measurement *m, double length) {
+static strut_marks make_marks(const strut_measurement *m, double length) {
   return (strut_marks){.step = m->grid.step, .length = length, .count = m->marks, .time = m->time};
 }
 
 void strut_measure_begin(const strut_model *model, strut_state *state, strut_measurement *m) {
-  strut_marks marks = marks_of(m, m->grid.step);
-  m->fastest = fastest_node(model, state);
+  strut_marks marks = make_marks(m, m->grid.step);
+  m->fastest = largest_node_speed(model, state);
   if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
-  strut_measure_track(model, state, m, &m->last_x, &m->last_v);
+  strut_measure_tracked_point(model, state, m, &m->last_x, &m->last_v);
   double position = m->time[0] / m->grid.step - (double)state->step;
   if (fabs(position) < MARK_TOLERANCE) {
     m->x[0] = m->last_x;
@@ -116,16 +118,16 @@ static bool mark_reached(const strut_measurement *m, double n) {
 }
 
 /* Length of the step that ended as step n: the last one of a run may be shorter. */
-static double length_of(const strut_measurement *m, int64_t n) {
+static double step_length(const strut_measurement *m, int64_t n) {
   double rest = n == m->grid.last ? strut_time_grid_rest(&m->grid) : 0.0;
   return rest > 0.0 ? rest : m->grid.step;
 }
 
-/* Apart from strut_measure_step, which most steps leave without it. */
+/* Kept out of strut_measure_step, most calls of which pass no mark. */
 static __attribute__((noinline)) void pass_marks(const strut_model *model, const strut_state *state,
                                                  strut_measurement *m, double x, double v) {
-  double n = (double)state->step, step = m->grid.step, length = length_of(m, state->step);
-  m->fastest = fmax(m->fastest, fastest_node(model, state));
+  double n = (double)state->step, step = m->grid.step, length = step_length(m, state->step);
+  m->fastest = fmax(m->fastest, largest_node_speed(model, state));
   while (mark_reached(m, n)) {
     double s = (m->time[m->next] / step - (n - 1.0)) * (step / length);
     m->x[m->next++] =
@@ -135,7 +137,7 @@ static __attribute__((noinline)) void pass_marks(const strut_model *model, const
 
 void strut_measure_step(const strut_model *model, const strut_state *state, strut_measurement *m) {
   double x, v;
-  strut_measure_track(model, state, m, &x, &v);
+  strut_measure_tracked_point(model, state, m, &x, &v);
   count_contacts(model, state, m);
   if (mark_reached(m, (double)state->step)) pass_marks(model, state, m, x, v);
   m->last_x = x;
@@ -144,13 +146,14 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
 
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
                                    strut_measurement *m) {
-  strut_marks marks = marks_of(m, length_of(m, state->step));
+  strut_marks marks = make_marks(m, step_length(m, state->step));
+  assert(m->quantities);
   strut_measure_step(model, state, m);
   strut_quantities_step(m->quantities, &marks, state);
 }
 
 bool strut_measure_is_zero(const strut_measurement *m, double velocity) {
-  return fabs(velocity) <= CANCELLED * m->fastest;
+  return fabs(velocity) <= SYMMETRY_ROUNDING * m->fastest;
 }
 
 void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {

@@ -8,37 +8,37 @@
 #include "engine/run/measure/quantity_program.h"
 #include "engine/run/measure/time_grid.h"
 
-/* A mark this close to a step's end, in steps, counts as being there. */
+/* A mark this close to the end of a step, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
 
-/* What cancels to so much of what it is made of, and what is below so much of it, is rounding. */
+/* Results below these parts of their terms are rounding: of differences, and of others. */
 static const double CANCELLED = 1e-10, ROUNDED = 1e-15;
 
-/* Second differences in a row that differ by no more than this factor belong to a smooth curve. */
+/* Successive second differences within this factor belong to a smooth curve. */
 static const double SMOOTH = 2.0;
 
 enum { RECENT = 5 };
 
-/* What is gathered over a stretch of the window. */
+/* Sums and extremes over a stretch of the window. */
 typedef struct stretch {
-  double integral, square; /* of the value and its square over the time */
+  double integral, square; /* integrals of the value and its square over the time */
   double low, high;
-  double begin;  /* value where it begins */
-  double origin; /* and of the position whose change is the integral */
-  double time;   /* of its begin [s] */
+  double begin;  /* value at the start */
+  double origin; /* position at the start, where its change is the integral */
+  double time;   /* start [s] */
 } stretch;
 
 typedef struct meter {
   const strut_quantity_definition *definition;
   size_t *index;  /* (length) the columns of the program */
-  size_t rate_of; /* a single velocity: the column whose change it is; or NONE */
+  size_t rate_of; /* column whose change is the integral of a single velocity; or NONE */
   double value;   /* after the latest step */
   double recent[RECENT];
   int recent_count;
   double largest;      /* absolute value in the window */
-  stretch whole, part; /* since the window's begin, since the latest mark */
+  stretch whole, part; /* since the start of the window; since the latest mark */
   double result;       /* up to the latest mark */
-  int64_t parts; /* periods so far, the mean of their values, and the sum of squares about it */
+  int64_t parts;       /* periods so far; mean of their values; sum of squares about it */
   double part_mean, part_square;
 } meter;
 
@@ -57,7 +57,7 @@ struct strut_quantities {
 static const size_t NONE = (size_t)-1;
 
 /* The column whose time derivative a column is. */
-static bool primitive_of(strut_column column, strut_column *primitive) {
+static bool find_primitive(strut_column column, strut_column *primitive) {
   *primitive = column;
   switch (column.kind) {
     case STRUT_COLUMN_NODE_VX: primitive->kind = STRUT_COLUMN_NODE_X; return true;
@@ -79,7 +79,7 @@ static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, 
     if (d->program[i].operation == STRUT_OPERATION_COLUMN)
       m->index[i] = strut_columns_add(&q->columns, d->program[i].column);
   bool mean = d->length == 1 && d->take == STRUT_TAKE_MEAN;
-  if (mean && primitive_of(d->program[0].column, &primitive))
+  if (mean && find_primitive(d->program[0].column, &primitive))
     m->rate_of = strut_columns_add(&q->columns, primitive);
   return true;
 }
@@ -100,11 +100,11 @@ strut_quantities *strut_quantities_create(const strut_model *model, const strut_
   q->stack = strut_arena_allocate(arena, depth, sizeof *q->stack);
   q->sizes = strut_arena_allocate(arena, columns, sizeof *q->sizes);
   q->size_stack = strut_arena_allocate(arena, depth, sizeof *q->size_stack);
-  bool fine = q->meters && q->last && q->stack && q->sizes && q->size_stack &&
-              strut_columns_create(model, step, columns, arena, &q->columns);
-  for (size_t i = 0; i < q->count && fine; i++)
-    fine = make_meter(q, &e->quantities[i], arena, &q->meters[i]);
-  return fine ? q : NULL;
+  bool ready = q->meters && q->last && q->stack && q->sizes && q->size_stack &&
+               strut_columns_create(model, step, columns, arena, &q->columns);
+  for (size_t i = 0; i < q->count && ready; i++)
+    ready = make_meter(q, &e->quantities[i], arena, &q->meters[i]);
+  return ready ? q : NULL;
 }
 
 bool strut_quantities_need_ledger(const strut_experiment *e) {
@@ -117,7 +117,7 @@ bool strut_quantities_need_ledger(const strut_experiment *e) {
   return false;
 }
 
-static double value_of(const strut_quantities *q, const meter *m) {
+static double evaluate_meter(const strut_quantities *q, const meter *m) {
   return strut_quantity_program_evaluate(m->definition, m->index, q->columns.value, q->stack);
 }
 
@@ -125,24 +125,25 @@ static stretch begin_stretch(double time, double value, double origin) {
   return (stretch){.low = value, .high = value, .begin = value, .origin = origin, .time = time};
 }
 
-static void note(stretch *s, double value) {
-  if (!(value >= s->low)) s->low = value; /* a value that is no number stays */
+static void note_extreme(stretch *s, double value) {
+  if (!(value >= s->low)) s->low = value; /* a NaN remains */
   if (!(value <= s->high)) s->high = value;
 }
 
-/* The part of a step that lasts `time` [s], from one value to another. */
-static void add(meter *m, double from, double to, double time) {
+/* Adds a part of a step of `time` [s], linear from one value to another. */
+static void add_interval(meter *m, double from, double to, double time) {
   stretch *const both[] = {&m->whole, &m->part};
   for (int k = 0; k < 2; k++) {
     both[k]->integral += 0.5 * (from + to) * time;
     both[k]->square += 0.5 * (from * from + to * to) * time;
-    note(both[k], to);
+    note_extreme(both[k], to);
   }
   m->largest = fmax(m->largest, fabs(to));
 }
 
-/* The reduction of a stretch that ends here. */
-static double reduce(const meter *m, const stretch *s, double time, double value, double place) {
+/* Reduces a stretch that ends here to its value. */
+static double reduce_stretch(const meter *m, const stretch *s, double time, double value,
+                             double place) {
   double length = time - s->time;
   switch (m->definition->take) {
     case STRUT_TAKE_MEAN: return (m->rate_of == NONE ? s->integral : place - s->origin) / length;
@@ -165,16 +166,16 @@ static void open_window(meter *m, double time, double value, double place) {
 }
 
 static void close_part(meter *m, double time, double value, double place) {
-  double of_part = reduce(m, &m->part, time, value, place), d = of_part - m->part_mean;
-  m->result = reduce(m, &m->whole, time, value, place);
+  double of_part = reduce_stretch(m, &m->part, time, value, place), d = of_part - m->part_mean;
+  m->result = reduce_stretch(m, &m->whole, time, value, place);
   m->parts++;
   m->part_mean += d / (double)m->parts;
   m->part_square += d * (of_part - m->part_mean);
   m->part = begin_stretch(time, value, place);
 }
 
-/* Fraction `s` of the latest step, of length h [s]. */
-static double place_at(const strut_quantities *q, const meter *m, double h, double s) {
+/* Interpolates the primitive at the fraction `s` of the latest step, of length h [s]. */
+static double interpolate_primitive(const strut_quantities *q, const meter *m, double h, double s) {
   const strut_columns *c = &q->columns;
   if (m->rate_of == NONE) return 0.0;
   size_t x = m->rate_of, v = m->index[0];
@@ -182,7 +183,7 @@ static double place_at(const strut_quantities *q, const meter *m, double h, doub
   return strut_hermite(c->before[x], c->before[v], c->value[x], c->value[v], h, s);
 }
 
-/* The mark `time` is passed at the fraction `s` of the step from `from` on. */
+/* Passes the mark `time` at the fraction `s` of the step; `from`: fraction of the mark before. */
 static void pass_mark(strut_quantities *q, double time, double h, double from, double s,
                       const double *last) {
   for (size_t i = 0; i < q->count; i++) {
@@ -190,9 +191,9 @@ static void pass_mark(strut_quantities *q, double time, double h, double from, d
     double now = m->value, rise = now - last[i];
     double a = from > 0.0 ? last[i] + from * rise : last[i];
     double b = s < 1.0 ? last[i] + s * rise : now;
-    double place = place_at(q, m, h, s);
+    double place = interpolate_primitive(q, m, h, s);
     if (q->next > 0) {
-      add(m, a, b, (s - from) * h);
+      add_interval(m, a, b, (s - from) * h);
       close_part(m, time, b, place);
     } else {
       open_window(m, time, b, place);
@@ -203,7 +204,7 @@ static void pass_mark(strut_quantities *q, double time, double h, double from, d
   q->next++;
 }
 
-/* The extreme between steps, where the values about it are those of a smooth curve. */
+/* Finds an extreme between steps where the values around it lie on a smooth curve. */
 static void refine_extremes(meter *m) {
   const double *f = m->recent;
   double left = (f[2] - f[1]) - (f[1] - f[0]), middle = (f[3] - f[2]) - (f[2] - f[1]);
@@ -214,11 +215,11 @@ static void refine_extremes(meter *m) {
   double most = fmax(fabs(middle), fmax(fabs(left), fabs(right)));
   if (most > SMOOTH * least) return;
   double slope = 0.5 * (f[3] - f[1]), vertex = f[2] - 0.5 * slope * slope / middle;
-  note(&m->whole, vertex);
-  note(&m->part, vertex);
+  note_extreme(&m->whole, vertex);
+  note_extreme(&m->part, vertex);
 }
 
-static void remember(meter *m, double value) {
+static void store_recent(meter *m, double value) {
   strut_reduction take = m->definition->take;
   if (take != STRUT_TAKE_MIN && take != STRUT_TAKE_MAX && take != STRUT_TAKE_RANGE) return;
   if (m->recent_count == RECENT)
@@ -233,7 +234,7 @@ void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut
   q->next = 0;
   strut_columns_begin(&q->columns, state);
   for (size_t i = 0; i < q->count; i++) {
-    q->meters[i].value = value_of(q, &q->meters[i]);
+    q->meters[i].value = evaluate_meter(q, &q->meters[i]);
     q->meters[i].result = (double)NAN;
     q->meters[i].parts = 0;
   }
@@ -242,7 +243,7 @@ void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut
     meter *m = &q->meters[i];
     open_window(m, marks->time[0], m->value,
                 m->rate_of == NONE ? 0.0 : q->columns.value[m->rate_of]);
-    remember(m, m->value);
+    store_recent(m, m->value);
   }
   q->begin = q->time = marks->time[0];
   q->next = 1;
@@ -256,9 +257,10 @@ void strut_quantities_step(strut_quantities *q, const strut_marks *marks, strut_
   strut_columns_evaluate(&q->columns, state);
   for (size_t i = 0; i < q->count; i++) {
     last[i] = q->meters[i].value;
-    q->meters[i].value = value_of(q, &q->meters[i]);
+    q->meters[i].value = evaluate_meter(q, &q->meters[i]);
   }
-  for (size_t i = 0; i < q->count && q->next > 0; i++) remember(&q->meters[i], q->meters[i].value);
+  for (size_t i = 0; i < q->count && q->next > 0; i++)
+    store_recent(&q->meters[i], q->meters[i].value);
   while (q->next < marks->count && marks->time[q->next] / step <= n + MARK_TOLERANCE) {
     double s = (marks->time[q->next] / step - (n - 1.0)) * (step / h);
     if (s > 1.0 - MARK_TOLERANCE) s = 1.0;
@@ -269,11 +271,11 @@ void strut_quantities_step(strut_quantities *q, const strut_marks *marks, strut_
   for (size_t i = 0; i < q->count; i++) {
     meter *m = &q->meters[i];
     double now = m->value, begin = from > 0.0 ? last[i] + from * (now - last[i]) : last[i];
-    if (from < 1.0) add(m, begin, now, (1.0 - from) * h);
+    if (from < 1.0) add_interval(m, begin, now, (1.0 - from) * h);
   }
 }
 
-/* Sizes, spans and noises of all columns over the window. */
+/* Fills size, span and noise of all columns over the window. */
 static void measure_columns(strut_quantities *q) {
   const strut_columns *c = &q->columns;
   for (size_t i = 0; i < c->count; i++)
@@ -282,7 +284,7 @@ static void measure_columns(strut_quantities *q) {
                                     .noise = strut_columns_noise(c, i)};
 }
 
-static void fill(strut_quantities *q, meter *m, strut_measured *to) {
+static void fill_measured(strut_quantities *q, meter *m, strut_measured *to) {
   strut_reduction take = m->definition->take;
   bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
@@ -303,5 +305,5 @@ void strut_quantities_finish(strut_quantities *q, strut_summary *summary) {
   if (q->next < 2) return;
   measure_columns(q);
   for (size_t i = 0; i < q->count && i < summary->measured_count; i++)
-    fill(q, &q->meters[i], &summary->measured[i]);
+    fill_measured(q, &q->meters[i], &summary->measured[i]);
 }

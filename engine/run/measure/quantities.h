@@ -18,7 +18,7 @@
 
 typedef struct strut_quantities strut_quantities;
 
-/** When the window is cut: see measure.h. */
+/** Marks that divide the window: see measure.h. */
 typedef struct strut_marks {
   double step;        /* dt [s] */
   double length;      /* of the latest step, which is shorter where the run ends [s] */
@@ -26,16 +26,16 @@ typedef struct strut_marks {
   const double *time; /* (count) [s] */
 } strut_marks;
 
-/** All memory for the scene's quantities, in the arena; NULL: memory is out. */
+/** Allocates for the quantities of the scene in the arena; NULL: out of memory. */
 strut_quantities *strut_quantities_create(const strut_model *model,
                                           const strut_experiment *experiment, double step,
                                           strut_arena *arena);
-/** Does some quantity of the scene need works or losses, which only the ledger knows? */
+/** Does a quantity of the scene need works or losses, which only the ledger has? */
 bool strut_quantities_need_ledger(const strut_experiment *experiment);
-/** Takes the values before the first step of a window. */
+/** Samples the values before the first step of a window. */
 void strut_quantities_begin(strut_quantities *quantities, const strut_marks *marks,
                             strut_state *state);
-/** After each step from then on. Allocates nothing. */
+/** Measures after each step from then on. Allocates nothing. */
 void strut_quantities_step(strut_quantities *quantities, const strut_marks *marks,
                            strut_state *state);
 /** Fills summary->measured from the marks passed so far. */

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/quantity_program.h"
 
+#include <assert.h>
 #include <math.h>
 
-static double apply(strut_operation operation, double a, double b) {
+static double apply_operation(strut_operation operation, double a, double b) {
   switch (operation) {
     case STRUT_OPERATION_ADD: return a + b;
     case STRUT_OPERATION_SUBTRACT: return a - b;
@@ -32,7 +33,7 @@ static double apply(strut_operation operation, double a, double b) {
   }
 }
 
-static int operands(strut_operation operation) {
+static int count_operands(strut_operation operation) {
   static const int counts[] = {
 #define STRUT_OPERANDS(id, count, word) count,
       STRUT_OPERATION_TABLE(STRUT_OPERANDS)
@@ -51,17 +52,20 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
     } else if (p->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = operands(p->operation);
+      int count = count_operands(p->operation);
       top -= (size_t)count;
-      stack[top] = apply(p->operation, stack[top], count > 1 ? stack[top + 1] : 0.0);
+      assert(top < d->depth);
+      stack[top] = apply_operation(p->operation, stack[top], count > 1 ? stack[top + 1] : 0.0);
       top++;
     }
   }
+  assert(top == 1);
   return stack[0];
 }
 
-/* How far the result of one operation moves where its operands move by da and db. */
-static double carried(strut_operation operation, double a, double b, double da, double db) {
+/* Propagates the uncertainties da and db of the operands to the result. */
+static double propagate_uncertainty(strut_operation operation, double a, double b, double da,
+                                    double db) {
   switch (operation) {
     case STRUT_OPERATION_MULTIPLY: return a * db + b * da;
     case STRUT_OPERATION_DIVIDE: return da / b + a * db / (b * b);
@@ -75,14 +79,15 @@ static double carried(strut_operation operation, double a, double b, double da, 
   }
 }
 
-static strut_magnitude combine(strut_operation operation, strut_magnitude a, strut_magnitude b) {
+static strut_magnitude combine_magnitudes(strut_operation operation, strut_magnitude a,
+                                          strut_magnitude b) {
   double size;
   switch (operation) {
     case STRUT_OPERATION_MULTIPLY:
     case STRUT_OPERATION_DIVIDE:
     case STRUT_OPERATION_POWER:
     case STRUT_OPERATION_SQRT:
-    case STRUT_OPERATION_EXP: size = fabs(apply(operation, a.size, b.size)); break;
+    case STRUT_OPERATION_EXP: size = fabs(apply_operation(operation, a.size, b.size)); break;
     case STRUT_OPERATION_SIN:
     case STRUT_OPERATION_COS:
     case STRUT_OPERATION_ASIN:
@@ -93,8 +98,8 @@ static strut_magnitude combine(strut_operation operation, strut_magnitude a, str
     case STRUT_OPERATION_LOG10: size = 1.0; break;
     default: size = fmax(a.size, b.size); break;
   }
-  return (strut_magnitude){size, carried(operation, a.size, b.size, a.span, b.span),
-                           carried(operation, a.size, b.size, a.noise, b.noise)};
+  return (strut_magnitude){size, propagate_uncertainty(operation, a.size, b.size, a.span, b.span),
+                           propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
 }
 
 strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *d,
@@ -108,12 +113,14 @@ strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition
     } else if (p->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = operands(p->operation);
+      int count = count_operands(p->operation);
       strut_magnitude none = {0};
       top -= (size_t)count;
-      stack[top] = combine(p->operation, stack[top], count > 1 ? stack[top + 1] : none);
+      assert(top < d->depth);
+      stack[top] = combine_magnitudes(p->operation, stack[top], count > 1 ? stack[top + 1] : none);
       top++;
     }
   }
+  assert(top == 1);
   return stack[0];
 }

@@ -7,18 +7,18 @@
 
 #include "engine/scene/quantity.h"
 
-/** A program with its columns found: `index` (length) into `value`. */
+/** Evaluates a program; `index` (length): position of each column in `value`. */
 double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
                                        const size_t *index, const double *value, double *stack);
 
-/** The size of a term, and two uncertainties that arithmetic carries on alike. */
+/** Size of a term, and two uncertainties that propagate alike. */
 typedef struct strut_magnitude {
   double size;  /* largest absolute value of the terms */
-  double span;  /* how far it varies */
-  double noise; /* how far rounding moves it */
+  double span;  /* range */
+  double noise; /* rounding error */
 } strut_magnitude;
 
-/** The same program on magnitudes: sums take the larger size and add span and noise. */
+/** Evaluates the program on magnitudes: sums take the larger size and add range and rounding. */
 strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
                                                  const size_t *index, const strut_magnitude *value,
                                                  strut_magnitude *stack);

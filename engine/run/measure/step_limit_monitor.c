@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/step_limit_monitor.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -165,6 +166,7 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   const strut_region_data *region = strut_region_at(method->region);
   *monitor =
       (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
+  assert(region->sets <= (int)(sizeof monitor->set / sizeof monitor->set[0]));
   if (region->sets == 0 || (model->plan & STRUT_TERM_RIGID)) return true;
   monitor->known_limit = HUGE_VAL;
   monitor->count = region->sets;

@@ -5,17 +5,18 @@
 
 #include "engine/model/pose.h"
 
-/* Accelerations are asked for at every so many looks. */
-enum { EVERY = 4, LEAST = 4 };
+/* Samples per solved acceleration; fewest of those for a mean. */
+enum { ACCELERATION_INTERVAL = 4, LEAST_SAMPLES = 4 };
 /*
- * Parts of |a| dt below which a band matters. The band reaches as far on both sides of zero, so that
- * one of half of |a| dt is always met. Where what holds is no stronger than what slows down, a node
- * that passes over it is turned back until it is met, and stays where it is; not so once it takes a
- * hundred turns. Where static friction is the stronger, it holds only what was caught at once.
+ * Parts of |a| dt below which a band is too narrow. The band has its width on both sides of zero,
+ * so that one of half of |a| dt is always met. Where static friction is no stronger than kinetic
+ * friction, a node that passes over the band is turned back until it meets it and then rests; not
+ * so once that takes a hundred turns. Where static friction is stronger, it only holds a node that
+ * meets the band at once.
  */
-static const double SURE = 0.5, ACCIDENT = 0.01;
+static const double ALWAYS_MISSED = 0.5, MET_BY_CHANCE = 0.01;
 
-/* Part of the static friction of a node that creeping may use up before it matters. */
+/* Part of the static friction of a node that strain from creeping may reach before it matters. */
 static const double STRAINED = 0.1;
 
 static bool has_band(const strut_contact_entry *e) {
@@ -26,7 +27,7 @@ static bool is_stronger_at_rest(const strut_contact_entry *e) {
   return has_band(e) && e->friction.mu_static > e->friction.mu_kinetic;
 }
 
-/* Contact of a node's x coordinate, or -1; contacts stand in the order of their nodes. */
+/* Contact with stronger static friction at a coordinate, or -1; contacts are in ascending order. */
 static int32_t contact_at(const strut_contact_table *c, uint32_t coordinate) {
   int32_t low = 0, high = c->count;
   while (low < high) {
@@ -40,7 +41,7 @@ static int32_t contact_at(const strut_contact_table *c, uint32_t coordinate) {
   return found && is_stronger_at_rest(&c->entry[low]) ? low : -1;
 }
 
-/* Counts the ties, or fills them where there is room. */
+/* Counts the ties; fills them if `ties` is given. */
 static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
   const strut_member_table *t = &model->members;
   int32_t count = 0;
@@ -54,7 +55,7 @@ static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
   return count;
 }
 
-/* Does a contact touch within its band? Its normal force goes to *normal. */
+/* Does a contact touch, with a slip velocity within its band? *normal: its normal force. */
 static bool is_stuck(const strut_model *model, const strut_state *state, int32_t i,
                      double *normal) {
   const strut_contact_table *c = &model->contacts;
@@ -63,26 +64,27 @@ static bool is_stuck(const strut_model *model, const strut_state *state, int32_t
   return gap < 0.0 && fabs(slip) < c->entry[i].friction.stick_velocity;
 }
 
-static void look_at_tie(const strut_model *model, const strut_state *state, double time,
-                        strut_band_tie *tie) {
+static void sample_tie(const strut_model *model, const strut_state *state, double time,
+                       strut_band_tie *tie) {
   const strut_member_table *t = &model->members;
   const strut_contact_entry *e = model->contacts.entry;
   double length = strut_member_length(t, tie->member, state->q), change = length - tie->length,
          normal[2];
-  double creep = 0.0, holds = HUGE_VAL;
+  double creep = 0.0, resistance = HUGE_VAL;
   bool held = true;
   for (int k = 0; k < 2; k++) {
     const strut_contact_entry *one = &e[tie->contact[k]];
     held = is_stuck(model, state, tie->contact[k], &normal[k]) && held;
     creep += one->friction.stick_velocity * time;
-    holds = fmin(holds, one->friction.mu_static * normal[k]);
+    resistance = fmin(resistance, one->friction.mu_static * normal[k]);
   }
-  /* more than they can creep: one of them has slid in between */
+  /* a larger change means that one of them has slid */
   if (held && tie->held && fabs(change) <= creep)
     tie->force += t->stiffness[tie->member] * change;
   else
     tie->force = 0.0;
-  if (held && fabs(tie->force) > tie->worst * holds) tie->worst = fabs(tie->force) / holds;
+  if (held && fabs(tie->force) > tie->worst * resistance)
+    tie->worst = fabs(tie->force) / resistance;
   tie->held = held, tie->length = length;
 }
 
@@ -107,26 +109,27 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
   size_t length = (size_t)model->length, contacts = (size_t)model->contacts.count;
   band->a = strut_arena_allocate(&state->arena, length, sizeof(double));
   band->scratch = strut_arena_allocate(&state->arena, length, sizeof(double));
-  band->watch = strut_arena_allocate(&state->arena, contacts, sizeof *band->watch);
+  band->contacts = strut_arena_allocate(&state->arena, contacts, sizeof *band->contacts);
   band->tie_count = list_ties(model, NULL);
   band->ties = strut_arena_allocate(&state->arena, (size_t)band->tie_count, sizeof *band->ties);
   if (band->ties) list_ties(model, band->ties);
-  return band->a && band->scratch && band->watch && band->ties;
+  return band->a && band->scratch && band->contacts && band->ties;
 }
 
 void strut_stick_band_sample(const strut_model *model, const strut_state *state,
                              strut_stick_band *band) {
   const strut_contact_table *c = &model->contacts;
-  if (!band->watch) return;
+  if (!band->contacts) return;
   double time = (double)(state->step - band->last) * band->step;
-  for (int32_t k = 0; k < band->tie_count; k++) look_at_tie(model, state, time, &band->ties[k]);
+  for (int32_t k = 0; k < band->tie_count; k++) sample_tie(model, state, time, &band->ties[k]);
   band->last = state->step;
-  bool ask = band->looks++ % EVERY == 0 && state->evaluations > 0;
-  if (ask) strut_mass_solve(model, state->force, band->a, band->scratch);
+  bool with_acceleration = band->samples++ % ACCELERATION_INTERVAL == 0 && state->evaluations > 0;
+  if (with_acceleration) strut_mass_solve(model, state->force, band->a, band->scratch);
   for (int32_t i = 0; i < c->count; i++) {
-    strut_stick_band_monitor *w = &band->watch[i];
+    strut_stick_band_monitor *w = &band->contacts[i];
     if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;
-    if (!ask || fabs(strut_contact_slip(c, i, state->v)) < c->entry[i].friction.stick_velocity)
+    if (!with_acceleration ||
+        fabs(strut_contact_slip(c, i, state->v)) < c->entry[i].friction.stick_velocity)
       continue;
     w->sliding++;
     w->change += band->step * fabs(strut_contact_along_ground(c, i, band->a));
@@ -136,10 +139,10 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
 double strut_stick_band_missed(const strut_model *model, const strut_stick_band *band,
                                int32_t contact) {
   const strut_contact_entry *e = &model->contacts.entry[contact];
-  if (!band->watch || !has_band(e)) return 0.0;
-  const strut_stick_band_monitor *w = &band->watch[contact];
-  double needed = w->sliding >= LEAST ? w->change / w->sliding : 0.0;
-  double least = e->friction.mu_static > e->friction.mu_kinetic ? SURE : ACCIDENT;
+  if (!band->contacts || !has_band(e)) return 0.0;
+  const strut_stick_band_monitor *w = &band->contacts[contact];
+  double needed = w->sliding >= LEAST_SAMPLES ? w->change / w->sliding : 0.0;
+  double least = e->friction.mu_static > e->friction.mu_kinetic ? ALWAYS_MISSED : MET_BY_CHANCE;
   return e->friction.stick_velocity < least * needed ? needed : 0.0;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/summary.h"
 
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 
 void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...) {
   size_t i = 0;
+  assert(summary->warning_count <= STRUT_MOST_WARNINGS);
   while (i < summary->warning_count && strcmp(summary->warnings[i].code, code) != 0) i++;
   if (i == STRUT_MOST_WARNINGS) return;
   if (i == summary->warning_count) summary->warning_count++;
@@ -40,12 +42,12 @@ void strut_summary_warn_of_start(strut_summary *summary) {
 
 bool strut_settle_warning(const strut_settle_summary *how, char *text, size_t size) {
   if (!how->unstable) return false;
-  char remedy[80] = "initial.settle.perturb: yes pushes it off";
+  char remedy[80] = "initial.settle.perturb: yes leaves it";
   if (how->perturbations)
-    snprintf(remedy, sizeof remedy, "it was pushed off one %d times already", how->perturbations);
+    snprintf(remedy, sizeof remedy, "%d unstable equilibria were already left", how->perturbations);
   snprintf(text, size,
-           "the settled start is an unstable equilibrium: any push grows, e-fold in %.3g s, and "
-           "moves node '%.60s' most; %s",
+           "the settled start is an unstable equilibrium: a perturbation grows by a factor of e in "
+           "%.3g s and moves node '%.60s' most; %s",
            1.0 / how->growth_rate, how->node, remedy);
   return true;
 }

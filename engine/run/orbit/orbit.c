@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/orbit/orbit.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -51,6 +52,7 @@ static bool find_extrapolation_weights(const strut_period_map *map, double *cons
                                        double *weight) {
   int32_t length = map->model->length, nodes = 2 * map->model->node_count;
   double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
+  assert(count >= 1 && count <= WINDOW);
   double in = map->model->size, speed = in * STRUT_TAU / map->period;
   for (int32_t i = 0; i < count; i++)
     for (int32_t j = 0; j <= i; j++) {
@@ -154,6 +156,7 @@ strut_status strut_orbit_correct(strut_period_map *coarse, strut_period_map *ref
   strut_arena arena = {0};
   disturbance t = {.limit = NULL};
   double *end = strut_arena_allocate(&arena, both, sizeof(double));
+  assert(orbit->y != base && coarse->model == reference->model);
   orbit->converged = false;
   if (!end || !allocate_disturbance(both, &arena, &t)) {
     strut_arena_free(&arena);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/orbit/period_map.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
                                      int32_t repeats, strut_period_map *map, strut_error *error) {
   *map = (strut_period_map){.model = model, .repeats = repeats};
   map->period = strut_experiment_span(experiment, model->scene).period;
+  assert(repeats >= 1 && map->period > 0.0 && experiment->step > 0.0);
   map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
   map->dt = map->period / (double)map->steps;
   const strut_time_grid grid = {.step = map->dt, .last = -1};
@@ -84,13 +86,13 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   memcpy(state->q, y, bytes);
   memcpy(state->v, y + model->length, bytes);
   state->refined_until = map->time + y[2 * model->length];
-  strut_measure_track(model, state, &map->measure, &from, &speed);
+  strut_measure_tracked_point(model, state, &map->measure, &from, &speed);
   if (map->method->restart) map->method->restart(model, state, map->workspace, map->dt);
   advance_application(map);
   map->evaluations += state->evaluations;
   map->events += state->events;
   map->applied += map->repeats;
-  strut_measure_track(model, state, &map->measure, &to, &speed);
+  strut_measure_tracked_point(model, state, &map->measure, &to, &speed);
   memcpy(y, state->q, bytes);
   memcpy(y + model->length, state->v, bytes);
   y[2 * model->length] = fmax(0.0, state->refined_until - (double)state->step * map->dt);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/orbit/steady_detector.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -53,6 +54,7 @@ static bool drives_repeat(const strut_steady_detector *w, int32_t n) {
 strut_status strut_steady_detector_create(const strut_model *model, const strut_steady *wanted,
                                           double period, double begin, strut_steady_detector *w) {
   size_t both = 2 * (size_t)model->length;
+  assert(period > 0.0);
   *w = (strut_steady_detector){
       .model = model,
       .period = period,
