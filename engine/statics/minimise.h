@@ -43,4 +43,17 @@ STRUT_API strut_descent strut_minimise(strut_minimiser *minimiser, double *q, do
 /** Plain Newton steps to the nearest stationary point of any kind, for a q that is close already. */
 STRUT_API strut_descent strut_polish(strut_minimiser *minimiser, double *q, double tolerance);
 
+/** Hessians decomposed so far: a measure of the work done. */
+int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser);
+
+/**
+ * From a saddle at q down one side (+1 or -1) of direction (length), by steps short enough to stay in
+ * the valley they began in; true if q has reached a minimum.
+ */
+bool strut_descend_along(strut_minimiser *minimiser, const double *direction, double side,
+                         double *q);
+
+/** From q by short steps, which pass over no well that is wider than a hundredth of the structure. */
+strut_descent_end strut_descend_gently(strut_minimiser *minimiser, double *q);
+
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/tangent.h"
-#include "engine/statics/eigen.h"
+#include "engine/statics/dense_algebra.h"
 
 struct strut_spectrum_workspace {
   const strut_potential *potential;

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/run/settle.h"
-#include "engine/statics/equilibria/barriers.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One equilibrium's own figures. See hunt.h. */
 #include "engine/statics/equilibria/equilibrium_search.h"
 
 #include <math.h>
@@ -7,6 +6,8 @@
 
 #include "engine/model/pose.h"
 #include "engine/statics/equilibria/naming.h"
+
+/* One equilibrium's own figures. See hunt.h. */
 
 /* Depth and pull below these are rounding: in model sizes, in weights. */
 static const double DEEP = 1e-9, PULL = 1e-9;
@@ -122,5 +123,140 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
     e->contacts[e->contact_count] = c->entry[i].node;
     e->normal[e->contact_count++] = normal;
   }
+  return STRUT_OK;
+}
+
+/* What becomes of equilibria on static supports when the supports give way to the ground. */
+
+/* It still stands as it stood if no node has moved further, in model sizes. */
+static const double AS_IT_STOOD = 0.02;
+
+static bool is_followed(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
+  return f->e.supports && f->e.fate == STRUT_OUTCOME_STANDS && h->unrest == STRUT_INSTABILITY_NONE;
+}
+
+static strut_outcome first_judgement(const strut_equilibrium_search *h,
+                                     const strut_candidate_equilibrium *f) {
+  const strut_equilibrium *e = &f->e;
+  if (e->point.label == STRUT_FLOPPY) return STRUT_OUTCOME_FLOPPY;
+  if (e->point.label != STRUT_STABLE) return STRUT_OUTCOME_UNSTABLE;
+  for (int32_t i = 0; i < h->model->node_count; i++)
+    if (e->below[i]) return STRUT_OUTCOME_BELOW_GROUND;
+  return h->unrest == STRUT_INSTABILITY_NONE ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_NO_REST;
+}
+
+/* A saddle on supports that only push is one on the ground too, all but the ground's give. */
+static bool is_pass(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
+  bool under = false;
+  for (int32_t i = 0; i < h->model->node_count; i++) under = under || f->e.below[i];
+  return f->e.supports && f->e.point.negative == 1 && !f->pulls && !under;
+}
+
+/*
+ * The search on the real ground begins with what lies below each that may stand, and with the
+ * saddles that supports have shown.
+ */
+static strut_status explore(strut_equilibrium_search *h) {
+  const strut_equilibria_options *o = h->options;
+  size_t length = (size_t)h->model->length, extras = 0, hints = 0;
+  strut_arena scratch = {0};
+  const double **extra = strut_arena_allocate(&scratch, 2 * h->count + 1, sizeof *extra);
+  const double **hint = strut_arena_allocate(&scratch, h->count + 1, sizeof *hint);
+  strut_status status = extra && hint ? STRUT_OK : STRUT_NO_MEMORY;
+  for (size_t i = 0; i < h->count && !status; i++)
+    if (is_pass(h, &h->finds[i])) hint[hints++] = h->finds[i].e.point.q;
+  for (size_t i = 0; i < h->count && !status; i++) {
+    strut_equilibrium *e = &h->finds[i].e;
+    if (!is_followed(h, &h->finds[i]) && !e->rest) continue;
+    double *q = strut_arena_allocate(&scratch, length, sizeof *q);
+    if (!q) status = STRUT_NO_MEMORY;
+    if (status) break;
+    memcpy(q, e->point.q, length * sizeof *q);
+    strut_relaxer_quench(h->relaxer, q);
+    extra[extras++] = q;
+    if (e->rest) extra[extras++] = e->rest;
+  }
+  if (status) strut_fail(h->error, status, "out of memory");
+  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
+                                  .seed = h->out->seed,
+                                  .searches = (int32_t)h->supports.count + 1,
+                                  .saddles = !o->standing_only,
+                                  .extra_count = extras,
+                                  .extra = extra,
+                                  .hint_count = hints,
+                                  .hint = hint};
+  if (h->explored) strut_landscape_free(&h->landscape);
+  h->explored = true;
+  if (!status) status = strut_landscape_create(h->world, &effort, &h->landscape, h->error);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+static bool stands_on(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f,
+                      const double *rest) {
+  const strut_node_set *set = f->e.supports;
+  double moved = strut_shape_distance(h->model, f->e.point.q, rest, false, NULL);
+  for (size_t i = 0; i < set->count; i++) {
+    bool touches = false;
+    for (int32_t k = 0; k < f->e.contact_count; k++)
+      touches = touches || f->e.contacts[k] == set->node[i];
+    if (!touches) return false;
+  }
+  return moved < AS_IT_STOOD * h->model->size;
+}
+
+/* Of the supports the one that is pressed on most while another pulls: there it turns. */
+static int32_t turning_node(const strut_candidate_equilibrium *f) {
+  int32_t most = -1;
+  for (size_t i = 0; i < f->e.supports->count && f->pulls; i++) {
+    int32_t node = f->e.supports->node[i];
+    if (f->e.reaction[node][1] > 0 && (most < 0 || f->e.reaction[node][1] > f->e.reaction[most][1]))
+      most = node;
+  }
+  return most;
+}
+
+static strut_status follow(strut_equilibrium_search *h, strut_candidate_equilibrium *f) {
+  strut_equilibrium *e = &f->e;
+  size_t length = (size_t)h->model->length;
+  strut_relaxed relaxed;
+  double *q = strut_arena_allocate(&h->out->arena, length, sizeof *q);
+  if (!q) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  memcpy(q, e->point.q, length * sizeof *q);
+  strut_status status = strut_relax(h->relaxer, q, strut_landscape_pass, &h->landscape,
+                                    h->options->interrupt, &relaxed, h->error);
+  if (status) return status;
+  e->tips_over = turning_node(f);
+  if (relaxed.end != STRUT_RELAXED_RESTS) {
+    e->fate = STRUT_OUTCOME_NO_REST;
+    return STRUT_OK;
+  }
+  e->rest = q;
+  e->rest_energy = strut_potential_energy(h->world, q);
+  e->rest_residual = relaxed.residual;
+  f->state = strut_landscape_find(&h->landscape, q);
+  if ((status = strut_equilibrium_search_contacts(h, q, e))) return status;
+  e->fate = stands_on(h, f, q) ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_TIPS;
+  return STRUT_OK;
+}
+
+strut_status strut_equilibrium_search_follow(strut_equilibrium_search *h) {
+  bool any = false, lost = false;
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < h->count; i++) h->finds[i].e.fate = first_judgement(h, &h->finds[i]);
+  if (h->unrest != STRUT_INSTABILITY_NONE) return STRUT_OK;
+  if ((status = explore(h))) return status;
+  for (size_t i = 0; i < h->count && !status; i++) {
+    if (!is_followed(h, &h->finds[i])) continue;
+    status = follow(h, &h->finds[i]);
+    any = any || h->finds[i].e.rest;
+    lost = lost || (h->finds[i].e.rest && h->finds[i].state < 0);
+  }
+  if (status || !any || !lost) return status;
+  /* one came to rest where the search had not been: search again from there */
+  if ((status = explore(h))) return status;
+  for (size_t i = 0; i < h->count; i++)
+    if (h->finds[i].e.rest)
+      h->finds[i].state = strut_landscape_find(&h->landscape, h->finds[i].e.rest);
   return STRUT_OK;
 }

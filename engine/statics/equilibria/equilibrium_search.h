@@ -7,7 +7,6 @@
 
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/equilibria/landscape.h"
-#include "engine/statics/equilibria/level_frame.h"
 #include "engine/statics/equilibria/relax.h"
 #include "engine/statics/equilibria/supports.h"
 
@@ -72,5 +71,14 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
 /** Verdicts in words, and the remark on what moves freely. Names are given already. */
 void strut_report_candidates(strut_equilibrium_search *hunt, strut_candidate_equilibrium *finds,
                              size_t count);
+
+/** More stable equilibria than this do not enter the table. */
+enum { STRUT_MOST_BARRIERS_BETWEEN = 12 };
+
+/**
+ * Fills the hunt's barriers between every two equilibria that stand, of which configurations name
+ * at least some: those named and those one pass away from them; without names the lowest.
+ */
+strut_status strut_barriers_find(strut_equilibrium_search *hunt);
 
 #endif

@@ -2,7 +2,7 @@
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
 #include "engine/statics/path/system.h"
 #include "engine/forces/tangent.h"
-#include "engine/statics/lu.h"
+#include "engine/statics/dense_algebra.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>

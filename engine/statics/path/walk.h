@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The walk along a path: what its steps share. For path.c, walk.c, kink.c and record.c.
+ * The walk along a path: what its steps share. For path.c, walk.c and events.c.
  */
 #ifndef STRUT_ENGINE_STATICS_PATH_WALK_H
 #define STRUT_ENGINE_STATICS_PATH_WALK_H

@@ -7,8 +7,8 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
+#include "engine/statics/curvature.h"
 #include "engine/statics/spectrum.h"
-#include "engine/statics/trust_step.h"
 
 enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 

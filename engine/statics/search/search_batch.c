@@ -7,7 +7,7 @@
 #include <omp.h>
 #endif
 
-#include "engine/statics/descent_parts.h"
+#include "engine/statics/curvature.h"
 #include "engine/statics/search/saddle.h"
 #include "engine/statics/search/starts.h"
 
