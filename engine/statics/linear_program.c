@@ -74,7 +74,7 @@ static void free_entries(entries *e) {
   strut_release(e->value);
 }
 
-static strut_quantity_program_end end_of(int code, int status) {
+static strut_linear_program_end end_of(int code, int status) {
   if (code == 0 && status == GLP_OPT) return STRUT_PROGRAM_OPTIMAL;
   if (code == 0 && status == GLP_NOFEAS) return STRUT_PROGRAM_INFEASIBLE;
   if (code == 0 && status == GLP_UNBND) return STRUT_PROGRAM_UNBOUNDED;
@@ -97,7 +97,7 @@ static int run_simplex(glp_prob *problem, int scaling) {
 }
 
 static void solve(const strut_linear_program *p, const entries *e, double *x, double *sum,
-                  strut_quantity_program_end *end) {
+                  strut_linear_program_end *end) {
   glp_prob *problem = glp_create_prob();
   glp_set_obj_dir(problem, GLP_MIN);
   if (p->rows > 0) glp_add_rows(problem, p->rows);
@@ -130,7 +130,7 @@ static int print_nothing(void *unused, const char *text) {
 }
 
 strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
-                                        strut_quantity_program_end *end) {
+                                        strut_linear_program_end *end) {
   jmp_buf out;
   entries e = {0};
   if (!make_entries(p, &e) || glp_init_env() > 1) {

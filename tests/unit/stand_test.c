@@ -38,13 +38,13 @@ static void done(found *f) {
 
 static int32_t count(const found *f, strut_outcome fate) {
   int32_t n = 0;
-  for (size_t i = 0; i < f->all.count; i++) n += f->all.list[i].fate == fate;
+  for (size_t i = 0; i < f->all.count; i++) n += f->all.list[i].outcome == fate;
   return n;
 }
 
 static const strut_equilibrium *first(const found *f, strut_outcome fate) {
   for (size_t i = 0; i < f->all.count; i++)
-    if (f->all.list[i].fate == fate) return &f->all.list[i];
+    if (f->all.list[i].outcome == fate) return &f->all.list[i];
   fail_msg("nothing has that fate");
   return NULL;
 }
@@ -76,7 +76,7 @@ static void test_a_triangle_stands_on_every_side(void **unused) {
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 3);
   for (size_t i = 0; i < f.all.count; i++) {
     const strut_equilibrium *e = &f.all.list[i];
-    if (e->fate != STRUT_OUTCOME_STANDS) continue;
+    if (e->outcome != STRUT_OUTCOME_STANDS) continue;
     assert_string_equal(e->verdict, "stands");
     assert_int_equal(e->ends_as, i);
     double sum = 0, below = 0;
@@ -105,7 +105,7 @@ static void test_it_tips_over_its_foot(void **unused) {
   assert_says(e->verdict, "tips over n2 onto n2 and n3: ");
   assert_int_equal(e->contacts[0], 1);
   assert_int_equal(e->contacts[1], 2);
-  assert_int_equal(f.all.list[e->ends_as].fate, STRUT_OUTCOME_STANDS);
+  assert_int_equal(f.all.list[e->ends_as].outcome, STRUT_OUTCOME_STANDS);
   done(&f);
 }
 

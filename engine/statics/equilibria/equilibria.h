@@ -31,7 +31,7 @@ typedef struct strut_equilibrium {
   double (*reaction)[2];          /* (node_count) of supports, the scene's own too [N] */
   uint8_t *below;                 /* (node_count) 1 where under the ground */
   double *member_force;           /* (member_count) tension positive [N] */
-  strut_outcome fate;
+  strut_outcome outcome;
   int32_t tips_over;    /* node about which it turns, or -1 */
   int32_t ends_as;      /* the equilibrium it ends in, or -1; itself if it stands */
   double *rest;         /* (length) where it comes to rest on the real ground, or NULL */

@@ -17,16 +17,16 @@ int32_t strut_equilibrium_search_add(strut_equilibrium_search *h) {
     size_t room = h->room ? 2 * h->room : 32;
     strut_candidate_equilibrium *finds = strut_arena_allocate(&h->out->arena, room, sizeof *finds);
     if (!finds) return -1;
-    if (h->count) memcpy(finds, h->finds, h->count * sizeof *finds);
-    h->finds = finds;
+    if (h->count) memcpy(finds, h->candidates, h->count * sizeof *finds);
+    h->candidates = finds;
     h->room = room;
   }
-  h->finds[h->count] = (strut_candidate_equilibrium){.state = -1};
-  h->finds[h->count].e.tips_over = h->finds[h->count].e.ends_as = -1;
+  h->candidates[h->count] = (strut_candidate_equilibrium){.state = -1};
+  h->candidates[h->count].e.tips_over = h->candidates[h->count].e.ends_as = -1;
   return (int32_t)h->count++;
 }
 
-static double *copied(strut_arena *arena, const double *from, size_t count) {
+static double *copy_numbers(strut_arena *arena, const double *from, size_t count) {
   double *copy = strut_arena_allocate(arena, count, sizeof *copy);
   if (copy && from && count) memcpy(copy, from, count * sizeof *copy);
   return copy;
@@ -37,9 +37,9 @@ static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *
   strut_arena *arena = &h->out->arena;
   size_t length = (size_t)h->model->length;
   *to = *from;
-  to->q = copied(arena, from->q, length);
-  to->softest = copied(arena, from->softest, length);
-  to->eigenvalues = copied(arena, from->eigenvalues, (size_t)from->eigenvalue_count);
+  to->q = copy_numbers(arena, from->q, length);
+  to->softest = copy_numbers(arena, from->softest, length);
+  to->eigenvalues = copy_numbers(arena, from->eigenvalues, (size_t)from->eigenvalue_count);
   return to->q && to->softest && to->eigenvalues;
 }
 
@@ -119,7 +119,7 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
   e->contact_count = 0;
   for (size_t i = 0; i < most; i++) {
     double normal = -c->entry[i].stiffness * strut_contact_gap(c, (int32_t)i, q);
-    if (!(normal > PULL * h->world->force_scale)) continue;
+    if (!(normal > PULL * h->potential->force_scale)) continue;
     e->contacts[e->contact_count] = c->entry[i].node;
     e->normal[e->contact_count++] = normal;
   }
@@ -132,17 +132,18 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
 static const double AS_IT_STOOD = 0.02;
 
 static bool is_followed(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
-  return f->e.supports && f->e.fate == STRUT_OUTCOME_STANDS && h->unrest == STRUT_INSTABILITY_NONE;
+  return f->e.supports && f->e.outcome == STRUT_OUTCOME_STANDS &&
+         h->instability == STRUT_INSTABILITY_NONE;
 }
 
-static strut_outcome first_judgement(const strut_equilibrium_search *h,
-                                     const strut_candidate_equilibrium *f) {
+static strut_outcome judge_on_supports(const strut_equilibrium_search *h,
+                                       const strut_candidate_equilibrium *f) {
   const strut_equilibrium *e = &f->e;
   if (e->point.label == STRUT_FLOPPY) return STRUT_OUTCOME_FLOPPY;
   if (e->point.label != STRUT_STABLE) return STRUT_OUTCOME_UNSTABLE;
   for (int32_t i = 0; i < h->model->node_count; i++)
     if (e->below[i]) return STRUT_OUTCOME_BELOW_GROUND;
-  return h->unrest == STRUT_INSTABILITY_NONE ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_NO_REST;
+  return h->instability == STRUT_INSTABILITY_NONE ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_NO_REST;
 }
 
 /* A saddle on supports that only push is one on the ground too, all but the ground's give. */
@@ -156,7 +157,7 @@ static bool is_pass(const strut_equilibrium_search *h, const strut_candidate_equ
  * The search on the real ground begins with what lies below each that may stand, and with the
  * saddles that supports have shown.
  */
-static strut_status explore(strut_equilibrium_search *h) {
+static strut_status explore_landscape(strut_equilibrium_search *h) {
   const strut_equilibria_options *o = h->options;
   size_t length = (size_t)h->model->length, extras = 0, hints = 0;
   strut_arena scratch = {0};
@@ -164,10 +165,10 @@ static strut_status explore(strut_equilibrium_search *h) {
   const double **hint = strut_arena_allocate(&scratch, h->count + 1, sizeof *hint);
   strut_status status = extra && hint ? STRUT_OK : STRUT_NO_MEMORY;
   for (size_t i = 0; i < h->count && !status; i++)
-    if (is_pass(h, &h->finds[i])) hint[hints++] = h->finds[i].e.point.q;
+    if (is_pass(h, &h->candidates[i])) hint[hints++] = h->candidates[i].e.point.q;
   for (size_t i = 0; i < h->count && !status; i++) {
-    strut_equilibrium *e = &h->finds[i].e;
-    if (!is_followed(h, &h->finds[i]) && !e->rest) continue;
+    strut_equilibrium *e = &h->candidates[i].e;
+    if (!is_followed(h, &h->candidates[i]) && !e->rest) continue;
     double *q = strut_arena_allocate(&scratch, length, sizeof *q);
     if (!q) status = STRUT_NO_MEMORY;
     if (status) break;
@@ -187,7 +188,7 @@ static strut_status explore(strut_equilibrium_search *h) {
                                   .hint = hint};
   if (h->explored) strut_landscape_free(&h->landscape);
   h->explored = true;
-  if (!status) status = strut_landscape_create(h->world, &effort, &h->landscape, h->error);
+  if (!status) status = strut_landscape_create(h->potential, &effort, &h->landscape, h->error);
   strut_arena_free(&scratch);
   return status;
 }
@@ -216,7 +217,7 @@ static int32_t turning_node(const strut_candidate_equilibrium *f) {
   return most;
 }
 
-static strut_status follow(strut_equilibrium_search *h, strut_candidate_equilibrium *f) {
+static strut_status follow_candidate(strut_equilibrium_search *h, strut_candidate_equilibrium *f) {
   strut_equilibrium *e = &f->e;
   size_t length = (size_t)h->model->length;
   strut_relaxed relaxed;
@@ -228,35 +229,36 @@ static strut_status follow(strut_equilibrium_search *h, strut_candidate_equilibr
   if (status) return status;
   e->tips_over = turning_node(f);
   if (relaxed.end != STRUT_RELAXED_RESTS) {
-    e->fate = STRUT_OUTCOME_NO_REST;
+    e->outcome = STRUT_OUTCOME_NO_REST;
     return STRUT_OK;
   }
   e->rest = q;
-  e->rest_energy = strut_potential_energy(h->world, q);
+  e->rest_energy = strut_potential_energy(h->potential, q);
   e->rest_residual = relaxed.residual;
   f->state = strut_landscape_find(&h->landscape, q);
   if ((status = strut_equilibrium_search_contacts(h, q, e))) return status;
-  e->fate = stands_on(h, f, q) ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_TIPS;
+  e->outcome = stands_on(h, f, q) ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_TIPS;
   return STRUT_OK;
 }
 
 strut_status strut_equilibrium_search_follow(strut_equilibrium_search *h) {
   bool any = false, lost = false;
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < h->count; i++) h->finds[i].e.fate = first_judgement(h, &h->finds[i]);
-  if (h->unrest != STRUT_INSTABILITY_NONE) return STRUT_OK;
-  if ((status = explore(h))) return status;
+  for (size_t i = 0; i < h->count; i++)
+    h->candidates[i].e.outcome = judge_on_supports(h, &h->candidates[i]);
+  if (h->instability != STRUT_INSTABILITY_NONE) return STRUT_OK;
+  if ((status = explore_landscape(h))) return status;
   for (size_t i = 0; i < h->count && !status; i++) {
-    if (!is_followed(h, &h->finds[i])) continue;
-    status = follow(h, &h->finds[i]);
-    any = any || h->finds[i].e.rest;
-    lost = lost || (h->finds[i].e.rest && h->finds[i].state < 0);
+    if (!is_followed(h, &h->candidates[i])) continue;
+    status = follow_candidate(h, &h->candidates[i]);
+    any = any || h->candidates[i].e.rest;
+    lost = lost || (h->candidates[i].e.rest && h->candidates[i].state < 0);
   }
   if (status || !any || !lost) return status;
   /* one came to rest where the search had not been: search again from there */
-  if ((status = explore(h))) return status;
+  if ((status = explore_landscape(h))) return status;
   for (size_t i = 0; i < h->count; i++)
-    if (h->finds[i].e.rest)
-      h->finds[i].state = strut_landscape_find(&h->landscape, h->finds[i].e.rest);
+    if (h->candidates[i].e.rest)
+      h->candidates[i].state = strut_landscape_find(&h->landscape, h->candidates[i].e.rest);
   return STRUT_OK;
 }

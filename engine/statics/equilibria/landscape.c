@@ -57,7 +57,7 @@ void strut_landscape_free(strut_landscape *landscape) {
   memset(landscape, 0, sizeof *landscape);
 }
 
-static double distance(const strut_landscape *l, const double *a, const double *b) {
+static double point_distance(const strut_landscape *l, const double *a, const double *b) {
   const strut_model *model = l->potential->model;
   if (l->merged) return strut_shape_distance(model, a, b, true, NULL);
   double most = 0.0;
@@ -73,7 +73,7 @@ int32_t strut_landscape_find(const strut_landscape *l, const double *q) {
     const strut_critical_point *p = &l->set.points[i];
     if (fabs(p->potential - potential) > SAME_POTENTIAL * scale) continue;
     /* a floppy shape is a whole family of one energy */
-    if (p->label == STRUT_FLOPPY || distance(l, p->q, q) <= SAME_SHAPE * size) return i;
+    if (p->label == STRUT_FLOPPY || point_distance(l, p->q, q) <= SAME_SHAPE * size) return i;
   }
   return -1;
 }
@@ -85,7 +85,7 @@ double strut_landscape_pass(const void *landscape, const double *q) {
 }
 
 /* The root of a's tree. */
-static int32_t root(int32_t *parent, int32_t a) {
+static int32_t find_root(int32_t *parent, int32_t a) {
   while (parent[a] != a) a = parent[a] = parent[parent[a]];
   return a;
 }
@@ -104,8 +104,8 @@ int32_t strut_landscape_path(const strut_landscape *l, int32_t a, int32_t b) {
   for (size_t k = (size_t)l->minima; k < set->count; k++) {
     const strut_critical_point *pass = &set->points[k];
     if (!connects(l, pass)) continue;
-    parent[root(parent, pass->down[0])] = root(parent, pass->down[1]);
-    if (root(parent, a) == root(parent, b)) return (int32_t)k;
+    parent[find_root(parent, pass->down[0])] = find_root(parent, pass->down[1]);
+    if (find_root(parent, a) == find_root(parent, b)) return (int32_t)k;
   }
   return -1;
 }
@@ -142,20 +142,21 @@ int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, 
 }
 
 /* The first that stands in each of the landscape's minima, or -1. */
-static void represent(const strut_equilibrium_search *h, int32_t *of_state) {
+static void find_representatives(const strut_equilibrium_search *h, int32_t *of_state) {
   for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
   for (size_t i = 0; i < h->count; i++) {
-    const strut_candidate_equilibrium *f = &h->finds[i];
-    if (f->e.fate != STRUT_OUTCOME_STANDS || f->state < 0) continue;
+    const strut_candidate_equilibrium *f = &h->candidates[i];
+    if (f->e.outcome != STRUT_OUTCOME_STANDS || f->state < 0) continue;
     if (of_state[f->state] < 0) of_state[f->state] = (int32_t)i;
   }
 }
 
 static bool is_named(const strut_equilibrium_search *h, int32_t find) {
-  return find >= 0 && h->finds[find].e.configured;
+  return find >= 0 && h->candidates[find].e.configured;
 }
 
-static bool next_to_named(const strut_equilibrium_search *h, const int32_t *of_state, int32_t s) {
+static bool is_next_to_named(const strut_equilibrium_search *h, const int32_t *of_state,
+                             int32_t s) {
   for (int32_t t = 0; t < h->landscape.minima; t++) {
     if (t == s || !is_named(h, of_state[t])) continue;
     if (strut_landscape_direct(&h->landscape, t, s) >= 0) return true;
@@ -164,7 +165,8 @@ static bool next_to_named(const strut_equilibrium_search *h, const int32_t *of_s
 }
 
 /* States that enter the table, at most STRUT_MOST_BARRIERS_BETWEEN; their count. */
-static int choose(const strut_equilibrium_search *h, const int32_t *of_state, int32_t *chosen) {
+static int choose_states(const strut_equilibrium_search *h, const int32_t *of_state,
+                         int32_t *chosen) {
   int32_t minima = h->landscape.minima;
   bool names = false;
   int count = 0;
@@ -172,7 +174,7 @@ static int choose(const strut_equilibrium_search *h, const int32_t *of_state, in
   for (int pass = 0; pass < 2; pass++) /* named ones first: they must not fall off the end */
     for (int32_t s = 0; s < minima && count < STRUT_MOST_BARRIERS_BETWEEN; s++) {
       if (of_state[s] < 0 || is_named(h, of_state[s]) != (pass == 0)) continue;
-      if (pass == 1 && names && !next_to_named(h, of_state, s)) continue;
+      if (pass == 1 && names && !is_next_to_named(h, of_state, s)) continue;
       chosen[count++] = s;
     }
   return count;
@@ -180,13 +182,13 @@ static int choose(const strut_equilibrium_search *h, const int32_t *of_state, in
 
 static int32_t find_saddle(const strut_equilibrium_search *h, int32_t saddle) {
   for (size_t i = 0; i < h->count; i++)
-    if (!h->finds[i].e.supports && h->finds[i].number == saddle) return (int32_t)i;
+    if (!h->candidates[i].e.supports && h->candidates[i].number == saddle) return (int32_t)i;
   return -1;
 }
 
 /* The barrier from one of the landscape's minima to another; false: out of memory. */
-static bool fill(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a, int32_t b,
-                 int32_t way, strut_barrier *barrier) {
+static bool fill_barrier(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a,
+                         int32_t b, int32_t way, strut_barrier *barrier) {
   const strut_landscape *l = &h->landscape;
   const strut_critical_point *points = l->set.points;
   int32_t direct = strut_landscape_direct(l, a, b);
@@ -211,14 +213,14 @@ strut_status strut_barriers_find(strut_equilibrium_search *h) {
   size_t most = (size_t)STRUT_MOST_BARRIERS_BETWEEN * (STRUT_MOST_BARRIERS_BETWEEN - 1);
   h->out->barriers = strut_arena_allocate(&h->out->arena, most, sizeof *h->out->barriers);
   bool good = of_state && h->out->barriers;
-  if (good) represent(h, of_state);
-  int count = good ? choose(h, of_state, chosen) : 0;
+  if (good) find_representatives(h, of_state);
+  int count = good ? choose_states(h, of_state, chosen) : 0;
   for (int a = 0; a < count; a++)
     for (int b = 0; b < count && good; b++) {
       int32_t way = a == b ? -1 : strut_landscape_path(l, chosen[a], chosen[b]);
       if (way < 0) continue;
-      good =
-          fill(h, of_state, chosen[a], chosen[b], way, &h->out->barriers[h->out->barrier_count++]);
+      good = fill_barrier(h, of_state, chosen[a], chosen[b], way,
+                          &h->out->barriers[h->out->barrier_count++]);
     }
   strut_release(of_state);
   return good ? STRUT_OK : strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");

@@ -126,7 +126,7 @@ static double total_energy(const strut_relaxer *r) {
          strut_energy_kinetic(r->model, r->state->v);
 }
 
-static bool has_left(const strut_model *model, const double *start, const double *q) {
+static bool has_escaped(const strut_model *model, const double *start, const double *q) {
   double bound = GONE * (model->size > 0 ? model->size : 1.0);
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (!(fabs(q[i] - start[i]) <= bound)) return true;
@@ -139,8 +139,8 @@ typedef struct verdict {
   int agreed;
 } verdict;
 
-static bool decided(strut_relaxer *r, double energy, const double *q, strut_pass_of passes,
-                    const void *context, verdict *v) {
+static bool is_decided(strut_relaxer *r, double energy, const double *q, strut_pass_of passes,
+                       const void *context, verdict *v) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   memcpy(r->quenched, q, bytes);
   strut_descent descent = strut_relaxer_quench(r, r->quenched);
@@ -168,15 +168,15 @@ static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, con
   memcpy(r->state->q, r->start, bytes);
   memset(r->state->v, 0, bytes);
   double first = total_energy(r), look = (double)FIRST_LOOK;
-  if (decided(r, first, r->state->q, passes, context, &v)) return DECIDED;
+  if (is_decided(r, first, r->state->q, passes, context, &v)) return DECIDED;
   while (r->state->step < MOST_STEPS && (double)r->state->step * step < r->limit) {
     if (interrupt && *interrupt) return STOPPED;
     r->method->advance(r->model, r->state, r->workspace, step, (int64_t)look);
     double energy = total_energy(r);
     /* Nothing feeds the motion: an energy above the first comes from the step. */
     if (!isfinite(energy) || energy > first + GROWN * fabs(first)) return UNSTABLE_STEP;
-    if (has_left(r->model, r->start, r->state->q)) return LEFT;
-    if (decided(r, energy, r->state->q, passes, context, &v)) return DECIDED;
+    if (has_escaped(r->model, r->start, r->state->q)) return LEFT;
+    if (is_decided(r, energy, r->state->q, passes, context, &v)) return DECIDED;
     look = fmin(1.1 * look, (double)LAST_LOOK);
   }
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
@@ -194,7 +194,7 @@ static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed
 }
 
 /* Downhill from where it is, with the centre of mass brought to x. */
-static void come_down(strut_relaxer *r, double x, double *q, strut_relaxed *relaxed) {
+static void quench_to_rest(strut_relaxer *r, double x, double *q, strut_relaxed *relaxed) {
   strut_descent descent = strut_relaxer_quench(r, q);
   relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS
                  : descent.end == STRUT_DESCENT_RUNAWAY ? STRUT_RELAXED_LEAVES
@@ -206,7 +206,7 @@ static void come_down(strut_relaxer *r, double x, double *q, strut_relaxed *rela
 
 void strut_relax_down(strut_relaxer *r, double *q, strut_relaxed *relaxed) {
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
-  come_down(r, centre_x(r->model, q), q, relaxed);
+  quench_to_rest(r, centre_x(r->model, q), q, relaxed);
 }
 
 strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, const void *context,
@@ -228,7 +228,7 @@ strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, cons
   if (end == STOPPED)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
   if (end == DECIDED)
-    come_down(r, centre_x(r->model, r->start), q, relaxed);
+    quench_to_rest(r, centre_x(r->model, r->start), q, relaxed);
   else
     relaxed->end = end == LEFT ? STRUT_RELAXED_LEAVES : STRUT_RELAXED_MOVES;
   return STRUT_OK;

@@ -33,7 +33,7 @@ typedef struct strut_rest_state {
  */
 STRUT_API strut_status strut_rest_state_find(const strut_model *model,
                                              const strut_experiment *experiment, const char *name,
-                                             strut_arena *arena, strut_rest_state *stand,
+                                             strut_arena *arena, strut_rest_state *rest,
                                              strut_error *error);
 
 /**

@@ -122,8 +122,8 @@ static int32_t mark_held(density_problem *p) {
 }
 
 /* D of one axis on the nodes that are free in it, and the forces on them (right). */
-static strut_sparse *assemble(const density_problem *p, int axis, const int32_t *row_of, int32_t n,
-                              double *right, strut_arena *arena) {
+static strut_sparse *assemble_axis(const density_problem *p, int axis, const int32_t *row_of,
+                                   int32_t n, double *right, strut_arena *arena) {
   const strut_scene *scene = p->f->scene;
   strut_triplets sum = {0};
   if (!strut_triplets_reserve(&sum, 3 * scene->member_count, arena)) return NULL;
@@ -152,7 +152,7 @@ static strut_status solve_axis(density_problem *p, int axis) {
   double *right = strut_arena_allocate(&arena, nodes, sizeof *right);
   strut_sparse *matrix = NULL;
   for (size_t i = 0; i < nodes && row_of; i++) row_of[i] = p->held[2 * i + (size_t)axis] ? -1 : n++;
-  if (row_of && right && n > 0) matrix = assemble(p, axis, row_of, n, right, &arena);
+  if (row_of && right && n > 0) matrix = assemble_axis(p, axis, row_of, n, right, &arena);
   strut_status status = !row_of || !right ? STRUT_NO_MEMORY : STRUT_OK;
   if (n > 0 && status == STRUT_OK) {
     status = matrix ? strut_ldl_create(matrix, &ldl, NULL) : STRUT_NO_MEMORY;
@@ -173,7 +173,7 @@ static strut_status solve_axis(density_problem *p, int axis) {
   return status;
 }
 
-static strut_status solve(density_problem *p, int32_t held, strut_error *error) {
+static strut_status solve_shape(density_problem *p, int32_t held, strut_error *error) {
   size_t nodes = p->f->scene->node_count;
   bool standing = held <= RIGID_MOTIONS;
   strut_status status = STRUT_SINGULAR;
@@ -187,7 +187,7 @@ static strut_status solve(density_problem *p, int32_t held, strut_error *error) 
   return strut_form_nearest(p->f, p->held, standing, p->x, p->q, error);
 }
 
-static strut_status apply(density_problem *p, strut_error *error) {
+static strut_status apply_solution(density_problem *p, strut_error *error) {
   strut_scene *scene = p->f->scene;
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < scene->node_count; i++)
@@ -218,14 +218,14 @@ strut_status strut_form_densities(strut_former *f, strut_error *error) {
   strut_status status = read_densities(&p, error);
   if (status) return status;
   memcpy(given, p.q, members * sizeof *given);
-  status = solve(&p, mark_held(&p), error);
+  status = solve_shape(&p, mark_held(&p), error);
   double largest = 0, change = 0;
   for (size_t j = 0; j < members; j++) {
     largest = fmax(largest, fabs(given[j]));
     change = fmax(change, fabs(p.q[j] - given[j]));
   }
   f->form->density_change = change / largest;
-  return status == STRUT_OK ? apply(&p, error) : status;
+  return status == STRUT_OK ? apply_solution(&p, error) : status;
 }
 
 /* Which way, and what every way ends with: a polished start, proof of stability, a run. */
@@ -244,7 +244,7 @@ const char *strut_form_source_name(strut_form_source source) {
   return names[source];
 }
 
-static strut_form_source choose(const strut_scene *scene, strut_form_source wanted) {
+static strut_form_source choose_source(const strut_scene *scene, strut_form_source wanted) {
   bool density = false, length = false;
   for (size_t j = 0; j < scene->member_count; j++) {
     density = density || scene->members[j].rest_kind == STRUT_REST_FORCE_DENSITY;
@@ -255,7 +255,7 @@ static strut_form_source choose(const strut_scene *scene, strut_form_source want
 }
 
 /* The start of a scene that has just got a form; what would move it is not wanted. */
-static void quieten(strut_scene *scene, strut_experiment *experiment) {
+static void remove_motion(strut_scene *scene, strut_experiment *experiment) {
   for (size_t i = 0; i < scene->node_count; i++)
     scene->nodes[i].velocity[0] = scene->nodes[i].velocity[1] = 0.0;
   experiment->settle.wanted = false;
@@ -303,7 +303,7 @@ static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
 }
 
 /* Where nothing holds the whole, it may have drifted on its way: back to where it started. */
-static bool lay_back(const strut_former *f, double *q) {
+static bool undo_drift(const strut_former *f, double *q) {
   const strut_scene *scene = f->scene;
   double n = (double)scene->node_count, from[2] = {0}, to[2] = {0}, cosine = 0, sine = 0;
   bool shift, turn;
@@ -374,7 +374,7 @@ static strut_status polish(strut_former *f, strut_error *error) {
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
-    if (descent.end != STRUT_DESCENT_RUNAWAY && lay_back(f, q))
+    if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(f, q))
       descent = strut_polish(minimiser, q, 0.0);
     f->form->residual = descent.residual;
     status = judge(f, &descent, q, error);
@@ -427,7 +427,7 @@ static strut_status find(strut_former *f, strut_error *error) {
   if (f->form->from == STRUT_FORM_PRESTRESS) status = strut_form_prestress(f, error);
   if (status != STRUT_OK) return status;
   fix_lengths(scene);
-  quieten(scene, f->experiment);
+  remove_motion(scene, f->experiment);
   status = check_lengths(f, error);
   if (status == STRUT_OK) status = polish(f, error);
   return status == STRUT_OK ? add_run(f, error) : status;
@@ -457,7 +457,7 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_scene *scene = &setup->scene;
   strut_model *model = NULL;
   strut_potential *potential = NULL;
-  *form = (strut_form){.from = choose(scene, options->from)};
+  *form = (strut_form){.from = choose_source(scene, options->from)};
   strut_former f = {
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);

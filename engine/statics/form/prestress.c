@@ -87,7 +87,7 @@ static bool solve_step(problem *p, size_t size) {
   return gsl_linalg_LU_solve(&a.matrix, &order, &b.vector, &x.vector) == 0;
 }
 
-static double along(const problem *p, size_t i) {
+static double step_component(const problem *p, size_t i) {
   double sum = 0;
   for (size_t a = 0; a < p->free; a++)
     sum += gsl_matrix_get(p->basis, i, a) * gsl_vector_get(p->solution, a);
@@ -95,22 +95,22 @@ static double along(const problem *p, size_t i) {
 }
 
 /* As far as the bounds allow; the one that stops it becomes active. True: nothing moved. */
-static bool advance(problem *p) {
+static bool advance_to_bound(problem *p) {
   double share = 1, most = 0, scale = 0;
   size_t stop = p->count;
   for (size_t i = 0; i < p->count; i++) {
-    double step = along(p, i), room = p->low[i] - p->x[i];
+    double step = step_component(p, i), room = p->low[i] - p->x[i];
     most = fmax(most, fabs(step)), scale = fmax(scale, fabs(p->x[i]));
     if (p->active[i] || !(step < 0) || !isfinite(room)) continue;
     if (room / step < share) share = fmax(room / step, 0), stop = i;
   }
-  for (size_t i = 0; i < p->count; i++) p->x[i] += share * along(p, i);
+  for (size_t i = 0; i < p->count; i++) p->x[i] += share * step_component(p, i);
   if (stop < p->count) p->active[stop] = 1, p->x[stop] = p->low[stop];
   return stop == p->count && most <= ZERO * scale;
 }
 
 /* Lets go of the bound that pulls hardest the wrong way; false: none does. */
-static bool release(problem *p) {
+static bool release_bound(problem *p) {
   size_t at = p->free, worst = p->count;
   double least = 0, scale = 0;
   for (size_t i = 0; i < p->count; i++) {
@@ -143,7 +143,7 @@ bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
   bool good = basis && p.active && p.system && p.right && p.solution && p.order;
   for (int k = 0; k < ROUNDS && good && p.free > 0; k++) {
     if (!solve_step(&p, find_step(&p))) break;
-    if (advance(&p) && !release(&p)) break;
+    if (advance_to_bound(&p) && !release_bound(&p)) break;
   }
   gsl_matrix_free(basis);
   strut_release(p.active);
@@ -203,7 +203,7 @@ static double least_tension(const strut_former *f) {
   return isfinite(least) ? least : 0.0;
 }
 
-static columns lay_out(const strut_former *f) {
+static columns number_columns(const strut_former *f) {
   columns at = {.members = f->model->members.count,
                 .contacts = f->model->contacts.count,
                 .n = f->potential->n};
@@ -269,8 +269,8 @@ static void set_costs(prestress *p, int32_t from, int32_t to, double cost) {
   for (int32_t j = from; j < to; j++) p->program.cost[j] = cost;
 }
 
-static strut_status solve(prestress *p, double *sum, strut_error *error) {
-  strut_quantity_program_end end;
+static strut_status solve_program(prestress *p, double *sum, strut_error *error) {
+  strut_linear_program_end end;
   strut_status status = strut_linear_program_solve(&p->program, p->x, sum, &end);
   if (status) return strut_fail(error, status, "out of memory");
   if (end == STRUT_PROGRAM_OPTIMAL) return STRUT_OK;
@@ -316,24 +316,24 @@ static strut_status find_forces(prestress *p, strut_error *error) {
   const columns *at = &p->at;
   double sum = 0;
   set_costs(p, at->up, at->count, 1);
-  strut_status status = solve(p, &sum, error);
+  strut_status status = solve_program(p, &sum, error);
   if (status) return status;
   if (sum > MISSING * (1 + (double)at->n)) return cannot_hold(p, error);
   set_costs(p, at->up, at->count, 0);
   for (int32_t j = at->up; j < at->count; j++) p->program.high[j] = 0;
   if (p->f->options->objective == STRUT_FORM_LARGEST) {
     p->program.cost[at->most] = 1;
-    status = solve(p, &sum, error);
+    status = solve_program(p, &sum, error);
     if (status) return status;
     p->program.cost[at->most] = 0;
     p->program.high[at->most] = sum * (1 + SLACKEN) + 1e-12;
   }
   set_costs(p, at->pull, at->ground, 1);
-  return solve(p, &sum, error);
+  return solve_program(p, &sum, error);
 }
 
 /* From forces that hold the shape to those whose cables have the least squares of densities. */
-static bool spread(prestress *p) {
+static bool minimise_squares(prestress *p) {
   const strut_former *f = p->f;
   const columns *at = &p->at;
   const double faint = 1e-5; /* bars and contacts decide only what cables leave open */
@@ -377,7 +377,7 @@ static bool spread(prestress *p) {
 }
 
 /* Nodes on the ground go as deep into it as they are pushed. How far they went. */
-static double sink(prestress *p) {
+static double sink_nodes(prestress *p) {
   const strut_contact_table *c = &p->f->model->contacts;
   double moved = 0;
   for (int32_t i = 0; i < p->at.contacts; i++) {
@@ -404,7 +404,7 @@ static strut_status set_forces(prestress *p, strut_error *error) {
 }
 
 /* Forces for the shape as it starts. */
-static strut_status pass(prestress *p, strut_error *error) {
+static strut_status compute_forces(prestress *p, strut_error *error) {
   const columns *at = &p->at;
   size_t entries = 11 * (size_t)at->members + 2 * (size_t)at->contacts + 2 * (size_t)at->n;
   strut_arena arena = {0};
@@ -413,7 +413,8 @@ static strut_status pass(prestress *p, strut_error *error) {
     fill_rows(p);
     fill_bounds(p);
     status = find_forces(p, error);
-    if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES && !spread(p))
+    if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES &&
+        !minimise_squares(p))
       status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   } else {
     strut_fail(error, status, "out of memory");
@@ -423,7 +424,7 @@ static strut_status pass(prestress *p, strut_error *error) {
 }
 
 strut_status strut_form_prestress(strut_former *f, strut_error *error) {
-  prestress p = {.f = f, .at = lay_out(f), .least = least_tension(f)};
+  prestress p = {.f = f, .at = number_columns(f), .least = least_tension(f)};
   p.scale = fmax(f->potential->force_scale, fmax(p.least, f->options->least_density * f->size));
   if (!(p.scale > 0)) p.scale = 1.0;
   f->form->least_tension = p.least;
@@ -433,8 +434,8 @@ strut_status strut_form_prestress(strut_former *f, strut_error *error) {
     memcpy(f->scene->nodes[i].start, f->scene->nodes[i].position, sizeof f->scene->nodes[i].start);
   strut_status status = STRUT_OK;
   for (int k = 0; k < PASSES && status == STRUT_OK; k++) { /* sinking turns members a little */
-    status = pass(&p, error);
-    if (status == STRUT_OK && sink(&p) <= SUNK * f->size) break;
+    status = compute_forces(&p, error);
+    if (status == STRUT_OK && sink_nodes(&p) <= SUNK * f->size) break;
   }
   return status == STRUT_OK ? set_forces(&p, error) : status;
 }

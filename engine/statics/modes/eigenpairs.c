@@ -26,7 +26,7 @@ typedef struct dense {
   gsl_vector *value;
 } dense;
 
-static void fill(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
+static void fill_matrices(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
   const strut_sparse *a = v->shape->pattern;
   for (int32_t j = 0; j < v->n; j++)
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
@@ -39,7 +39,7 @@ static void fill(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
 }
 
 /* Vectors of unit length to such of x'Mx = 1, into the set. */
-static void take(dense *d) {
+static void store_eigenpairs(dense *d) {
   strut_eigen_set *set = &d->work->set;
   double *product = (double *)d->work->v->work;
   for (size_t i = 0; i < d->n; i++) {
@@ -57,10 +57,10 @@ static bool solve_directly(dense *d) {
   if (!w) return false;
   gsl_matrix_set_zero(d->a);
   gsl_matrix_set_zero(d->b);
-  fill(d->work->v, d->a, d->b);
+  fill_matrices(d->work->v, d->a, d->b);
   bool good = gsl_eigen_gensymmv(d->a, d->b, d->value, d->vector, w) == 0 &&
               gsl_eigen_gensymmv_sort(d->value, d->vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
-  if (good) take(d);
+  if (good) store_eigenpairs(d);
   gsl_eigen_gensymmv_free(w);
   return good;
 }
@@ -72,7 +72,7 @@ static int32_t count_below(strut_modes_work *work, double z) {
 }
 
 /* A shift well below the smallest eigenvalue, by size, that is above 1e-20 of the largest. */
-static double find_soft(strut_modes_work *work) {
+static double find_soft_shift(strut_modes_work *work) {
   double z = 1e-20 * work->v->largest;
   int32_t inside = count_below(work, z) - count_below(work, -z);
   while (z < 1e-3 * work->v->largest &&
@@ -100,7 +100,7 @@ static bool split_mass(dense *d) {
 }
 
 /* x (n, massive) = (K + soft M)^-1 L in d->vector, and L' x in d->a. */
-static void invert(dense *d) {
+static void compute_inverse(dense *d) {
   strut_dd *y = d->work->v->work;
   for (size_t c = 0; c < d->massive; c++) {
     for (size_t r = 0; r < d->n; r++) y[r] = dd_of(0.0);
@@ -118,7 +118,7 @@ static void invert(dense *d) {
 }
 
 /* The i-th of the inverse's eigenpairs, t = 1 / (z + soft), into the set. */
-static void take_inverse(dense *d, const gsl_matrix *small, size_t from, size_t i) {
+static void store_inverse_pair(dense *d, const gsl_matrix *small, size_t from, size_t i) {
   double t = gsl_vector_get(d->value, from);
   double *x = d->work->set.vector + i * d->n;
   d->work->set.value[i] = 1.0 / t - d->work->soft;
@@ -163,12 +163,12 @@ static size_t find_cut(const dense *d, double top, const size_t *order) {
   return d->massive;
 }
 
-static void merge(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
+static void merge_eigenpairs(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
   double top = 0.0;
   for (size_t k = 0; k < d->massive; k++) top = fmax(top, fabs(gsl_vector_get(d->value, k)));
   sort_inverse(d, top, order);
   size_t cut = alone ? d->massive : find_cut(d, top, order);
-  for (size_t i = 0; i < cut; i++) take_inverse(d, small, order[i], i);
+  for (size_t i = 0; i < cut; i++) store_inverse_pair(d, small, order[i], i);
 }
 
 static bool solve_inverse(dense *d, bool alone) {
@@ -178,18 +178,18 @@ static bool solve_inverse(dense *d, bool alone) {
   bool good = w && small && order && split_mass(d);
   if (good) {
     strut_modes_factorise(&d->work->solver, d->work->soft);
-    invert(d);
+    compute_inverse(d);
     gsl_matrix_view a = gsl_matrix_submatrix(d->a, 0, 0, d->massive, d->massive);
     gsl_vector_view value = gsl_vector_subvector(d->value, 0, d->massive);
     good = gsl_eigen_symmv(&a.matrix, &value.vector, small, w) == 0;
-    if (good) merge(d, small, order, alone);
+    if (good) merge_eigenpairs(d, small, order, alone);
   }
   gsl_eigen_symmv_free(w);
   gsl_matrix_free(small);
   return good;
 }
 
-static bool allocate(dense *d) {
+static bool allocate_dense(dense *d) {
   strut_eigen_set *set = &d->work->set;
   const strut_vibration *v = d->work->v;
   d->n = (size_t)v->n, d->massive = (size_t)v->massive;
@@ -210,10 +210,10 @@ static bool allocate(dense *d) {
 
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
   dense d = {.work = work};
-  bool good = allocate(&d);
+  bool good = allocate_dense(&d);
   if (good) {
     bool all = d.massive == d.n;
-    work->soft = find_soft(work);
+    work->soft = find_soft_shift(work);
     if (all) good = solve_directly(&d);
     if (good && (!all || work->soft < 1e-10 * work->v->largest)) good = solve_inverse(&d, !all);
   }

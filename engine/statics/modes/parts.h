@@ -32,7 +32,7 @@ typedef struct strut_modes_work {
 
 /** The shape of that name, as strut_rest_state_find. */
 strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
-                               const char *name, strut_arena *arena, strut_rest_state *stand,
+                               const char *name, strut_arena *arena, strut_rest_state *rest,
                                strut_error *error);
 
 /** All modes of a dense problem, or the lowest ones of a sparse one, into work->set. */

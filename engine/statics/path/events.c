@@ -31,8 +31,8 @@ double strut_path_measure_eigenvalue(strut_path_system *s, const double *y,
 }
 
 /* Some point between two; it wants to be corrected. */
-static void blend(const strut_path_system *s, double share, const double *low, const double *high,
-                  double *y) {
+static void interpolate_linearly(const strut_path_system *s, double share, const double *low,
+                                 const double *high, double *y) {
   for (int32_t i = 0; i < 2 * (s->n + 1); i++) y[i] = low[i] + share * (high[i] - low[i]);
 }
 
@@ -40,7 +40,7 @@ static void blend(const strut_path_system *s, double share, const double *low, c
 static bool point_at(strut_path_system *s, const strut_path_piece *piece, double place,
                      double share, const double *low, const double *high, double *y) {
   double value = place;
-  blend(s, share, low, high, y);
+  interpolate_linearly(s, share, low, high, y);
   for (int32_t i = 0; i <= s->n; i++) value += piece->tangent[i] * piece->from[i];
   return strut_path_correct(s, piece->tangent, value, y) >= 0;
 }
@@ -139,7 +139,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
       double now = found ? measure(s, y, piece, which) : (double)NAN;
       if (!found || !(fabs(now) <= 2 * scale)) { /* it left the path: the last point before */
         if (!fork) place = at[0];
-        blend(s, fork ? share : 0.0, end[0], end[1], y);
+        interpolate_linearly(s, fork ? share : 0.0, end[0], end[1], y);
         break;
       }
       if (fabs(now) <= near || at[1] - at[0] <= NARROW * piece->length) break;
@@ -170,17 +170,17 @@ static const double AHEAD = 1e-6;   /* how far along a tangent it is seen what a
 static const double STEADY = 1e-12; /* of the size: a switch that changes less stays as it is */
 
 /* The switches that stand at zero at a kink, in their order; the one that made it is `first`. */
-typedef struct gathering {
+typedef struct switch_group {
   int32_t count, first, which[MOST_TOGETHER];
   bool was_on[MOST_TOGETHER];
   double here[MOST_TOGETHER]; /* their values at the kink [m] */
-} gathering;
+} switch_group;
 
 static bool is_thrown(bool on, double value) { return on ? value < 0 : value > 0; }
 
-static gathering gather(strut_path_walk *w, int32_t which) {
+static switch_group collect_switches(strut_path_walk *w, int32_t which) {
   strut_path_system *s = &w->system;
-  gathering g = {0};
+  switch_group g = {0};
   for (int32_t k = 0; k < strut_path_switch_count(s); k++) {
     double here = strut_path_switch_value(s, k, w->y);
     if (k == which) g.first = g.count;
@@ -194,13 +194,13 @@ static gathering gather(strut_path_walk *w, int32_t which) {
   return g;
 }
 
-static void set_switches(strut_path_system *s, const gathering *g, unsigned thrown) {
+static void set_switches(strut_path_system *s, const switch_group *g, unsigned thrown) {
   for (int32_t i = 0; i < g->count; i++)
     strut_path_switch_set(s, g->which[i], g->was_on[i] != (thrown >> i & 1));
 }
 
 /* How much a switch's value changes a little ahead along a tangent [m]. */
-static double change_ahead(strut_path_walk *w, const gathering *g, int32_t i,
+static double change_ahead(strut_path_walk *w, const switch_group *g, int32_t i,
                            const double *tangent) {
   strut_path_system *s = &w->system;
   memcpy(w->spare, w->y, 2 * ((size_t)s->n + 1) * sizeof *w->y);
@@ -212,7 +212,7 @@ static double change_ahead(strut_path_walk *w, const gathering *g, int32_t i,
  * The tangent with these switches thrown, into w->next_tangent, so that each switch goes on to where
  * it was put. False: there is none, or it contradicts a switch.
  */
-static bool find_tangent(strut_path_walk *w, const gathering *g, unsigned thrown,
+static bool find_tangent(strut_path_walk *w, const switch_group *g, unsigned thrown,
                          const double *beyond) {
   strut_path_system *s = &w->system;
   double sense = 0;
@@ -237,7 +237,7 @@ static bool find_tangent(strut_path_walk *w, const gathering *g, unsigned thrown
 }
 
 /* The switches that go on from here: those that the old stiffness throws, else any that agree. */
-static bool choose_switches(strut_path_walk *w, const gathering *g, const double *beyond,
+static bool choose_switches(strut_path_walk *w, const switch_group *g, const double *beyond,
                             unsigned *thrown) {
   unsigned first = 1u << g->first;
   for (int32_t i = 0; i < g->count; i++)
@@ -292,7 +292,7 @@ static void report_exchange(strut_path_walk *w, double turn, int32_t before) {
 
 bool strut_path_pass_kink(strut_path_walk *w, int32_t which, const double *beyond) {
   strut_path_system *s = &w->system;
-  gathering g = gather(w, which);
+  switch_group g = collect_switches(w, which);
   double turn = w->tangent[s->n];
   int32_t before = w->negative;
   unsigned thrown;

@@ -75,7 +75,7 @@ static strut_status choose_loads(const strut_scene *scene, const char *name, dou
 }
 
 /* All that a path is made from. */
-typedef struct beginning {
+typedef struct path_start {
   const strut_path_options *options;
   const strut_model *drawn; /* the model that was given */
   strut_setup setup; /* where the parameter is `from`; its arena is its own only if `owned` */
@@ -84,10 +84,10 @@ typedef struct beginning {
   double *load, *q;   /* (length) loads at factor 1 [N]; the equilibrium [m] */
   uint8_t *held;      /* (length) a free coordinate that is displaced; NULL without one */
   strut_arena arena;
-} beginning;
+} path_start;
 
 /* Loads of the scene that is followed, at the factor that the path begins with. */
-static bool scale_loads(beginning *b) {
+static bool scale_loads(path_start *b) {
   const strut_scene *drawn = b->drawn->scene;
   strut_load *loads = strut_arena_allocate(&b->arena, drawn->load_count, sizeof *loads);
   if (!loads) return false;
@@ -102,7 +102,7 @@ static bool scale_loads(beginning *b) {
 }
 
 /* The driven member with the rest length that the path begins with. */
-static strut_status lengthen_member(beginning *b, strut_error *error) {
+static strut_status lengthen_member(path_start *b, strut_error *error) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t driven = drawn->actuators[b->options->index].member;
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
@@ -119,7 +119,7 @@ static strut_status lengthen_member(beginning *b, strut_error *error) {
 }
 
 /* A support where the path begins. */
-static bool move_support(beginning *b) {
+static bool move_support(path_start *b) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t at = b->options->index;
   strut_node *nodes = strut_arena_allocate(&b->arena, drawn->node_count, sizeof *nodes);
@@ -131,7 +131,7 @@ static bool move_support(beginning *b) {
 }
 
 /* Scene and model where the parameter is `from`. */
-static strut_status make_model(beginning *b, strut_error *error) {
+static strut_status make_model(path_start *b, strut_error *error) {
   const strut_path_options *o = b->options;
   strut_status status = STRUT_OK;
   bool made = true;
@@ -148,8 +148,8 @@ static strut_status make_model(beginning *b, strut_error *error) {
 }
 
 /* q goes downhill to an equilibrium, with `held` coordinates where they are. */
-static strut_status descend(const strut_model *model, const uint8_t *held, bool without, double *q,
-                            strut_error *error) {
+static strut_status descend_to_rest(const strut_model *model, const uint8_t *held, bool without,
+                                    double *q, strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
   const char *where = without ? "without the load" : "at the beginning of the path";
@@ -174,37 +174,37 @@ static strut_status descend(const strut_model *model, const uint8_t *held, bool 
 }
 
 /* The equilibrium of that name. */
-static strut_status begin_at_name(beginning *b, strut_error *error) {
-  strut_rest_state stand;
+static strut_status start_at_name(path_start *b, strut_error *error) {
+  strut_rest_state rest;
   strut_status status = strut_rest_state_find(b->model, &b->setup.experiment, b->options->at,
-                                              &b->arena, &stand, error);
+                                              &b->arena, &rest, error);
   if (status) return status;
-  if (!stand.at_rest)
+  if (!rest.at_rest)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "'%.100s' is no equilibrium where the path begins: %.3g N are left",
-                      stand.name, stand.residual);
-  memcpy(b->q, stand.q, (size_t)b->model->length * sizeof *b->q);
+                      rest.name, rest.residual);
+  memcpy(b->q, rest.q, (size_t)b->model->length * sizeof *b->q);
   return STRUT_OK;
 }
 
 /* The equilibrium to begin at, in q. A free coordinate to be displaced is held from then on. */
-static strut_status find_beginning(beginning *b, strut_error *error) {
+static strut_status find_start(path_start *b, strut_error *error) {
   const strut_path_options *o = b->options;
   size_t length = (size_t)b->model->length;
   bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
   memcpy(b->q, b->model->start, length * sizeof *b->q);
   strut_status status =
-      o->at ? begin_at_name(b, error) : descend(b->model, NULL, without, b->q, error);
+      o->at ? start_at_name(b, error) : descend_to_rest(b->model, NULL, without, b->q, error);
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
   if (!b->held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   b->held[o->index] = 1;
   if (o->from == 0) return STRUT_OK;
   b->q[o->index] += o->from;
-  return descend(b->model, b->held, false, b->q, error);
+  return descend_to_rest(b->model, b->held, false, b->q, error);
 }
 
-static bool make_walk(strut_path_walk *w) {
+static bool allocate_walk(strut_path_walk *w) {
   size_t count = 2 * ((size_t)w->system.n + 1);
   double **arrays[] = {&w->y,     &w->tangent, &w->next,  &w->next_tangent,
                        &w->trial, &w->spare,   &w->upward};
@@ -217,7 +217,7 @@ static bool make_walk(strut_path_walk *w) {
   return true;
 }
 
-static strut_status create_walk(beginning *b, double until, strut_path_walk *w,
+static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                                 strut_error *error) {
   strut_path_system *s = &w->system;
   strut_status status = strut_path_system_create(b->model, b->held, s, error);
@@ -226,12 +226,12 @@ static strut_status create_walk(beginning *b, double until, strut_path_walk *w,
     return strut_fail(error, STRUT_USAGE,
                       "the structure has %d free coordinates; paths are followed with up to %d",
                       (int)s->n, STRUT_PATH_COORDINATES);
-  if (!make_walk(w)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!allocate_walk(w)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return strut_path_parameter_create(b->model, b->options, b->load, b->options->from, until, b->q,
                                      &s->arena, &s->parameter, error);
 }
 
-static strut_status walk_from(beginning *b, double until, int32_t steps, strut_path *path,
+static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
   strut_path_walk w = {.path = path};
   strut_status status = create_walk(b, until, &w, error);
@@ -282,7 +282,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   bool unsaid = over_load && options->until == 0 && options->from == 0;
   double until = unsaid ? 1.0 : options->until;
   int32_t steps = options->steps > 0 ? options->steps : DEFAULT_STEPS;
-  beginning b = {.options = options, .drawn = model, .setup.experiment = *experiment};
+  path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it begins, at %.6g", until);
@@ -295,7 +295,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (status == STRUT_OK) status = make_model(&b, error);
   if (status == STRUT_OK && b.model->length != model->length)
     status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
-  if (status == STRUT_OK) status = find_beginning(&b, error);
+  if (status == STRUT_OK) status = find_start(&b, error);
   if (status == STRUT_OK) status = walk_from(&b, until, steps, path, error);
   if (status == STRUT_OK && path->end == STRUT_PATH_STEPS)
     snprintf(path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",

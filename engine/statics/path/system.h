@@ -83,17 +83,18 @@ bool strut_path_tangent(strut_path_system *system, const double *y, const double
                         double *tangent);
 
 /** What is wanted of the stiffness: each costs several times what the one before it does. */
-typedef enum strut_path_wanted {
+typedef enum strut_path_spectrum_detail {
   STRUT_PATH_SIGNS,  /* of eigenvalues: how many are negative */
   STRUT_PATH_VALUES, /* with all digits near zero too, not only to those of the largest */
   STRUT_PATH_VECTORS /* and eigenvectors */
-} strut_path_wanted;
+} strut_path_spectrum_detail;
 
 /**
  * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
  * number of negative ones into system->negative. False: no scene has this value.
  */
-bool strut_path_spectrum(strut_path_system *system, const double *y, strut_path_wanted wanted);
+bool strut_path_spectrum(strut_path_system *system, const double *y,
+                         strut_path_spectrum_detail wanted);
 
 /** Cables first, then contacts: what may change along the path. */
 int32_t strut_path_switch_count(const strut_path_system *system);

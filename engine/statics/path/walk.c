@@ -14,7 +14,8 @@ double strut_path_distance(const strut_path_walk *w, const double *a, const doub
 }
 
 /* Memory for one more of `size` bytes at *items. */
-static bool grow(strut_path_walk *w, void **items, size_t count, size_t *room, size_t size) {
+static bool reserve_items(strut_path_walk *w, void **items, size_t count, size_t *room,
+                          size_t size) {
   if (count < *room) return true;
   size_t more = *room ? 2 * *room : 64;
   void *block = *items ? strut_reallocate(*items, more, size) : strut_allocate(more, size);
@@ -56,7 +57,7 @@ void strut_path_add_point(strut_path_walk *w, int32_t negative) {
   strut_path_point point = {
       .factor = strut_path_value(&w->system, w->y), .arc = w->arc, .negative = negative};
   if (!keep_state(w, w->y, &point) ||
-      !grow(w, &items, p->point_count, &w->point_room, sizeof *p->points))
+      !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
     return;
   p->points = items;
   p->points[p->point_count++] = point;
@@ -70,7 +71,7 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
   detail = strut_arena_text(&p->arena, detail, strlen(detail));
   if (!detail) w->failed = true;
   if (w->failed || !keep_state(w, y, &state) ||
-      !grow(w, &items, p->event_count, &w->event_room, sizeof *p->events))
+      !reserve_items(w, &items, p->event_count, &w->event_room, sizeof *p->events))
     return;
   p->events = items;
   strut_path_event event = {.kind = kind,
@@ -108,7 +109,7 @@ static size_t bytes_of(const strut_path_walk *w) {
   return 2 * ((size_t)w->system.n + 1) * sizeof(double);
 }
 
-static double dot(const strut_path_walk *w, const double *a, const double *b) {
+static double dot_product(const strut_path_walk *w, const double *a, const double *b) {
   double sum = 0;
   for (int32_t i = 0; i <= w->system.n; i++) sum += a[i] * b[i];
   return sum;
@@ -204,14 +205,14 @@ void strut_path_count_negative(strut_path_walk *w) {
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
 static bool find_next(strut_path_walk *w) {
   strut_path_system *s = &w->system;
-  double here = dot(w, w->tangent, w->y);
+  double here = dot_product(w, w->tangent, w->y);
   for (; w->step >= SHORTEST; w->step *= 0.5) {
     memcpy(w->next, w->y, bytes_of(w));
     for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
     int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
     if (used < 0 || used > SLOW || strut_path_distance(w, w->next, w->y) > 1.5 * w->step) continue;
     if (!strut_path_tangent(s, w->next, w->tangent, w->next_tangent)) continue;
-    if (dot(w, w->tangent, w->next_tangent) < BEND) continue;
+    if (dot_product(w, w->tangent, w->next_tangent) < BEND) continue;
     return true;
   }
   w->step = SHORTEST;
@@ -219,7 +220,7 @@ static bool find_next(strut_path_walk *w) {
 }
 
 /* Ends the path exactly at the value asked for if this piece passes it. */
-static bool land(strut_path_walk *w) {
+static bool land_on_end(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   double from = w->y[s->n], to = w->next[s->n];
   if (!(from < 1 && to >= 1)) return false;
@@ -261,7 +262,7 @@ static strut_path_end find_reason(strut_path_walk *w) {
   return STRUT_PATH_INVALID;
 }
 
-static bool give_up(strut_path_walk *w, strut_path_end end) {
+static bool end_path(strut_path_walk *w, strut_path_end end) {
   const strut_path_parameter *p = &w->system.parameter;
   size_t room = sizeof w->path->remark;
   double value = strut_path_value(&w->system, w->y);
@@ -294,16 +295,16 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   memcpy(w->tangent, w->next_tangent, bytes_of(w));
   bool on = strut_path_pass_kink(w, which, beyond);
   strut_path_add_point(w, w->negative);
-  return on || give_up(w, STRUT_PATH_LOST);
+  return on || end_path(w, STRUT_PATH_LOST);
 }
 
 bool strut_path_walk_step(strut_path_walk *w) {
   strut_path_piece piece = {w->y, w->tangent, w->next, 0};
   int32_t which;
-  if (!find_next(w)) return give_up(w, find_reason(w));
-  piece.length = dot(w, w->tangent, w->next) - dot(w, w->tangent, w->y);
-  bool landed = land(w);
-  if (landed) piece.length = dot(w, w->tangent, w->next) - dot(w, w->tangent, w->y);
+  if (!find_next(w)) return end_path(w, find_reason(w));
+  piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
+  bool landed = land_on_end(w);
+  if (landed) piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
   double place = first_switch(w, &piece, &which);
   if (which >= 0) {
     piece.length = place;
@@ -323,7 +324,7 @@ bool strut_path_walk_step(strut_path_walk *w) {
     w->path->end = STRUT_PATH_UNTIL;
     return false;
   }
-  if (is_away(w)) return give_up(w, STRUT_PATH_AWAY);
+  if (is_away(w)) return end_path(w, STRUT_PATH_AWAY);
   w->step = fmin(1.4 * w->step, w->path->coordinate >= 0 ? LONGEST_HELD : LONGEST);
   return true;
 }
@@ -338,7 +339,7 @@ static bool first_tangent(strut_path_walk *w) {
 }
 
 /* To all digits where it is: the descent that found y was content with a double's. */
-static void sharpen(strut_path_walk *w) {
+static void sharpen_start(strut_path_walk *w) {
   memcpy(w->next, w->y, bytes_of(w));
   if (strut_path_correct(&w->system, w->upward, 0.0, w->next) < 0) return;
   if (strut_path_distance(w, w->next, w->y) > NEARBY) return;
@@ -353,7 +354,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     double value = strut_path_switch_value(s, k, w->y);
     if (isfinite(value)) strut_path_switch_set(s, k, value > -STRUT_PATH_EVEN * s->size);
   }
-  sharpen(w);
+  sharpen_start(w);
   for (int round = 0; round < ROUNDS; round++) { /* what stands at zero goes the way of the path */
     bool changed = false;
     if (!first_tangent(w)) continue;
@@ -368,7 +369,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     }
     if (!changed) break;
   }
-  if (!first_tangent(w) || s->drifts) return give_up(w, STRUT_PATH_LOST);
+  if (!first_tangent(w) || s->drifts) return end_path(w, STRUT_PATH_LOST);
   strut_path_count_negative(w);
   strut_path_add_point(w, w->negative);
   return !w->failed;

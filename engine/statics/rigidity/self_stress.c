@@ -343,7 +343,7 @@ strut_status strut_self_stress_pull_cables(const strut_model *model,
   strut_arena scratch = {0};
   cables c = {.states = states, .members = (size_t)model->members.count};
   strut_linear_program program = {0};
-  strut_quantity_program_end end = STRUT_PROGRAM_FAILED;
+  strut_linear_program_end end = STRUT_PROGRAM_FAILED;
   double sum = 0.0;
   strut_status status = STRUT_NO_MEMORY;
   double *weight = strut_arena_allocate(&scratch, (size_t)states->count, sizeof *weight);

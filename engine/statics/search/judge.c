@@ -60,7 +60,7 @@ typedef struct lowest {
   gsl_eigen_symmv_workspace *workspace;
 } lowest;
 
-static void make_orthonormal(lowest *l) {
+static void orthonormalise(lowest *l) {
   size_t n = (size_t)l->hessian->n;
   for (size_t k = 0; k < SPACE; k++) {
     double *x = l->space + k * n;
@@ -75,7 +75,7 @@ static void make_orthonormal(lowest *l) {
 }
 
 /* Rayleigh-Ritz in the space: values ascending, vectors turned accordingly. */
-static void project(lowest *l) {
+static void project_subspace(lowest *l) {
   size_t n = (size_t)l->hessian->n, order[SPACE];
   double raw[SPACE];
   for (size_t k = 0; k < SPACE; k++)
@@ -105,15 +105,15 @@ static void project(lowest *l) {
   l->space = l->image, l->image = swap;
 }
 
-static void iterate(lowest *l, double scale) {
+static void iterate_subspace(lowest *l, double scale) {
   size_t n = (size_t)l->hessian->n;
   double before[WANTED] = {0};
   for (size_t i = 0; i < SPACE * n; i++) l->space[i] = sin(1.0 + 12.9898 * (double)i);
   for (int turn = 0; turn < TURNS; turn++) {
     bool settled = turn > 1;
     for (size_t k = 0; k < SPACE; k++) strut_ldl_solve(l->ldl, l->space + k * n);
-    make_orthonormal(l);
-    project(l);
+    orthonormalise(l);
+    project_subspace(l);
     for (int i = 0; i < WANTED; i++) {
       double change = fabs(l->value[i] - before[i]);
       settled = settled && change <= fmax(1e-8 * fabs(l->value[i]), 1e-15 * scale);
@@ -164,7 +164,7 @@ static bool judge_sparse(const judgement *j, strut_arena *arena, strut_critical_
   if (good) {
     point->negative = below;
     point->zero = above > below ? above - below : 0;
-    iterate(&l, scale);
+    iterate_subspace(&l, scale);
     memcpy(point->eigenvalues, l.value, WANTED * sizeof *l.value);
     point->eigenvalue_count = WANTED;
     set_softest(j, l.space, SPACE, j->work, point);
@@ -224,7 +224,8 @@ static bool is_finite(const strut_sparse *h) {
   return true;
 }
 
-static bool judge(judgement *j, const double *q, strut_arena *arena, strut_critical_point *point) {
+static bool judge_point(judgement *j, const double *q, strut_arena *arena,
+                        strut_critical_point *point) {
   const strut_potential *p = j->potential;
   double size = p->model->size > 0 ? p->model->size : 1.0;
   strut_potential_gradient(p, q, j->work);
@@ -258,7 +259,7 @@ strut_status strut_critical_judge(const strut_potential *potential, const double
   bool good = point->q && point->softest && j.motion && j.work && j.hessian;
   if (good) {
     memcpy(point->q, q, length * sizeof *q);
-    good = judge(&j, q, arena, point);
+    good = judge_point(&j, q, arena, point);
   }
   bool finite = good || !j.hessian || is_finite(j.hessian);
   strut_arena_free(&scratch);

@@ -15,7 +15,7 @@ struct strut_congruent_copy {
 };
 
 /* What rigid motions of the whole change nothing: no support, no load, no ground is in their way. */
-static void see_motions(strut_stationary_set *g) {
+static void find_free_motions(strut_stationary_set *g) {
   const strut_potential *p = g->potential;
   const strut_model *model = p->model;
   int32_t fixed[2] = {0, 0}, first = -1;
@@ -44,7 +44,7 @@ void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *
     stiffest = fmax(stiffest, model->members.stiffness[j]);
   g->near = 1e-6 * size;
   g->flat = 1e-15 * stiffest * size * size + 1e-12 * potential->force_scale * size;
-  see_motions(g);
+  find_free_motions(g);
 }
 
 void strut_stationary_set_free(strut_stationary_set *g) {
@@ -79,7 +79,7 @@ static bool same_point(const strut_stationary_set *g, const double *q, const dou
  * Close to a fork the softest direction is so soft that a point is known there only to the rounding
  * of the forces over that stiffness: each of two copies to no more than strut_minimise allows.
  */
-static double blur(const strut_stationary_set *g, const strut_critical_point *point) {
+static double position_blur(const strut_stationary_set *g, const strut_critical_point *point) {
   const strut_potential *p = g->potential;
   double soft = 0.0, last = 0.0;
   for (int32_t skip = 0; skip <= point->zero; skip++) { /* the next larger one, in magnitude */
@@ -94,26 +94,26 @@ static double blur(const strut_stationary_set *g, const strut_critical_point *po
   return fmin(far, MOST_BLUR * g->near);
 }
 
-static int32_t find(const strut_stationary_set *g, const double *q, double energy) {
+static int32_t find_point(const strut_stationary_set *g, const double *q, double energy) {
   for (size_t i = 0; i < g->count; i++)
     if (same_energy(g, energy, g->points[i].potential) && same_point(g, q, g->points[i].q, g->near))
       return (int32_t)i;
   for (size_t i = 0; i < g->count; i++) {
     const strut_critical_point *known = &g->points[i];
     if (fabs(energy - known->potential) > g->flat + 1e-12 * fabs(energy)) continue;
-    double near = blur(g, known);
+    double near = position_blur(g, known);
     if (near > g->near && same_point(g, q, known->q, near)) return (int32_t)i;
   }
   return -1;
 }
 
 int32_t strut_stationary_set_find(const strut_stationary_set *g, const double *q) {
-  return find(g, q, strut_potential_value(g->potential, q));
+  return find_point(g, q, strut_potential_value(g->potential, q));
 }
 
 static bool remember_placement(strut_stationary_set *g, int32_t index, const double *q) {
   strut_congruent_copy **end = &g->placement[index];
-  double near = fmax(g->near, blur(g, &g->points[index]));
+  double near = fmax(g->near, position_blur(g, &g->points[index]));
   for (; *end; end = &(*end)->next)
     if (place_distance(g, q, (*end)->q) <= near) return true;
   size_t length = (size_t)g->potential->model->length;
@@ -128,7 +128,7 @@ static bool remember_placement(strut_stationary_set *g, int32_t index, const dou
   return true;
 }
 
-static bool make_room(strut_stationary_set *g) {
+static bool reserve_points(strut_stationary_set *g) {
   if (g->count < g->room) return true;
   size_t room = g->room ? 2 * g->room : 16;
   strut_critical_point *points = strut_reallocate(g->points, room, sizeof *points);
@@ -186,7 +186,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
     if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
   }
   if (*fresh) {
-    if (!make_room(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!reserve_points(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
     *index = (int32_t)g->count++;
     g->placement[*index] = NULL;
     g->points[*index] = point;
@@ -230,7 +230,8 @@ static void centre_of(const strut_model *model, const double *q, double centre[2
 }
 
 /* b, mirrored in x where `side` is -1, turned and shifted onto a by least squares. */
-static double distance(const strut_model *model, const double *a, const double *b, double side) {
+static double aligned_distance(const strut_model *model, const double *a, const double *b,
+                               double side) {
   double p[2], r[2], along = 0.0, across = 0.0, largest = 0.0;
   centre_of(model, a, p);
   centre_of(model, b, r);
@@ -252,8 +253,8 @@ static double distance(const strut_model *model, const double *a, const double *
 
 double strut_shape_distance(const strut_model *model, const double *a, const double *b, bool mirror,
                             bool *mirrored) {
-  double plain = distance(model, a, b, 1.0);
-  double other = mirror ? distance(model, a, b, -1.0) : HUGE_VAL;
+  double plain = aligned_distance(model, a, b, 1.0);
+  double other = mirror ? aligned_distance(model, a, b, -1.0) : HUGE_VAL;
   if (mirrored) *mirrored = other < plain;
   return fmin(plain, other);
 }

@@ -35,8 +35,8 @@ typedef struct strut_task {
 
 typedef struct strut_task_result {
   strut_descent_end end;
-  double *q;     /* (length) where it ended */
-  int64_t looks; /* Hessians taken apart on the way */
+  double *q;             /* (length) where it ended */
+  int64_t hessian_count; /* Hessians taken apart on the way */
 } strut_task_result;
 
 typedef struct strut_search_tasks strut_search_tasks;
