@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/curvature.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -46,6 +47,7 @@ static double shares_at(const strut_quadratic *r, double mu, double *x) {
 }
 
 double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
+  assert(radius > 0.0);
   double size = 0.0, slope;
   int32_t low = -1;
   for (int32_t i = 0; i < r->n; i++) {
@@ -54,7 +56,7 @@ double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
     size += r->part[i] * r->part[i];
   }
   size = sqrt(size);
-  if (low < 0) return shares_at(r, 0.0, x); /* nothing pushes anywhere */
+  if (low < 0) return shares_at(r, 0.0, x); /* no mode has a force */
   double lowest = r->value[low];
   double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * r->scale + 1e-300 : 0.0);
   double length = step_length_at(r, floor, &slope);
@@ -288,7 +290,9 @@ static double lengthen_step(sparse_curvature *r, const double *g, double radius,
   return length;
 }
 
-/* From a shift whose step is too long upwards: Newton's method on 1/|s|, each trial a new factor. */
+/*
+ * From a shift whose step is too long upwards: Newton's method on 1/|s|, each trial a new factor.
+ */
 static void shorten_step(sparse_curvature *r, const double *g, double radius, double low,
                          double length, double *s) {
   int32_t n = r->hessian->n;
@@ -338,7 +342,9 @@ static double sparse_newton_step(void *memory, const double *g, double *s) {
   return isnan(r->shift) ? HUGE_VAL : solve_shifted(r, g, s);
 }
 
-/* Inverse iteration from a start that leans on no motion, shifted to just below the lowest value. */
+/*
+ * Inverse iteration from a start that leans on no motion, shifted to just below the lowest value.
+ */
 static bool sparse_unstable_direction(void *memory, double *s) {
   sparse_curvature *r = memory;
   int32_t n = r->hessian->n;

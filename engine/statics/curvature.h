@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The Hessian as a descent uses it, by eigenvectors or by a sparse factor; and the step within a trust
- * region (More and Sorensen).
+ * The Hessian as a descent uses it, by eigenvectors or by a sparse factor; and the step within a
+ * trust region (More and Sorensen).
  */
 #ifndef STRUT_ENGINE_STATICS_CURVATURE_H
 #define STRUT_ENGINE_STATICS_CURVATURE_H

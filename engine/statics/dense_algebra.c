@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/dense_algebra.h"
 
+#include <assert.h>
 #include <float.h>
 #include <gsl/gsl_eigen.h>
 #include <math.h>
@@ -137,6 +138,7 @@ static bool diagonalise(double *z, size_t n, double *d, double *e) {
 }
 
 bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
+  assert(rows >= 0);
   size_t n = (size_t)rows;
   double largest = 0.0;
   int power = 0;
@@ -153,7 +155,7 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   return true;
 }
 
-/* One sign of two, so that results do not depend on the way there. */
+/* Fixes the sign of a vector, so that results do not depend on how it was computed. */
 static void turn(double *vector, size_t n) {
   size_t largest = 0;
   for (size_t i = 1; i < n; i++)
@@ -186,6 +188,7 @@ static size_t find_pivot(const gsl_matrix *a, size_t j) {
 }
 
 void strut_lu_factor(gsl_matrix *a, gsl_permutation *order) {
+  assert(a->size1 == a->size2 && order->size == a->size1);
   gsl_permutation_init(order);
   for (size_t j = 0; j < a->size1; j++) {
     size_t pivot = find_pivot(a, j);

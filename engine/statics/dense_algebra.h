@@ -32,8 +32,8 @@ STRUT_API bool strut_eigen(double *matrix, int32_t n, double *value, double *wor
 bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector);
 
 /**
- * Factors the square matrix in place with row exchanges, as gsl_linalg_LU_solve wants it. A singular
- * matrix leaves a zero on the diagonal.
+ * Factors the square matrix in place with row exchanges, as gsl_linalg_LU_solve wants it. A
+ * singular matrix leaves a zero on the diagonal.
  */
 void strut_lu_factor(gsl_matrix *a, gsl_permutation *order);
 

@@ -34,6 +34,8 @@ bool strut_linear_program_create(strut_linear_program *p, int32_t rows, int32_t 
 }
 
 void strut_linear_program_add(strut_linear_program *p, int32_t row, int32_t column, double value) {
+  assert(row >= 0 && row < p->rows);
+  assert(column >= 0 && column < p->columns);
   if (value == 0) return;
   assert(p->entry_count < p->entry_room);
   p->entry_row[p->entry_count] = row;
@@ -131,6 +133,7 @@ static int print_nothing(void *unused, const char *text) {
 
 strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
                                         strut_linear_program_end *end) {
+  assert(p->entry_count <= p->entry_room);
   jmp_buf out;
   entries e = {0};
   if (!make_entries(p, &e) || glp_init_env() > 1) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The trust region itself: how far a step may go, whether it was any good, and when to stop. */
+/* The trust-region loop: step length, acceptance, and termination. */
 #include "engine/statics/minimise.h"
 
 #include <float.h>
@@ -96,8 +96,8 @@ static double residual_allowed(const strut_minimiser *m, const double *q, double
 }
 
 /*
- * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may be
- * all rounding long before soft directions have converged. Ends with the last residual.
+ * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may
+ * be all rounding long before soft directions have converged. Ends with the last residual.
  */
 static void polish_point(strut_minimiser *m, double *q, double tolerance, double reach,
                          strut_descent *end) {
@@ -120,7 +120,7 @@ static void polish_point(strut_minimiser *m, double *q, double tolerance, double
   }
 }
 
-/* From a stationary point that is no minimum: the lower of both ways along the ridge's direction. */
+/* Leaves a stationary point that is no minimum along the unstable direction, on its lower side. */
 static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
   double here = strut_potential_value(m->potential, q);
   if (!m->curvature->unstable_direction(m->workspace, m->step)) return false;
@@ -139,8 +139,8 @@ static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
 }
 
 /*
- * A member that has shrunk to a point pushes its ends apart in every direction, though no gradient
- * says so: its free end moves aside. False where there is none.
+ * A member that has shrunk to a point pushes its ends apart, but its gradient is undefined: moves
+ * its free end aside. False if there is no such member.
  */
 static bool leave_collapse(strut_minimiser *m, double *q) {
   const strut_potential *p = m->potential;
@@ -232,8 +232,8 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
 }
 
 /*
- * A gradient within rounding ends it only where little is left to go as well: beside very stiff
- * members rounding hides forces that soft ones still yield to.
+ * A gradient within rounding ends the descent only if the Newton step is short too: beside very
+ * stiff members rounding hides forces that soft members still yield to.
  */
 strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
@@ -270,8 +270,8 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
 }
 
 /*
- * How far from a saddle the force down the step's direction is told from rounding. A well may lie as
- * near as that to its saddle, where it is about to vanish.
+ * Returns the distance from the saddle at which the force along the step exceeds rounding. A well
+ * about to vanish may lie that close to its saddle.
  */
 static double leave_saddle(strut_minimiser *m, const double *q, double side) {
   const strut_potential *p = m->potential;

@@ -219,7 +219,7 @@ static void test_a_push_along_the_ground(void **unused) {
   build_load(&f.setup.scene, 2, 2.5 * weight, 0, -1);
   search(&f);
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 0);
-  assert_says(f.all.remark, "a coefficient of at least 2.5 holds it");
+  assert_says(f.all.remark, "a friction coefficient of at least 2.5 holds it");
   done(&f);
 }
 
@@ -263,7 +263,7 @@ static void test_a_slope(void **unused) {
   assert_int_equal(level.all.count, steep.all.count);
   assert_true(steep.all.count >= 3);
   assert_int_equal(count(&steep, STRUT_OUTCOME_STANDS), 0);
-  assert_says(steep.all.remark, "a coefficient of at least 0.1003 holds it"); /* tan 0.1 */
+  assert_says(steep.all.remark, "a friction coefficient of at least 0.1003 holds it"); /* tan 0.1 */
   assert_string_equal(first(&steep, STRUT_OUTCOME_NO_REST)->verdict,
                       "slides along the ground without friction");
   for (size_t i = 0; i < steep.all.count; i++) {
@@ -291,7 +291,7 @@ static void test_supports_must_touch(void **unused) {
   strut_model *model = motion_compile(&setup.scene);
   assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, &error),
                    STRUT_USAGE);
-  assert_says(error.message, "node 'n3' cannot touch the ground");
+  assert_says(error.message, "node 'n3' is no contact node");
   strut_equilibria_free(&all);
   strut_model_free(model);
   strut_setup_free(&setup);
@@ -344,7 +344,7 @@ static void test_stands(void **unused) {
   assert_true(one.residual < 1e-10 * one.scale);
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, "III", &arena, &two, &error),
                    STRUT_USAGE);
-  assert_says(error.message, "choose among: start, drawn, I, II");
+  assert_says(error.message, "choose one of: start, drawn, I, II");
   strut_arena_free(&arena);
   strut_model_free(model);
   strut_setup_free(&setup);

@@ -14,7 +14,7 @@ static strut_status no_memory(strut_equilibrium_search *h) {
   return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
 }
 
-/* The largest doubt counts. */
+/* Adds a search's counts; of its estimates the largest is kept. */
 static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
   h->out->missed = fmax(h->out->missed, set->missed);
@@ -24,7 +24,7 @@ static void count_starts(strut_equilibrium_search *h, const strut_critical_set *
   h->out->cut_short = h->out->cut_short || set->cut_short;
 }
 
-/* The level scene with all shapes laid on the set, its start too: `placed` shares the rest. */
+/* Copies the level scene and places every configuration and the start on the support set. */
 static double *place_shapes(const strut_equilibrium_search *h, const strut_node_set *set,
                             strut_scene *placed, size_t length, strut_arena *arena) {
   const strut_scene *level = &h->level.scene;
@@ -103,8 +103,7 @@ static strut_status search_on_supports(strut_equilibrium_search *h, int32_t grou
   }
   if (!status && potential->n == 0)
     status = strut_fail(h->error, STRUT_USAGE,
-                        "with the supports held that were asked for nothing can move; hold fewer "
-                        "nodes");
+                        "with the requested supports held no node can move; hold fewer nodes");
   if (!status) status = search_held(h, potential, held, shape, set, group, &scratch);
   strut_potential_free(potential);
   strut_model_free(model);
@@ -123,7 +122,7 @@ static strut_status search_all_sets(strut_equilibrium_search *h) {
   return status;
 }
 
-/* True where a support solution stands for that minimum of the real ground. */
+/* True if a candidate found on supports stands in that minimum of the real ground. */
 static bool has_standing_candidate(const strut_equilibrium_search *h, int32_t state) {
   for (size_t i = 0; i < h->count; i++)
     if (h->candidates[i].e.supports && h->candidates[i].e.outcome == STRUT_OUTCOME_STANDS &&
@@ -132,7 +131,7 @@ static bool has_standing_candidate(const strut_equilibrium_search *h, int32_t st
   return false;
 }
 
-/* The real ground's own: stable ones that no supports stand for, and its saddles. */
+/* Adds the real ground's saddles, and its minima that no candidate on supports represents. */
 static strut_status add_ground(strut_equilibrium_search *h) {
   const strut_critical_set *set = &h->landscape.set;
   count_starts(h, set);
@@ -159,7 +158,7 @@ static strut_status add_ground(strut_equilibrium_search *h) {
   return STRUT_OK;
 }
 
-/* Within a group those that stand first, then stable by energy, then saddles, then maxima. */
+/* Order within a group: standing ones, other stable ones by energy, saddles, maxima. */
 static int compare_candidates(const void *pa, const void *pb) {
   const strut_candidate_equilibrium *a = pa, *b = pb;
   int stands_a = a->e.outcome == STRUT_OUTCOME_STANDS,
@@ -182,7 +181,10 @@ static void link_ends(strut_equilibrium_search *h) {
   }
 }
 
-/* What stands for point `number` of a search, in the list: on the ground what stands there. */
+/*
+ * Index in the list of point `number` of a search; on the ground that of the equilibrium standing
+ * there.
+ */
 static int32_t find_number(const strut_equilibrium_search *h, int32_t group, int32_t number) {
   for (size_t i = 0; i < h->count && number >= 0; i++) {
     const strut_candidate_equilibrium *f = &h->candidates[i];
@@ -194,7 +196,7 @@ static int32_t find_number(const strut_equilibrium_search *h, int32_t group, int
   return -1;
 }
 
-/* Where saddles lead down to: from numbers in their search to places in the list. */
+/* Translates the minima below saddles from numbers in their search to indices in the list. */
 static void link_saddles(strut_equilibrium_search *h) {
   for (size_t i = 0; i < h->count; i++) {
     strut_candidate_equilibrium *f = &h->candidates[i];
@@ -212,7 +214,7 @@ static void turn_to_original(strut_equilibrium_search *h, strut_equilibrium *e) 
   if (e->rest && e->rest != e->point.q) strut_level_frame_to_original(&h->level, nodes, e->rest);
 }
 
-/* Sorts, names, links and words the finds, and hands them over. */
+/* Sorts, names, links and describes the candidates, and moves them to the result. */
 static strut_status report_equilibria(strut_equilibrium_search *h) {
   strut_arena *arena = &h->out->arena;
   if (h->count) qsort(h->candidates, h->count, sizeof *h->candidates, compare_candidates);
@@ -234,7 +236,7 @@ static strut_status report_equilibria(strut_equilibrium_search *h) {
   return status;
 }
 
-/* Nothing presses on the ground where no force acts across it and nothing is held there. */
+/* True if a force acts across the ground or a support holds a node across it. */
 static bool is_pressed(const strut_equilibrium_search *h) {
   double scale = 1e-12 * h->potential->force_scale, sum = 0.0;
   for (int32_t i = 0; i < h->model->node_count; i++) {
@@ -263,12 +265,12 @@ static strut_status prepare_search(strut_equilibrium_search *h, const strut_mode
     status = strut_supports_choose(&h->level.scene, &h->experiment->search, o->supports,
                                    &h->out->arena, &h->supports, h->error);
   else if (o->supports)
-    status = strut_fail(h->error, STRUT_USAGE,
-                        h->level.oblique_node >= 0
-                            ? "supports cannot take the place of a slope while a node is held in "
-                              "one direction only"
-                            : "no ground presses on the structure, so no supports can take its "
-                              "place");
+    status = strut_fail(
+        h->error, STRUT_USAGE,
+        h->level.oblique_node >= 0
+            ? "static supports cannot replace a sloped ground while a node is held in one "
+              "direction only"
+            : "the ground does not press on the structure, so supports cannot replace it");
   return status;
 }
 
@@ -304,7 +306,7 @@ static int32_t find_nearest(const strut_model *model, const strut_equilibria *al
   return nearest;
 }
 
-/* Where the run of the scene starts, if it settles: that, too, is one of the equilibria. */
+/* Finds the equilibrium that a settling run of the scene starts from. */
 static strut_status settle_start(strut_equilibrium_search *h, const strut_model *model) {
   double *q, time;
   strut_error trouble = {0};
@@ -319,7 +321,7 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)
     return strut_fail(h->error, status, "%s", trouble.message);
   snprintf(h->out->start_trouble, sizeof h->out->start_trouble, "%s", trouble.message);
-  return STRUT_OK; /* the list stands without it */
+  return STRUT_OK; /* the list is valid without it */
 }
 
 strut_status strut_equilibria_find(const strut_model *model, const strut_experiment *experiment,

@@ -7,7 +7,7 @@
 #include "engine/model/pose.h"
 #include "engine/statics/equilibria/naming.h"
 
-/* One equilibrium's own figures. See hunt.h. */
+/* Quantities of one candidate. */
 
 /* Depth and pull below these are rounding: in model sizes, in weights. */
 static const double DEEP = 1e-9, PULL = 1e-9;
@@ -51,7 +51,7 @@ static void measure_members(const strut_model *model, const double *q, double *f
   }
 }
 
-/* What holds the held coordinates: minus the net force there. */
+/* Reactions on held coordinates: minus the net force there. */
 static bool measure_reactions(strut_equilibrium_search *h, const strut_potential *potential,
                               const uint8_t *held, strut_candidate_equilibrium *f) {
   double *force = strut_allocate((size_t)h->model->length, sizeof *force);
@@ -93,7 +93,8 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h,
   e->member_force = strut_arena_allocate(arena, (size_t)h->model->members.count, sizeof(double));
   if (!e->reaction || !e->below || !e->member_force || !copy_point(h, point, &e->point))
     return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
-  bool placed = 2 * h->model->node_count - potential->n <= 3; /* whole shapes are free to be so */
+  bool placed = 2 * h->model->node_count - potential->n <=
+                3; /* the shape may be mirrored as a whole: orient it */
   if ((placed && strut_orient_shape(h->model, held, e->point.q, e->point.softest)) ||
       !measure_reactions(h, potential, held, find))
     return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
@@ -126,9 +127,9 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
   return STRUT_OK;
 }
 
-/* What becomes of equilibria on static supports when the supports give way to the ground. */
+/* Follows equilibria on static supports after the ground replaces the supports. */
 
-/* It still stands as it stood if no node has moved further, in model sizes. */
+/* A candidate stands if no node moves farther than this, in model sizes. */
 static const double AS_IT_STOOD = 0.02;
 
 static bool is_followed(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
@@ -146,7 +147,7 @@ static strut_outcome judge_on_supports(const strut_equilibrium_search *h,
   return h->instability == STRUT_INSTABILITY_NONE ? STRUT_OUTCOME_STANDS : STRUT_OUTCOME_NO_REST;
 }
 
-/* A saddle on supports that only push is one on the ground too, all but the ground's give. */
+/* A saddle on supports that only push is one on the ground too, up to the ground's compliance. */
 static bool is_pass(const strut_equilibrium_search *h, const strut_candidate_equilibrium *f) {
   bool under = false;
   for (int32_t i = 0; i < h->model->node_count; i++) under = under || f->e.below[i];
@@ -154,8 +155,8 @@ static bool is_pass(const strut_equilibrium_search *h, const strut_candidate_equ
 }
 
 /*
- * The search on the real ground begins with what lies below each that may stand, and with the
- * saddles that supports have shown.
+ * Searches the real ground, starting from the minimum below each candidate that may stand and from
+ * the saddles found on supports.
  */
 static strut_status explore_landscape(strut_equilibrium_search *h) {
   const strut_equilibria_options *o = h->options;
@@ -206,7 +207,9 @@ static bool stands_on(const strut_equilibrium_search *h, const strut_candidate_e
   return moved < AS_IT_STOOD * h->model->size;
 }
 
-/* Of the supports the one that is pressed on most while another pulls: there it turns. */
+/*
+ * The support with the largest push while another pulls: the structure tips over there. -1: none.
+ */
 static int32_t turning_node(const strut_candidate_equilibrium *f) {
   int32_t most = -1;
   for (size_t i = 0; i < f->e.supports->count && f->pulls; i++) {
@@ -255,7 +258,7 @@ strut_status strut_equilibrium_search_follow(strut_equilibrium_search *h) {
     lost = lost || (h->candidates[i].e.rest && h->candidates[i].state < 0);
   }
   if (status || !any || !lost) return status;
-  /* one came to rest where the search had not been: search again from there */
+  /* one came to rest in a minimum not found before: search again from there */
   if ((status = explore_landscape(h))) return status;
   for (size_t i = 0; i < h->count; i++)
     if (h->candidates[i].e.rest)

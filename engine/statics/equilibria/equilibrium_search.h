@@ -62,7 +62,10 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *search,
 strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search, const double *q,
                                                strut_equilibrium *e);
 
-/** Releases the candidates that may stand from their supports and judges them by where they come to rest. */
+/**
+ * Releases the candidates that may stand from their supports and judges them by where they come to
+ * rest.
+ */
 strut_status strut_equilibrium_search_follow(strut_equilibrium_search *search);
 
 /** Checks whether the structure can rest at all; if not, writes the cause to the remark. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/landscape.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include "engine/statics/equilibria/equilibrium_search.h"
@@ -33,7 +34,7 @@ static strut_status find_lowest(strut_landscape *l, strut_error *error) {
     l->lowest[i] = HUGE_VAL;
     for (size_t k = (size_t)l->minima; k < set->count; k++) {
       const strut_critical_point *pass = &set->points[k];
-      /* one whose ways down are not known may lead anywhere */
+      /* a pass with unknown ends may lead anywhere */
       if (!is_pass(pass) || !(leads_from(pass, i) || is_unknown(pass))) continue;
       if (pass->potential > set->points[i].potential)
         l->lowest[i] = fmin(l->lowest[i], pass->potential);
@@ -97,10 +98,11 @@ static bool connects(const strut_landscape *l, const strut_critical_point *pass)
 }
 
 int32_t strut_landscape_path(const strut_landscape *l, int32_t a, int32_t b) {
+  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
   const strut_critical_set *set = &l->set;
   int32_t *parent = l->parent;
   for (int32_t i = 0; i < l->minima; i++) parent[i] = i;
-  /* saddles come by energy: the one that connects the two is the highest on the lowest way */
+  /* saddles come by energy: the one that connects a and b is the highest on the lowest path */
   for (size_t k = (size_t)l->minima; k < set->count; k++) {
     const strut_critical_point *pass = &set->points[k];
     if (!connects(l, pass)) continue;
@@ -120,10 +122,11 @@ int32_t strut_landscape_direct(const strut_landscape *l, int32_t a, int32_t b) {
 
 int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, int32_t highest,
                                 int32_t *via) {
+  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
   int32_t *next = l->parent, count = 0;
   for (int32_t i = 0; i < l->minima; i++) next[i] = -1;
   next[b] = b;
-  /* in rounds from b, so that each minimum gets its next one on a shortest way */
+  /* in rounds from b, so that each minimum gets its successor on a shortest path */
   for (bool grew = true; grew && next[a] < 0;) {
     grew = false;
     for (int32_t i = 0; i < l->minima; i++) via[i] = next[i];
@@ -141,7 +144,7 @@ int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, 
   return count;
 }
 
-/* The first that stands in each of the landscape's minima, or -1. */
+/* The first candidate that stands in each of the landscape's minima, or -1. */
 static void find_representatives(const strut_equilibrium_search *h, int32_t *of_state) {
   for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
   for (size_t i = 0; i < h->count; i++) {
@@ -171,7 +174,7 @@ static int choose_states(const strut_equilibrium_search *h, const int32_t *of_st
   bool names = false;
   int count = 0;
   for (int32_t s = 0; s < minima; s++) names = names || is_named(h, of_state[s]);
-  for (int pass = 0; pass < 2; pass++) /* named ones first: they must not fall off the end */
+  for (int pass = 0; pass < 2; pass++) /* named ones first: the limit must not drop them */
     for (int32_t s = 0; s < minima && count < STRUT_MOST_BARRIERS_BETWEEN; s++) {
       if (of_state[s] < 0 || is_named(h, of_state[s]) != (pass == 0)) continue;
       if (pass == 1 && names && !is_next_to_named(h, of_state, s)) continue;

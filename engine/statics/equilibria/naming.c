@@ -129,7 +129,7 @@ static bool is_name_taken(size_t count, strut_equilibrium **list, const strut_sc
   return false;
 }
 
-/* STEM-n with the first n from *n on that nothing is called yet. */
+/* STEM-n with the first unused n from *n on. */
 static const char *numbered_name(size_t count, strut_equilibrium **list, const strut_scene *scene,
                                  const char *stem, int *n, strut_arena *arena) {
   const char *name;
@@ -201,7 +201,7 @@ static const char *make_stem(const strut_scene *scene, const strut_equilibrium *
   return strut_arena_format(arena, "%s", text);
 }
 
-/* The i-th number of a description of the shape that no rigid motion changes; mirroring does. */
+/* The i-th invariant of the shape under rigid motions; mirroring changes it. */
 static double shape_invariant(const strut_model *model, const double *q, int32_t i) {
   int32_t node = i / 2, second = model->node_count > 1 ? 1 : 0;
   double x = q[2 * node] - q[0], y = q[2 * node + 1] - q[1];
@@ -222,7 +222,9 @@ static bool comes_before(const strut_model *model, const strut_equilibrium *a,
   return false;
 }
 
-/* Insertion sort: few share a stem, and it stands a comparison that rounding makes intransitive. */
+/*
+ * Insertion sort: few share a stem, and it tolerates a comparison that rounding makes intransitive.
+ */
 static void sort_by_energy(const strut_model *model, size_t count, unnamed *rows) {
   for (size_t i = 1; i < count; i++) {
     unnamed row = rows[i];

@@ -65,7 +65,7 @@ static void flag_floppy_nodes(const strut_model *model, const strut_critical_poi
   flag_moving(model, point, &best, flag);
 }
 
-/* The largest distance, rigid motions apart where the whole is free. */
+/* Largest distance moved, up to rigid motions if the structure is free. */
 static double distance_moved(const strut_model *model, const strut_critical_point *point,
                              const double *q) {
   double most = 0.0;
@@ -76,9 +76,9 @@ static double distance_moved(const strut_model *model, const strut_critical_poin
 }
 
 /*
- * True where the structure, pushed along point->softest by a fiftieth of its size and let down again,
- * stays away at the same energy: else stiffness of a higher order brings it back, or it falls
- * further. False when memory is out too.
+ * True where the structure, pushed along point->softest by a fiftieth of its size and let down
+ * again, stays away at the same energy: else stiffness of a higher order brings it back, or it
+ * falls further. False when memory is out too.
  */
 static bool stays_displaced(const strut_potential *p, const strut_critical_point *point) {
   const strut_model *model = p->model;
@@ -105,7 +105,7 @@ static bool stays_displaced(const strut_potential *p, const strut_critical_point
   return stays;
 }
 
-/* What was found, in words: verdicts, what moves freely, why nothing can rest. */
+/* Verdicts, free motions and causes of instability in words. */
 
 enum { NAMES = 100 };
 
@@ -139,7 +139,7 @@ static void sum_parts(const strut_equilibrium_search *h, int32_t *parent, part *
     parts[parent[model->contacts.entry[i].node]].touches = true;
 }
 
-/* Why a part cannot be at rest: the forces on it against what could hold them. */
+/* Why a part cannot rest: the forces on it against the supports that could balance them. */
 static strut_instability_cause instability_of(const strut_equilibrium_search *h, const part *p) {
   double scale = 1e-12 * h->potential->force_scale;
   bool across = !p->held[1] && fabs(p->force[1]) > scale;
@@ -149,13 +149,13 @@ static strut_instability_cause instability_of(const strut_equilibrium_search *h,
   return along ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
 }
 
-/* What friction would have to do: the force along the ground against the one that presses on it. */
+/* The friction coefficient that would hold the part: force along the ground over normal force. */
 static void describe_friction(const part *p, size_t room, char *text) {
   if (p->force[1] < 0)
-    snprintf(text, room, "with it, a coefficient of at least %.4g holds it",
+    snprintf(text, room, "a friction coefficient of at least %.4g holds it",
              fabs(p->force[0] / p->force[1]));
   else
-    snprintf(text, room, "with it too, as nothing presses it down");
+    snprintf(text, room, "friction cannot hold it, because nothing presses it down");
 }
 
 static void describe_instability(strut_equilibrium_search *h, strut_instability_cause cause,
@@ -197,7 +197,7 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
   return worst;
 }
 
-/* Does the free motion lead anywhere? Asked of the forces that it was found with. */
+/* True if the free motion leads away, under the potential that the equilibrium was found with. */
 static bool leads_away(const strut_equilibrium_search *h, const strut_equilibrium *e,
                        uint8_t *held) {
   strut_potential *potential = NULL;
@@ -210,7 +210,7 @@ static bool leads_away(const strut_equilibrium_search *h, const strut_equilibriu
   return stays;
 }
 
-/* True if it leads away at one energy. flag: (length) */
+/* Describes a motion without stiffness; true if it leads away at equal energy. flag: (length) */
 static bool describe_floppy_motion(strut_equilibrium_search *h, const strut_equilibrium *e,
                                    uint8_t *flag, size_t room, char *text) {
   char names[NAMES];
@@ -275,7 +275,7 @@ static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equili
   }
 }
 
-/* Only where there is nothing better to stand in do free motions need a remark. */
+/* Free motions need a remark only if no equilibrium stands. */
 static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
                          size_t count, uint8_t *flag) {
   char *remark = h->out->remark;
@@ -289,23 +289,23 @@ static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibriu
     bool away = describe_floppy_motion(h, &finds[floppy].e, flag, room, remark);
     size_t used = strlen(remark);
     if (away)
-      snprintf(remark + used, room - used, ": '%s' is one of many shapes of one energy",
+      snprintf(remark + used, room - used,
+               ": '%s' is one of a continuous family of shapes of equal energy",
                finds[floppy].e.name);
     else
       snprintf(remark + used, room - used, " in '%s'; pushed further, it does not stay",
                finds[floppy].e.name);
   } else if (count == 0) {
-    snprintf(remark, room, "no equilibrium was found from any of %lld starts",
-             (long long)h->out->starts);
+    snprintf(remark, room, "no equilibrium was found from %lld starts", (long long)h->out->starts);
   } else if (h->level.oblique_node >= 0) {
     snprintf(remark, room,
-             "node '%s' is held in one direction only, which no slope can be turned away from: "
-             "no contacts were held in turn, only the real ground was searched",
+             "node '%s' is held in one direction only, so the slope cannot be turned level: only "
+             "the real ground was searched, without holding contacts in turn",
              h->level.scene.nodes[h->level.oblique_node].name);
   } else if (h->supports.many) {
     snprintf(remark, room,
-             "there are too many pairs of contact nodes to hold each in turn: only the real ground "
-             "was searched; name some by equilibria.supports");
+             "too many pairs of contact nodes to hold each in turn: only the real ground was "
+             "searched; list pairs in equilibria.supports");
   }
 }
 

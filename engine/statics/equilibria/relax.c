@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/relax.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,14 +12,14 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/statics/search/critical.h"
 
-/* Simulated steps between two looks at the energy; the pause grows while nothing is decided. */
+/* Simulated steps between two checks of the energy; they grow while nothing is decided. */
 static const int64_t FIRST_LOOK = 128, LAST_LOOK = 8192;
 /* Steps after which it counts as moving on, however short they are beside initial.settle.limit. */
 static const int64_t MOST_STEPS = 10000000;
 /* Quenches in a row that end in one place, and the share of the first excess energy still there. */
 enum { AGREE = 5 };
 static const double DIED = 1e-3;
-/* Two shapes are one, in model sizes; and this far away it has left. */
+/* Distances, in model sizes: two shapes are one; the structure has moved away. */
 static const double SAME = 1e-5, GONE = 1e3;
 /* The share of the stable step; folded shapes are stiffer than the start that the limit is for. */
 static const double CAREFUL = 0.5;
@@ -47,7 +48,7 @@ static bool loses_energy(const strut_model *model) {
   return false;
 }
 
-/* What only a simulation needs; a model that cannot be simulated does without. */
+/* Creates state and integrator, unless the model cannot be simulated. */
 static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
   strut_step_limit limit;
   if (!r->model->mass || !loses_energy(r->model) || r->potential->n > STRUT_DENSE_STATICS)
@@ -65,6 +66,7 @@ static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
 
 strut_status strut_relaxer_create(const strut_potential *potential, double limit,
                                   strut_relaxer **result, strut_error *error) {
+  assert(limit > 0.0);
   strut_relaxer *r = *result = strut_allocate(1, sizeof *r);
   if (!r) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   size_t length = (size_t)potential->model->length;
@@ -133,7 +135,7 @@ static bool has_escaped(const strut_model *model, const double *start, const dou
   return false;
 }
 
-/* Is the present shape's minimum the only place left to go to? */
+/* Evidence that the minimum below the present shape is the only one left within reach. */
 typedef struct verdict {
   double excess; /* at the first look [J] */
   int agreed;
@@ -182,7 +184,7 @@ static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, con
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
 }
 
-/* The paper's break-off with all speeds 0: the residual, and what it accelerates. */
+/* Largest acceleration at rest: the paper's break-off criterion with all speeds 0. */
 static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed) {
   const strut_model *model = r->model;
   if (!r->state) return;
@@ -193,7 +195,7 @@ static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed
   relaxed->acceleration = strut_largest_magnitude(r->last, 2 * model->node_count);
 }
 
-/* Downhill from where it is, with the centre of mass brought to x. */
+/* Minimises from q, with the centre of mass moved to x. */
 static void quench_to_rest(strut_relaxer *r, double x, double *q, strut_relaxed *relaxed) {
   strut_descent descent = strut_relaxer_quench(r, q);
   relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS

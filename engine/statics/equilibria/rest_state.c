@@ -10,7 +10,7 @@
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
-/* A start that has less far to go is at rest but for the ground's compliance, in model sizes. */
+/* A start nearer to its minimum is at rest up to the ground's compliance; in model sizes. */
 static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
@@ -39,7 +39,7 @@ static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest
   return true;
 }
 
-/* All but name and q from q. */
+/* Fills in all fields but name and q, from q. */
 static strut_status judge_rest(const strut_model *model, strut_arena *arena, strut_rest_state *rest,
                                strut_error *error) {
   strut_potential *potential = NULL;
@@ -61,7 +61,7 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
   return status;
 }
 
-/* A relaxation by itself: the rooms of a hunt without the searches. */
+/* Prepares a search for a single relaxation. */
 static strut_status prepare_relaxation(strut_equilibrium_search *h, const strut_model *model) {
   strut_status status = strut_level_frame_create(model->scene, &h->level, h->error);
   if (!status) status = strut_model_compile(&h->level.scene, &h->model, h->error);
@@ -96,7 +96,7 @@ static const char *farthest_node(const strut_equilibrium_search *h, const double
   return h->level.scene.nodes[node].name;
 }
 
-/* q (level coordinates) goes where the structure comes to rest from it. */
+/* Moves q (level coordinates) to where the structure comes to rest from it. */
 static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what, double *q) {
   size_t bytes = (size_t)h->model->length * sizeof *q;
   strut_relaxed relaxed;
@@ -115,14 +115,14 @@ static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what,
   else
     status = strut_relax(h->relaxer, q, NULL, NULL, NULL, &relaxed, h->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
-  return strut_fail(h->error, STRUT_NOT_SETTLED,
-                    relaxed.end == STRUT_RELAXED_LEAVES
-                        ? "from %s the structure moves off without end, %s farthest: nothing "
-                          "holds it there"
-                        : "from %s the structure does not come to rest within "
-                          "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
-                          "larger limit, or more damping",
-                    what, farthest_node(h, from, q));
+  return strut_fail(
+      h->error, STRUT_NOT_SETTLED,
+      relaxed.end == STRUT_RELAXED_LEAVES
+          ? "from %s the structure moves away without end, %s farthest: nothing holds it there"
+          : "from %s the structure does not come to rest within "
+            "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
+            "larger limit, or more damping",
+      what, farthest_node(h, from, q));
 }
 
 static strut_status relax_from_start(strut_equilibrium_search *h, double *q) {
@@ -143,14 +143,16 @@ static bool fits_configuration(strut_equilibrium_search *h, const strut_configur
                        STRUT_NAMED_WITHIN * h->model->size;
 }
 
-/* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
+/*
+ * Relaxes from the configuration's shape; *found: it stands there; else *rests_on has its contacts.
+ */
 static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_configuration *c,
                                      double *q, bool *found, strut_node_set *rests_on) {
   size_t nodes = h->level.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
   if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
   memcpy(shape, c->position[0], 2 * nodes * sizeof *shape);
-  for (size_t i = 0; i < nodes; i++) /* what is held stays where it is held */
+  for (size_t i = 0; i < nodes; i++) /* held coordinates stay */
     for (size_t k = 0; k < 2; k++)
       if (h->level.scene.nodes[i].fixed[k]) shape[2 * i + k] = h->level.scene.nodes[i].start[k];
   memcpy(q, shape, (size_t)h->model->length * sizeof *q);
@@ -176,7 +178,10 @@ static strut_status find_named(const strut_model *model, const strut_experiment 
   return status;
 }
 
-/* On its contact sets in turn, else on all supports. In the original's coordinates. */
+/*
+ * Searches on the configuration's contact sets in turn, else on all supports; q in original
+ * coordinates.
+ */
 static strut_status search_configuration(const strut_model *model,
                                          const strut_experiment *experiment,
                                          const strut_configuration *c, double *q,
@@ -198,11 +203,10 @@ static strut_status search_configuration(const strut_model *model,
     if (n < 0) break;
     used += (size_t)n;
   }
-  return strut_fail(error, STRUT_NOT_SETTLED,
-                    "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut "
-                    "equilibria' lists what there is",
-                    c->name, c->set_count ? " on its contacts" : "",
-                    c->shaped ? " in about its shape" : "", instead);
+  return strut_fail(
+      error, STRUT_NOT_SETTLED,
+      "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut equilibria' lists all",
+      c->name, c->set_count ? " on its contacts" : "", c->shaped ? " near its shape" : "", instead);
 }
 
 static const strut_configuration *find_configuration(const strut_scene *scene, const char *name) {
@@ -220,8 +224,7 @@ static strut_status report_unknown(const strut_scene *scene, const char *name, s
     used += (size_t)n;
   }
   return strut_fail(error, STRUT_USAGE,
-                    "there is no configuration '%.100s'; choose among: start, drawn%s", name,
-                    names);
+                    "unknown configuration '%.100s'; choose one of: start, drawn%s", name, names);
 }
 
 /* The equilibrium of that name in the list that the scene's own search makes. */
@@ -244,8 +247,7 @@ static strut_status find_in_list(const strut_model *model, const strut_experimen
   strut_equilibria_free(&all);
   if (status || found) return status;
   return strut_fail(error, STRUT_USAGE,
-                    "there is no equilibrium '%.100s'; 'strut equilibria' lists what there is",
-                    name);
+                    "unknown equilibrium '%.100s'; 'strut equilibria' lists all", name);
 }
 
 static strut_status find_rest(const strut_model *model, const strut_experiment *experiment,
@@ -268,7 +270,10 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
   return status;
 }
 
-/* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
+/*
+ * Settles the scene as its run does. Friction, if kept, may hold a shape that is no equilibrium
+ * without.
+ */
 static strut_status settle_scene(const strut_model *model, const strut_experiment *experiment,
                                  strut_arena *arena, strut_rest_state *rest, strut_error *error) {
   double time;
@@ -288,7 +293,8 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
   rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
   if (!rest->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
+  if (name && (c = find_configuration(scene, name)))
+    start = drawn = false; /* a configuration has this name */
   if (!c && !start && !drawn) {
     if (!strut_is_listed_name(scene, name)) return report_unknown(scene, name, error);
     strut_status status = find_in_list(model, experiment, name, arena, rest, error);

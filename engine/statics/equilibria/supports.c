@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/supports.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
 
-/* Counterclockwise by the angle of c, s; exactly nothing at 1, 0. */
+/* Turns vectors counterclockwise by the angle of c, s; the identity is exact. */
 static void turn_vectors(double c, double s, size_t count, double *xy) {
   if (s == 0.0 && c == 1.0) return;
   for (size_t i = 0; i < count; i++, xy += 2) {
@@ -174,10 +175,10 @@ static strut_status use_requested_set(const strut_scene *scene, const strut_node
   for (size_t i = 0; i < wanted->count; i++) {
     int32_t node = wanted->node[i];
     if (!may_touch(scene, node))
-      return strut_fail(error, STRUT_USAGE,
-                        "node '%s' cannot touch the ground, so it cannot be a support in its "
-                        "place; name nodes that may touch it",
-                        scene->nodes[node].name);
+      return strut_fail(
+          error, STRUT_USAGE,
+          "node '%s' is no contact node, so it cannot be a support; name contact nodes",
+          scene->nodes[node].name);
   }
   supports->sets = strut_arena_allocate(arena, 1, sizeof *supports->sets);
   if (!supports->sets) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
@@ -219,8 +220,7 @@ strut_status strut_supports_choose(const strut_scene *level, const strut_search 
   *supports = (strut_supports){.loose = holds_nothing(level)};
   if (!level->ground.present || level->contact_count == 0) {
     if (!wanted) return STRUT_OK;
-    return strut_fail(error, STRUT_USAGE,
-                      "the scene has no ground, so no supports can take its place");
+    return strut_fail(error, STRUT_USAGE, "the scene has no ground that supports could replace");
   }
   supports->pin = !held_along_x(level);
   if (wanted) return use_requested_set(level, wanted, arena, supports, error);
@@ -256,6 +256,7 @@ static void lay_on_ground(const strut_scene *level, int32_t a, int32_t b, double
 
 void strut_supports_place(const strut_supports *supports, const strut_scene *level,
                           const strut_node_set *set, double (*shape)[2]) {
+  assert(set->count == 0 || set->node);
   if (set->count == 0) return;
   int32_t a = set->node[0], b = set->node[set->count > 1 ? 1 : 0];
   double x = level->nodes[a].position[0], height = level->ground.height;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/form/parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,11 +12,12 @@
 #include "engine/statics/form/form.h"
 #include "engine/statics/minimise.h"
 
-/* What the ways of form finding share. See parts.h. */
+/* Parts that all methods of form finding share. */
 
 static const double TOUCH = 1e-6; /* of the size: nearer to the ground is drawn on it */
 
 double strut_form_depth(const strut_former *f, int32_t contact) {
+  assert(contact >= 0 && contact < f->model->contacts.count);
   const strut_contact_table *c = &f->model->contacts;
   const double *at = f->scene->nodes[c->entry[contact].node].position;
   return -strut_ground_gap(c, at);
@@ -32,6 +34,7 @@ strut_status strut_form_out_of_range(strut_error *error) {
 }
 
 strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut_error *error) {
+  assert(j < f->scene->member_count);
   strut_member *m = &f->scene->members[j];
   const double *a = f->scene->nodes[m->node[0]].start;
   const double *b = f->scene->nodes[m->node[1]].start;
@@ -53,6 +56,7 @@ strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut
 }
 
 void strut_form_name_nodes(const strut_former *f, const uint8_t *marked, char *text, size_t size) {
+  assert(size > 20);
   size_t used = 0, left = 0, room = size - 20;
   *text = '\0';
   for (size_t i = 0; i < f->scene->node_count; i++) {
@@ -75,7 +79,7 @@ void strut_form_name_nodes(const strut_former *f, const uint8_t *marked, char *t
 
 static const double DETERMINED = 1e-12; /* least reciprocal condition of D */
 static const double SOUND = 1e-9;       /* least pivot that is no noise */
-static const double BEYOND = 1e3;       /* sizes: a solution out there is none */
+static const double BEYOND = 1e3;       /* in sizes: farther solutions are rejected */
 enum { RIGID_MOTIONS = 3 };
 
 typedef struct density_problem {
@@ -105,7 +109,7 @@ static strut_status read_densities(density_problem *p, strut_error *error) {
                     "no member has a force density: give some with force_density or pretension");
 }
 
-/* Supports, and nodes that are drawn on level ground, keep their coordinates. Their number. */
+/* Marks coordinates held by supports or level ground; returns their number. */
 static int32_t mark_held(density_problem *p) {
   const strut_former *f = p->f;
   const strut_contact_table *c = &f->model->contacts;
@@ -228,7 +232,7 @@ strut_status strut_form_densities(strut_former *f, strut_error *error) {
   return status == STRUT_OK ? apply_solution(&p, error) : status;
 }
 
-/* Which way, and what every way ends with: a polished start, proof of stability, a run. */
+/* The choice of the method, and its common end: a polished start, proof of stability, a run. */
 
 static const double STABLE = 0.02;    /* of the size: what an equilibrium may move on being left */
 static const double NEARLY = 1e3;     /* of the rounding in forces: what a descent may leave */
@@ -241,6 +245,7 @@ static const double IDLE_STEP = 1e-3;     /* step where nothing limits it [s] */
 
 const char *strut_form_source_name(strut_form_source source) {
   static const char *const names[] = {"scene", "densities", "lengths", "prestress"};
+  assert((size_t)source < sizeof names / sizeof names[0]);
   return names[source];
 }
 
@@ -254,7 +259,7 @@ static strut_form_source choose_source(const strut_scene *scene, strut_form_sour
   return density ? STRUT_FORM_DENSITIES : length ? STRUT_FORM_LENGTHS : STRUT_FORM_PRESTRESS;
 }
 
-/* The start of a scene that has just got a form; what would move it is not wanted. */
+/* Removes velocities, settling and a start equilibrium from a scene whose form was found. */
 static void remove_motion(strut_scene *scene, strut_experiment *experiment) {
   for (size_t i = 0; i < scene->node_count; i++)
     scene->nodes[i].velocity[0] = scene->nodes[i].velocity[1] = 0.0;
@@ -273,14 +278,14 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
     if (strut_member_rest(scene, j, &rest) && (apart || f->form->from != STRUT_FORM_DENSITIES))
       continue;
     return strut_fail(error, STRUT_NOT_SETTLED,
-                      "in this form nodes '%s' and '%s', the ends of '%s', lie in one place; "
-                      "other densities or supports keep them apart",
+                      "in this form nodes '%s' and '%s', the ends of '%s', coincide; choose other "
+                      "densities or supports",
                       a->name, b->name, m->name);
   }
   return STRUT_OK;
 }
 
-/* Rest lengths as lengths: said in other ways they would change with the drawn shape. */
+/* Writes rest lengths as lengths: given otherwise they would change with the drawn shape. */
 static void fix_lengths(strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
@@ -291,7 +296,7 @@ static void fix_lengths(strut_scene *scene) {
   }
 }
 
-/* May the structure be shifted along x, and turned and shifted at will, without meeting anything? */
+/* Finds whether the structure is free to shift along x, and to turn and shift in the plane. */
 static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
   const strut_contact_table *c = &f->model->contacts;
   *shift = c->count == 0 || c->normal[0] == 0;
@@ -302,7 +307,7 @@ static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
   }
 }
 
-/* Where nothing holds the whole, it may have drifted on its way: back to where it started. */
+/* Undoes the drift of a structure that nothing holds. */
 static bool undo_drift(const strut_former *f, double *q) {
   const strut_scene *scene = f->scene;
   double n = (double)scene->node_count, from[2] = {0}, to[2] = {0}, cosine = 0, sine = 0;
@@ -348,9 +353,10 @@ static strut_status judge(const strut_former *f, const strut_descent *d, const d
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "nothing holds the structure: %s moves away without end; support it", name);
   if (d->end == STRUT_DESCENT_EXHAUSTED && !(d->residual <= NEARLY * d->rounding))
-    return strut_fail(error, STRUT_NOT_SETTLED,
-                      "the structure does not come to rest: %.3g N are left, and %s still moves",
-                      d->residual, name);
+    return strut_fail(
+        error, STRUT_NOT_SETTLED,
+        "the structure does not come to rest: the residual is %.3g N, and %s still moves",
+        d->residual, name);
   if (f->form->from != STRUT_FORM_LENGTHS && moved > STABLE * f->size)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "the equilibrium found is not stable: left to itself, %s moves by %.3g m; "
@@ -409,8 +415,8 @@ static strut_status add_run(strut_former *f, strut_error *error) {
     status = strut_step_limit_estimate(model, &limit, error);
     if (status == STRUT_OK && !(limit.limit > LEAST_STEP))
       status = strut_fail(error, STRUT_BAD_SCENE,
-                          "stiffnesses are so large beside the masses that no step can be given; "
-                          "check their units");
+                          "stiffnesses are so large beside the masses that no time step can be "
+                          "chosen; check their units");
     f->form->run_added = e->step == 0 || (e->duration == 0 && e->periods == 0);
     if (status == STRUT_OK && (e->step == 0 || e->step > limit.limit))
       e->step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;

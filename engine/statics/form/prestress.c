@@ -94,7 +94,10 @@ static double step_component(const problem *p, size_t i) {
   return sum;
 }
 
-/* As far as the bounds allow; the one that stops it becomes active. True: nothing moved. */
+/*
+ * Steps as far as the bounds allow; a bound that stops the step becomes active. True: nothing
+ * moved.
+ */
 static bool advance_to_bound(problem *p) {
   double share = 1, most = 0, scale = 0;
   size_t stop = p->count;
@@ -109,7 +112,7 @@ static bool advance_to_bound(problem *p) {
   return stop == p->count && most <= ZERO * scale;
 }
 
-/* Lets go of the bound that pulls hardest the wrong way; false: none does. */
+/* Releases the active bound with the worst multiplier; false if all signs are right. */
 static bool release_bound(problem *p) {
   size_t at = p->free, worst = p->count;
   double least = 0, scale = 0;
@@ -284,7 +287,7 @@ static bool has_cables(const strut_former *f) {
   return false;
 }
 
-/* Which nodes lack a force, and how much at the worst of them. */
+/* Reports the nodes that lack a force, and the largest missing force. */
 static strut_status cannot_hold(const prestress *p, strut_error *error) {
   const strut_former *f = p->f;
   const columns *at = &p->at;
@@ -311,7 +314,7 @@ static strut_status cannot_hold(const prestress *p, strut_error *error) {
                     has_cables(f) ? cables : "", names, worst * p->scale);
 }
 
-/* First whether any forces hold the shape, then which. */
+/* Checks that some forces hold the shape, then minimises the objective over them. */
 static strut_status find_forces(prestress *p, strut_error *error) {
   const columns *at = &p->at;
   double sum = 0;
@@ -376,7 +379,10 @@ static bool minimise_squares(prestress *p) {
   return good;
 }
 
-/* Nodes on the ground go as deep into it as they are pushed. How far they went. */
+/*
+ * Moves nodes into the ground to the depth that their contact force needs; returns the largest move
+ * [m].
+ */
 static double sink_nodes(prestress *p) {
   const strut_contact_table *c = &p->f->model->contacts;
   double moved = 0;
@@ -403,7 +409,7 @@ static strut_status set_forces(prestress *p, strut_error *error) {
   return status;
 }
 
-/* Forces for the shape as it starts. */
+/* Computes the forces for the start positions. */
 static strut_status compute_forces(prestress *p, strut_error *error) {
   const columns *at = &p->at;
   size_t entries = 11 * (size_t)at->members + 2 * (size_t)at->contacts + 2 * (size_t)at->n;

@@ -65,7 +65,7 @@ static void compute_weights(quadratic *p) {
     }
 }
 
-/* The best pair of a free solution and a mode that lacks one in `slot`, again and again. */
+/* Repeatedly assigns the best free solution to a mode that lacks one in `slot`. */
 static void assign_solutions(quadratic *p, bool oscillating, int32_t *slot) {
   for (;;) {
     double most = LEAST_SHARE;
@@ -112,7 +112,7 @@ static void set_damped_mode(const quadratic *p, size_t j, strut_mode *mode) {
   if (re * other > 0) mode->damping_ratio = -(re + other) / (2.0 * sqrt(re * other));
 }
 
-/* Each mode by itself: exact where the damping does not couple them. */
+/* Damps each mode separately: exact if the damping does not couple them. */
 static void apply_modal_quotient(const strut_modes_work *work, size_t j, double damping,
                                  strut_mode *mode) {
   double z = work->set.value[j], half = 0.5 * damping, inside = half * half - z;

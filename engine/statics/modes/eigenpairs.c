@@ -13,10 +13,10 @@
 /* All modes of a small structure, by GSL's dense eigensolvers. */
 
 /*
- * Two ways, each right where the other is not: K x = z M x has errors of the last bit of the
- * largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of them
- * is small the first will do; where some coordinates have no mass there is only the second, which
- * condenses them.
+ * Two formulations, each accurate where the other is not: K x = z M x has errors of the last bit of
+ * the largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of
+ * them is small the first will do; where some coordinates have no mass there is only the second,
+ * which condenses them.
  */
 typedef struct dense {
   strut_modes_work *work;
@@ -149,9 +149,9 @@ static void sort_inverse(const dense *d, double top, size_t *order) {
 }
 
 /*
- * Where the direct way begins to be the better one: its errors, relative, are those of the largest
- * over the eigenvalue, the inverse's the other way round. Equal eigenvalues are not torn apart, for
- * the two ways choose different vectors among theirs.
+ * First eigenvalue for which the direct solution is more accurate: its relative error grows as the
+ * largest eigenvalue over this one, that of the inverse as this one over the smallest. Equal
+ * eigenvalues are kept together, because the two solutions choose different vectors among theirs.
  */
 static size_t find_cut(const dense *d, double top, const size_t *order) {
   const double *value = d->work->set.value;
@@ -277,7 +277,7 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   /* All that the signs have counted must be there. */
   if (status == STRUT_OK && !(set->value[below - 1] < 1.001 * bound))
     status = strut_fail(error, STRUT_SINGULAR,
-                        "Lanczos's method missed some of the %d modes below %.4g Hz that there are",
-                        (int)below, sqrt(bound) / STRUT_TAU);
+                        "Lanczos's method missed some of the %d modes below %.4g Hz", (int)below,
+                        sqrt(bound) / STRUT_TAU);
   return status;
 }

@@ -101,7 +101,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
   return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
 }
 
-/* What a mode looks like, in words made from its figures. */
+/* Description of a mode in words, from its computed quantities. */
 
 enum { MOST_NODES = 3, MOST_MEMBERS = 3 };
 
@@ -258,7 +258,7 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
   double stiffness = mode->eigenvalue * mass;
   if (e.all < 0.5 * fabs(stiffness)) {
-    append_text(mode, "; %.0f %% of the stiffness is that of forces turning",
+    append_text(mode, "; %.0f %% of the stiffness is geometric",
                 fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
     if (e.all < 0.01 * fabs(stiffness)) return;
   }

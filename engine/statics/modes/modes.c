@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes/parts.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -8,11 +9,11 @@
 #include "engine/base/vec.h"
 #include "engine/statics/modes/modes.h"
 
-/* Where the modes are counted. */
+/* The shape about which the structure vibrates. */
 
 /*
- * A structure that nothing holds comes to rest nowhere, but where it is drawn in balance its modes
- * are as good as any: some of them are the free motions.
+ * A structure that nothing holds never comes to rest, but if it is drawn in equilibrium its modes
+ * are valid: some are the free motions.
  */
 strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
                                const char *name, strut_arena *arena, strut_rest_state *rest,
@@ -33,6 +34,7 @@ static const double LARGEST = 1e150; /* eigenvalue; products of two of them are 
 
 const char *strut_mode_kind_name(strut_mode_kind kind) {
   static const char *const names[] = {"rigid-body", "mechanism", "elastic", "unstable"};
+  assert((size_t)kind < sizeof names / sizeof names[0]);
   return names[kind];
 }
 
@@ -51,11 +53,10 @@ static strut_status hold_stuck(const strut_model *model, const strut_rest_state 
 static strut_status check_problem(strut_modes_work *work, strut_error *error) {
   const strut_vibration *v = work->v;
   if (v->n == 0 || v->massive == 0)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      v->n == 0
-                          ? "no node is free to move, so that there are no modes"
-                          : "no free node has mass, so that there are no modes: give nodes or "
-                            "members a mass");
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        v->n == 0 ? "no node is free to move, so there are no modes"
+                  : "no free node has mass, so there are no modes; give nodes or members a mass");
   if (!isfinite(v->largest) || v->largest > LARGEST)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "stiffnesses are so large beside the masses that frequencies cannot be "
@@ -65,8 +66,8 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
   int32_t weakest = work->solver.weakest;
   if (work->solver.loss > 1e-26 || v->mass[weakest] > 0) return STRUT_OK;
   return strut_fail(error, STRUT_SINGULAR,
-                    "node '%s' has no mass and can move without stiffness, so that it has no "
-                    "frequency: give it a mass or hold it",
+                    "node '%s' has no mass and can move without stiffness, so it has no frequency; "
+                    "give it a mass or hold it",
                     v->model->scene->nodes[v->shape->coordinate[weakest] / 2].name);
 }
 
@@ -165,15 +166,13 @@ static strut_status check_errors(const strut_modes_work *work, const strut_modes
     double value = set->value[i], wrong = (set->error[i] + set->noise[i]) / fabs(value);
     if (value == 0 || wrong <= ENOUGH) continue;
     return strut_fail(error, STRUT_SINGULAR,
-                      "mode %zu, of about %.6g Hz, cannot be had to 1e-8 but only to %.1g: the "
-                      "stiffnesses differ "
-                      "so much (condition about %.1g) that %s; bring them closer together, or ask "
-                      "for fewer modes "
-                      "with --count",
+                      "mode %zu, about %.6g Hz, is known to %.1g only, not to 1e-8: the "
+                      "stiffnesses differ so much (condition about %.1g) that %s; bring them "
+                      "closer together, or request fewer modes with --count",
                       i + 1, sqrt(fabs(value)) / STRUT_TAU, wrong, modes->condition,
                       set->noise[i] > set->error[i]
-                          ? "the last bits of rest lengths and positions decide"
-                          : "rounding decides");
+                          ? "the last bits of rest lengths and positions decide it"
+                          : "rounding decides it");
   }
   return STRUT_OK;
 }
@@ -243,7 +242,7 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   return status ? status : fill_modes(work, wanted, modes, error);
 }
 
-/* The lowest so many that are wanted: of a dense problem all unless asked otherwise. */
+/* Number of modes requested; by default all of a dense problem. */
 static int32_t requested_count(const strut_modes_options *options, bool dense) {
   if (options->count > 0) return options->count;
   return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;

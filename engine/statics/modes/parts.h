@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the files of the room `modes` share: the problem on its way from matrices to named modes.
- */
+/** Shared by the files of this folder: the eigenproblem from matrices to named modes. */
 #ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
@@ -41,7 +39,9 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
 
 /** The shape to twice a double's precision, from one that is at rest as far as doubles tell. */
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);
-/** What the last bits of rest lengths, or of a shape that is not at rest, do to the eigenvalues. */
+/**
+ * Effect of the last bits of rest lengths, or of a shape that is not at rest, on the eigenvalues.
+ */
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error);
 /** Improves the eigenpairs and estimates their errors. */
 strut_status strut_modes_refine(strut_modes_work *work, strut_error *error);
@@ -53,7 +53,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
                                  strut_error *error);
 
-/** What a mode looks like, in words. */
+/** Describes a mode in words. */
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode);
 
 #endif

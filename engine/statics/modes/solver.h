@@ -9,7 +9,7 @@
  *
  * For the extended factor CHOLMOD gives the order and the pattern; the arithmetic is in solver.c.
  * There is no pivoting: that D has as many negative entries as the matrix has negative eigenvalues
- * (Sylvester) holds as long as no pivot is lost in rounding; `weakest` and `loss` tell.
+ * (Sylvester) holds as long as no pivot is lost in rounding; `weakest` and `loss` report that.
  */
 #ifndef STRUT_ENGINE_STATICS_MODES_SOLVER_H
 #define STRUT_ENGINE_STATICS_MODES_SOLVER_H

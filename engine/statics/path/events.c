@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/path/events.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +14,9 @@ enum { MOST_TRIALS = 60, KEPT = 4 };
 
 static const double ZERO = 1e-13;   /* of the measure at the ends */
 static const double NARROW = 1e-13; /* of the piece's length */
-/* Of the eigenvalue at the ends. Nearer to zero Newton's method may leave by the other branch, and */
+/*
+ * Of the eigenvalue at the ends. Nearer to zero Newton's method may leave by the other branch, and
+ */
 static const double FORK = 1e-4;
 static const double BLURRED = 100; /* so it may within so many roundings of the stiffness. */
 
@@ -25,12 +28,13 @@ double strut_path_measure_switch(strut_path_system *s, const double *y,
 
 double strut_path_measure_eigenvalue(strut_path_system *s, const double *y,
                                      const strut_path_piece *piece, int32_t which) {
+  assert(which >= 0 && which < s->n);
   (void)piece;
   if (!strut_path_spectrum(s, y, STRUT_PATH_VALUES)) return (double)NAN;
   return gsl_vector_get(s->values, (size_t)which);
 }
 
-/* Some point between two; it wants to be corrected. */
+/* Linear interpolation between two points; must be corrected afterwards. */
 static void interpolate_linearly(const strut_path_system *s, double share, const double *low,
                                  const double *high, double *y) {
   for (int32_t i = 0; i < 2 * (s->n + 1); i++) y[i] = low[i] + share * (high[i] - low[i]);
@@ -73,7 +77,9 @@ static void keep_trial(const strut_path_system *s, trials *t, double place, doub
   memcpy(block, y, 2 * ((size_t)s->n + 1) * sizeof *y);
 }
 
-/* Where the measure vanishes, by a polynomial in it through the trials kept; false: off the piece. */
+/*
+ * Where the measure vanishes, by a polynomial in it through the trials kept; false: off the piece.
+ */
 static bool interpolate(const strut_path_system *s, const trials *t, double length, double *place,
                         double *y) {
   double weight[KEPT], sum = 0;
@@ -119,6 +125,7 @@ static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece
 
 double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
                          strut_path_measure measure, int32_t which, double *y) {
+  assert(piece->length >= 0);
   size_t bytes = 2 * ((size_t)s->n + 1) * sizeof *y;
   double at[2] = {0, piece->length}, place = -1;
   double value[2] = {measure(s, piece->from, piece, which), measure(s, piece->to, piece, which)};
@@ -159,8 +166,9 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
 }
 
 /*
- * A kink of the path: a cable goes slack or taut, a node touches or leaves the ground. The stiffness
- * jumps there, so that the parameter may turn back, and stability change, with no eigenvalue at zero.
+ * A kink of the path: a cable goes slack or taut, a node touches or leaves the ground. The
+ * stiffness jumps there, so that the parameter may turn back, and stability change, with no
+ * eigenvalue at zero.
  */
 
 /* Switches at one kink of which all combinations are tried. */
@@ -209,8 +217,8 @@ static double change_ahead(strut_path_walk *w, const switch_group *g, int32_t i,
 }
 
 /*
- * The tangent with these switches thrown, into w->next_tangent, so that each switch goes on to where
- * it was put. False: there is none, or it contradicts a switch.
+ * The tangent with these switches thrown, into w->next_tangent, so that each switch goes on to
+ * where it was put. False: there is none, or it contradicts a switch.
  */
 static bool find_tangent(strut_path_walk *w, const switch_group *g, unsigned thrown,
                          const double *beyond) {
@@ -236,7 +244,9 @@ static bool find_tangent(strut_path_walk *w, const switch_group *g, unsigned thr
   return true;
 }
 
-/* The switches that go on from here: those that the old stiffness throws, else any that agree. */
+/*
+ * Chooses the switches thrown here: those that the old stiffness throws, else any consistent set.
+ */
 static bool choose_switches(strut_path_walk *w, const switch_group *g, const double *beyond,
                             unsigned *thrown) {
   unsigned first = 1u << g->first;
@@ -274,7 +284,7 @@ static void report_switch(strut_path_walk *w, int32_t which, int32_t before, int
                        after, detail);
 }
 
-/* What the kink does besides: the parameter turns back, or stability changes though it goes on. */
+/* Reports a parameter that turns back at the kink, or a change of stability if it continues. */
 static void report_exchange(strut_path_walk *w, double turn, int32_t before) {
   strut_path_system *s = &w->system;
   char detail[300];

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared. */
+/*
+ * Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared.
+ */
 #include "engine/statics/path/parameter.h"
 
 #include <math.h>
@@ -67,7 +69,7 @@ static bool is_same_structure(const strut_model *a, const strut_model *b) {
   return memcmp(a->fixed, b->fixed, (size_t)a->length * sizeof *a->fixed) == 0;
 }
 
-/* Remembers that there is no equilibrium to ask for at a value, and why. */
+/* Records why the scene is invalid at a value. */
 static bool refuse_value(strut_path_parameter *p, double value, const strut_error *why) {
   p->refused_at = value;
   p->refusal = *why;
@@ -84,7 +86,7 @@ static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_t
   if (status == STRUT_OK && !is_same_structure(p->model, model))
     status = strut_fail(&error, STRUT_USAGE,
                         "%s changes what the structure is made of (nodes, members, supports or "
-                        "contacts); a path needs the same structure all along",
+                        "contacts); a path needs the same structure throughout",
                         p->options->name);
   if (status == STRUT_OK) read_terms(model, terms);
   strut_model_free(model);
@@ -167,7 +169,7 @@ static bool is_equal(const double *a, const double *b, size_t count) {
   return memcmp(a, b, count * sizeof *a) == 0;
 }
 
-/* Whether anything that matters at rest differs: positions do where they are held. */
+/* True if the terms differ in equilibrium; positions matter only where they are held. */
 static bool is_different(const strut_model *model, const strut_path_terms *a,
                          const strut_path_terms *b) {
   size_t slots = (size_t)model->members.slots;
@@ -179,7 +181,7 @@ static bool is_different(const strut_model *model, const strut_path_terms *a,
          !is_equal(a->normal, b->normal, 2) || a->height != b->height;
 }
 
-/* That a scene's number does something, and leaves the structure as it is. */
+/* Checks that a scene's number has an effect and does not change the structure. */
 static strut_status check_effect(strut_path_parameter *p, strut_error *error) {
   static const double places[] = {1e-3, 0.37, 1.0};
   if (p->options->over != STRUT_PATH_OVER_SCENE) return STRUT_OK;

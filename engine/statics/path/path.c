@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is followed, from which equilibrium, and the walk from there. See path.h. */
+/* Parameter, start equilibrium and walk of a path. */
 #include "engine/statics/path/path.h"
 
 #include <math.h>
@@ -34,8 +34,7 @@ static strut_status no_such_load(const strut_scene *scene, const char *name, str
     used += length;
     list[used] = '\0';
   }
-  return strut_fail(error, STRUT_USAGE, "there is no load '%s'; the scene's loads are: %s", name,
-                    list);
+  return strut_fail(error, STRUT_USAGE, "unknown load '%s'; the scene's loads are: %s", name, list);
 }
 
 /* Is it one of the loads that the factor multiplies? */
@@ -43,7 +42,9 @@ static bool is_followed(const strut_load *load, const char *name) {
   return name ? strcmp(load->name, name) == 0 : load->signal < 0;
 }
 
-/* Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path. */
+/*
+ * Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path.
+ */
 static strut_status choose_loads(const strut_scene *scene, const char *name, double *load,
                                  strut_path *path, strut_error *error) {
   bool found = false, acts = false, alike = true;
@@ -74,7 +75,7 @@ static strut_status choose_loads(const strut_scene *scene, const char *name, dou
                     name ? " " : "", name ? name : "");
 }
 
-/* All that a path is made from. */
+/* The start of a path. */
 typedef struct path_start {
   const strut_path_options *options;
   const strut_model *drawn; /* the model that was given */
@@ -114,7 +115,7 @@ static strut_status lengthen_member(path_start *b, strut_error *error) {
   members[driven].rest_kind = STRUT_REST_LENGTH;
   members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
   if (members[driven].rest_value >= 0) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be negative at the beginning",
+  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be negative at the start",
                     members[driven].name);
 }
 
@@ -152,7 +153,7 @@ static strut_status descend_to_rest(const strut_model *model, const uint8_t *hel
                                     double *q, strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
-  const char *where = without ? "without the load" : "at the beginning of the path";
+  const char *where = without ? "without the load" : "at the start of the path";
   strut_status status = strut_potential_create(model, held, true, &potential, error);
   if (status == STRUT_OK && potential->n > 0)
     status = strut_minimiser_create(potential, &minimiser, error);
@@ -160,13 +161,13 @@ static strut_status descend_to_rest(const strut_model *model, const uint8_t *hel
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "%s there is no equilibrium to begin at: nothing holds the "
-                          "structure; support it or give it a ground",
+                          "%s there is no equilibrium to start from: nothing holds the structure; "
+                          "support it or give it a ground",
                           where);
     else if (descent.end == STRUT_DESCENT_EXHAUSTED && descent.residual > NEARLY * descent.rounding)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "%s no equilibrium was found to begin at: %.3g N are left", where,
-                          descent.residual);
+                          "%s no equilibrium was found to start from: the residual is %.3g N",
+                          where, descent.residual);
   }
   strut_minimiser_free(minimiser);
   strut_potential_free(potential);
@@ -181,7 +182,7 @@ static strut_status start_at_name(path_start *b, strut_error *error) {
   if (status) return status;
   if (!rest.at_rest)
     return strut_fail(error, STRUT_NOT_SETTLED,
-                      "'%.100s' is no equilibrium where the path begins: %.3g N are left",
+                      "'%.100s' is no equilibrium where the path starts: the residual is %.3g N",
                       rest.name, rest.residual);
   memcpy(b->q, rest.q, (size_t)b->model->length * sizeof *b->q);
   return STRUT_OK;
@@ -247,15 +248,15 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
     if (w.failed) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK && path->point_count == 0)
-    status = strut_fail(error, STRUT_NOT_SETTLED,
-                        "the structure has no stiffness against %s at the start, so that no "
-                        "path begins there",
-                        path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
+    status = strut_fail(
+        error, STRUT_NOT_SETTLED,
+        "the structure has no stiffness against %s at the start, so no path starts there",
+        path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
   strut_path_system_free(&w.system);
   return status;
 }
 
-/* What the path is over, for people. */
+/* Names the path's parameter for messages. */
 static strut_status name_parameter(const strut_model *model, const strut_path_options *o,
                                    strut_path *path, strut_error *error) {
   const strut_scene *scene = model->scene;
@@ -285,7 +286,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
   if (!(fabs(until - options->from) > 0))
-    return strut_fail(error, STRUT_USAGE, "the path ends where it begins, at %.6g", until);
+    return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
   b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
   strut_status status = b.load && b.q ? name_parameter(model, options, path, error)

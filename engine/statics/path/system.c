@@ -4,6 +4,7 @@
 #include "engine/forces/tangent.h"
 #include "engine/statics/dense_algebra.h"
 
+#include <assert.h>
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -397,6 +398,7 @@ bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
 }
 
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
+  assert(which >= 0 && which < strut_path_switch_count(s));
   int32_t members = s->model->members.count;
   if (which < members)
     s->pulling[which] = on;

@@ -90,7 +90,7 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
   p->events[at] = event;
 }
 
-/* Predictor, corrector, what happens in between, and on. See walk.h. */
+/* Predictor, corrector, and the events between them. */
 
 enum { SLOW = 8, ROUNDS = 4 };
 
@@ -103,7 +103,7 @@ static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way
 /* Of the size: a loose cable that is as long as its rest length all along, but for rounding. */
 static const double HANGING = 1e-15;
 static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
-static const double NEARBY = 1e-6; /* what a beginning is sharpened by at most */
+static const double NEARBY = 1e-6; /* largest correction of the start */
 
 static size_t bytes_of(const strut_path_walk *w) {
   return 2 * ((size_t)w->system.n + 1) * sizeof(double);
@@ -219,7 +219,7 @@ static bool find_next(strut_path_walk *w) {
   return false;
 }
 
-/* Ends the path exactly at the value asked for if this piece passes it. */
+/* Ends the path exactly at the requested value if this piece passes it. */
 static bool land_on_end(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   double from = w->y[s->n], to = w->next[s->n];
@@ -252,7 +252,7 @@ static bool is_away(const strut_path_walk *w) {
   return most > BOUND || w->y[w->system.n] < DEEP;
 }
 
-/* Why no step leads on: the scene means nothing there, or there is no equilibrium nearby. */
+/* Why no step succeeds: the scene is invalid there, or no equilibrium is nearby. */
 static strut_path_end find_reason(strut_path_walk *w) {
   const strut_path_parameter *p = &w->system.parameter;
   double here = strut_path_value(&w->system, w->y);
@@ -270,11 +270,11 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
   w->path->end = end;
   if (end == STRUT_PATH_LOST)
     snprintf(w->path->remark, room,
-             "the path ends at %s %.6g%s%s: no equilibrium follows it nearby",
+             "the path ends at %s %.6g%s%s: no equilibrium was found nearby beyond it",
              strut_path_subject(w), value, gap, unit);
   if (end == STRUT_PATH_AWAY)
     snprintf(w->path->remark, room,
-             "followed to %s %.6g%s%s: from there it leads ever further away",
+             "followed to %s %.6g%s%s: beyond, the structure moves away without end",
              strut_path_subject(w), value, gap, unit);
   if (end == STRUT_PATH_INVALID)
     snprintf(w->path->remark, room, "the path ends at %s %.6g%s%s: beyond, at %.6g%s%s, %s",
@@ -282,7 +282,7 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
   return false;
 }
 
-/* The piece ends early where a switch is thrown, and the walk goes on from there. */
+/* Ends the piece where a switch is thrown and continues from there. */
 static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t which,
                           double *beyond) {
   memcpy(beyond, w->next, bytes_of(w));
@@ -329,7 +329,10 @@ bool strut_path_walk_step(strut_path_walk *w) {
   return true;
 }
 
-/* The tangent at the beginning: with the load; where the load alone decides, so that it does work. */
+/*
+ * The tangent at the start: with growing load; if only the load moves the structure, so that it
+ * does work.
+ */
 static bool first_tangent(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   if (strut_path_tangent(s, w->y, w->upward, w->tangent)) return true;
@@ -338,7 +341,7 @@ static bool first_tangent(strut_path_walk *w) {
   return strut_path_tangent(s, w->y, w->trial, w->tangent);
 }
 
-/* To all digits where it is: the descent that found y was content with a double's. */
+/* Corrects the start to all digits: the descent that found y used doubles. */
 static void sharpen_start(strut_path_walk *w) {
   memcpy(w->next, w->y, bytes_of(w));
   if (strut_path_correct(&w->system, w->upward, 0.0, w->next) < 0) return;
@@ -355,7 +358,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     if (isfinite(value)) strut_path_switch_set(s, k, value > -STRUT_PATH_EVEN * s->size);
   }
   sharpen_start(w);
-  for (int round = 0; round < ROUNDS; round++) { /* what stands at zero goes the way of the path */
+  for (int round = 0; round < ROUNDS; round++) { /* switches at zero follow the path */
     bool changed = false;
     if (!first_tangent(w)) continue;
     memcpy(w->next, w->y, bytes_of(w));

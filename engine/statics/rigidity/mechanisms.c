@@ -204,7 +204,7 @@ static void remove_direction(double *x, const double *unit, size_t n) {
   for (size_t c = 0; c < n; c++) x[c] -= sum * unit[c];
 }
 
-/* What the null space has beside the rigid motions: of its vectors those with most left first. */
+/* Collects the null space beside the rigid motions, vectors with the largest remainder first. */
 static void collect(sorter *s, const double *space, size_t count, size_t rigid) {
   double *rest = s->turned;
   memcpy(rest, space, count * s->rows * sizeof *rest);
@@ -285,7 +285,7 @@ static strut_status find_stiffener(sorter *s, strut_mechanisms *m) {
   return STRUT_OK;
 }
 
-/* Motions that no state of self-stress says anything about come first: sum of squared forms. */
+/* Sorts motions that no state of self-stress affects first, by the sum of squared forms. */
 static bool separate(sorter *s, size_t *silent) {
   size_t n = s->n, count = s->forms ? (size_t)s->states->count : 0;
   memset(s->form, 0, n * n * sizeof *s->form);
@@ -408,7 +408,7 @@ static void measure_and_count(sorter *s, const double *force, strut_mechanisms *
   }
 }
 
-/* Too many to list: the counts that need no list. */
+/* Only counts motions where they are too many to list. */
 static strut_status only_count(sorter *s, strut_mechanisms *m) {
   double *rigid = strut_arena_allocate(&s->scratch, 3 * s->rows + 1, sizeof *rigid);
   if (!rigid) return STRUT_NO_MEMORY;

@@ -81,7 +81,7 @@ static bool pulls_cables_only(const strut_model *model, const strut_rigidity *r,
   return pulled > 0;
 }
 
-/* The listed states that load what can move: each must stiffen all mechanisms by itself. */
+/* Every listed state that loads movable members must alone stiffen all mechanisms. */
 static bool all_states_stiffen(const strut_rigidity *r) {
   return r->states.count == 1; /* of several, some combination presses what another pulls */
 }
@@ -237,7 +237,7 @@ static void choose_stress(strut_rigidity *r) {
   }
 }
 
-/* A pressed cable spoils super stability, whatever the matrix says. */
+/* A cable under compression rules out super stability, whatever the matrix. */
 static void respect_cables(const strut_model *model, strut_rigidity *r) {
   double largest = 0.0;
   for (int32_t j = 0; j < r->matrix.columns; j++) largest = fmax(largest, fabs(r->judged[j]));

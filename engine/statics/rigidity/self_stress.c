@@ -55,7 +55,10 @@ static size_t count_members(const double *row, size_t columns) {
   return count;
 }
 
-/* What is left of a candidate beside the `count` orthonormal rows chosen; makes it one of them. */
+/*
+ * Orthogonalises a candidate against the `count` rows chosen and appends it; false if nothing is
+ * left.
+ */
 static bool add_if_independent(double *chosen, size_t count, size_t columns, const double *row) {
   double *rest = chosen + count * columns, before = 0.0, after = 0.0;
   memcpy(rest, row, columns * sizeof *rest);
@@ -160,7 +163,7 @@ strut_status strut_self_stress_sort(const strut_model *model, const strut_null_s
 
 enum { MOST_ROUNDS = 20000, MOST_FORM_ROUNDS = 2000 };
 
-/* How much of the largest a force or an eigenvalue must have to count as positive. */
+/* A force or eigenvalue above this share of the largest counts as positive. */
 static const double MARGIN = 1e-7;
 
 typedef struct search {
@@ -174,7 +177,10 @@ typedef struct search {
   double *form, *value, *vector; /* (motions, motions), (motions), (motions, motions) */
 } search;
 
-/* force (members) becomes the states' combination by weight (states), scaled to a largest force of 1. */
+/*
+ * force (members) becomes the states' combination by weight (states), scaled to a largest force of
+ * 1.
+ */
 static void combine_states(const strut_self_stress *states, size_t members, const double *weight,
                            double *force) {
   double largest = 0.0;
@@ -266,7 +272,7 @@ static bool demand_of_softest_motion(search *s, bool *failed) {
 static bool find_combination(search *s) {
   bool failed = false;
   int most = s->motions > 0 ? MOST_FORM_ROUNDS : MOST_ROUNDS;
-  /* begin with what all demands have in common: each state's own force on the cables */
+  /* start from the states that pull cables by themselves */
   for (size_t i = 0; i < s->states_count; i++) s->weight[i] = s->states->cables_pull[i] ? 1 : 0.1;
   for (int round = 0; round < most && !failed; round++) {
     if (!demand_of_worst_cable(s) && !demand_of_softest_motion(s, &failed)) return true;

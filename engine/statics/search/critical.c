@@ -2,6 +2,7 @@
 /* The search in its order: known shapes, random ones, folds of what was found; then saddles. */
 #include "engine/statics/search/critical.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,14 +11,17 @@
 #include "engine/statics/search/starts.h"
 
 /*
- * All searches of one command together may take so many Hessians apart, each times what it costs;
- * and by what share of that each part of a search must be over.
+ * Work limit of all searches of one command (decomposed Hessians times their cost), and the share
+ * of it at which each phase must end.
  */
 static const double MOST_WORK = 6e9;
 static const double KNOWN_BY = 0.2, RANDOM_BY = 0.4, FOLDS_BY = 0.5, CROSSES_BY = 0.55,
                     CLIMBS_BY = 0.9;
 
-/* Crossings of each pair of minima, the part of the random starts they may number, and shakes. */
+/*
+ * Crossings per pair of minima, their limit as a fraction of the random starts, and shakes per
+ * minimum.
+ */
 enum { CROSSINGS = 2, PART_CROSSED = 8, SHAKES = 6 };
 enum { LEAST_RANDOM = 256, PER_MINIMUM = 32, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
 
@@ -85,13 +89,14 @@ static strut_status run_tasks(search *s) {
   return status;
 }
 
-/* Puts a task into the batch, which is worked off when full. */
+/* Appends a task to the batch, which runs when full. */
 static strut_status add_task(search *s, strut_task task) {
+  assert(s->tasks < s->batch_size && s->batch_size <= STRUT_BATCH);
   s->task[s->tasks++] = task;
   return s->tasks == s->batch_size ? run_tasks(s) : STRUT_OK;
 }
 
-/* Is it time to end a part of the search? Then it is cut short. */
+/* True, and the search cut short, if this share of the budget is spent. */
 static bool is_over_budget(search *s, double share) {
   if (s->spent <= share * s->budget) return false;
   s->set->cut_short = true;
@@ -107,13 +112,13 @@ static void set_budget(search *s) {
   s->batch_size = size < 4.0 ? 4 : size > STRUT_BATCH ? STRUT_BATCH : (size_t)size;
 }
 
-/* How many descents or climbs a structure of this size may have: their cost grows with its cube. */
+/* Number of descents or climbs affordable at this size: their cost grows with n^3. */
 static int64_t affordable_count(int32_t n, double budget, int64_t least, int64_t most) {
   double count = budget / ((double)n * n * n + 1.0);
   return count < (double)least ? least : count > (double)most ? most : (int64_t)count;
 }
 
-/* The model's own shape, its folds, and what the caller knows. */
+/* Starts from the model's own shape, its folds, and the caller's shapes. */
 static strut_status search_known_shapes(search *s) {
   const double *own = s->potential->model->start;
   strut_status status = add_task(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
@@ -128,7 +133,7 @@ static strut_status search_known_shapes(search *s) {
   return status ? status : run_tasks(s);
 }
 
-/* Minima that random starts have met just once, and all that they have met. */
+/* Counts minima that random starts have found exactly once, and at all. */
 static int64_t count_met_once(const search *s, int64_t *distinct) {
   int64_t once = 0;
   *distinct = 0;
@@ -161,7 +166,7 @@ static strut_status search_random_shapes(search *s) {
       status = add_task(s, (strut_task){.kind = STRUT_TASK_RANDOM, .number = s->random++});
     if (!status) status = run_tasks(s);
   }
-  if (wanted > 0) s->budget += s->spent - before; /* as it was asked for */
+  if (wanted > 0) s->budget += s->spent - before; /* requested starts cost no budget */
   return status;
 }
 
@@ -200,7 +205,9 @@ static strut_status search_crossed_minima(search *s) {
   return status ? status : run_tasks(s);
 }
 
-/* Around minima that random starts have hardly met: where one basin is small, its neighbours may be. */
+/*
+ * Shakes minima that random starts found at most once: neighbours of small basins may be small too.
+ */
 static strut_status shake_rare_minima(search *s) {
   strut_status status = STRUT_OK;
   size_t end = s->all.count;
@@ -216,13 +223,13 @@ static strut_status shake_rare_minima(search *s) {
   return status ? status : run_tasks(s);
 }
 
-/* Upper 95 % limit of what a count that is Poisson's may be the chance result of (Wilson, Hilferty). */
+/* Upper 95 % confidence limit of a Poisson mean from one count (Wilson, Hilferty). */
 static double upper_limit(int64_t count) {
   double k = (double)count + 1.0;
   return k * pow(1.0 - 1.0 / (9.0 * k) + 1.645 / (3.0 * sqrt(k)), 3.0);
 }
 
-/* What the random starts say about states that they have not met. */
+/* Estimates from the random starts the probability of minima not found. */
 static void estimate_missed(search *s) {
   strut_critical_set *set = s->set;
   int64_t distinct, once = count_met_once(s, &distinct);
@@ -302,7 +309,7 @@ static strut_status descend_from_saddles(search *s, size_t begin) {
   return status ? status : run_tasks(s);
 }
 
-/* Even numbers start from a minimum shaken, each in its turn, odd ones anywhere. */
+/* Even numbers start from a shaken minimum, each in turn; odd ones from a random shape. */
 static strut_task random_climb_task(const search *s, int64_t number) {
   strut_task task = {.kind = STRUT_TASK_CLIMB_RANDOM, .number = number};
   int64_t minima = 0, wanted;
@@ -328,7 +335,7 @@ static int64_t count_passes(const search *s) {
   return count;
 }
 
-/* Until a whole batch of them has found no new way from one minimum to another. */
+/* Climbs from random shapes until a whole batch finds no new pass. */
 static strut_status climb_at_random(search *s) {
   strut_status status = STRUT_OK;
   int64_t number = 0;
@@ -372,7 +379,7 @@ static bool comes_before(const strut_critical_point *a, const strut_critical_poi
   return kind_rank(a) != kind_rank(b) ? kind_rank(a) < kind_rank(b) : a->potential < b->potential;
 }
 
-/* Into the set, minima first, by energy; the saddles' ends are numbered anew. */
+/* Sorts the points into the set, minima first, by energy, and renumbers the saddles' ends. */
 static strut_status sort_into_set(search *s) {
   size_t count = s->all.count;
   strut_arena scratch = {0};

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Judges a stationary point: dense ones by all eigenvalues, large ones by the signs of a factor. */
+/*
+ * Classifies a stationary point: small structures by all eigenvalues, large ones by a factor's
+ * signs.
+ */
+#include <assert.h>
 #include <float.h>
 #include <gsl/gsl_eigen.h>
 #include <math.h>
@@ -47,7 +51,7 @@ static void set_softest(const judgement *j, const double *modes, int32_t count, 
   }
 }
 
-/* Judging a large structure: signs of the pivots, and the lowest eigenvalues by subspace iteration. */
+/* Large structures: signs of the pivots, and the lowest eigenvalues by subspace iteration. */
 
 enum { WANTED = 6, SPACE = 12, TURNS = 40 };
 
@@ -123,7 +127,9 @@ static void iterate_subspace(lowest *l, double scale) {
   }
 }
 
-/* Negative eigenvalues of H + shift; -1 without memory. A shift that meets a zero pivot is moved. */
+/*
+ * Negative eigenvalues of H + shift; -1 without memory. A shift that meets a zero pivot is moved.
+ */
 static int32_t count_negative(const lowest *l, double shift, strut_inertia *inertia) {
   for (int i = 0; i < 8; i++, shift *= 1.125) {
     strut_status status = strut_ldl_factorise(l->ldl, l->hessian, shift, inertia);
@@ -175,12 +181,13 @@ static bool judge_sparse(const judgement *j, strut_arena *arena, strut_critical_
   return good;
 }
 
-/* What kind of stationary point a shape is: eigenvalues, motions without stiffness, label. */
+/* Classification of a stationary point: eigenvalues, motions without stiffness, label. */
 
 static const double LARGEST = 1e150; /* entry of a stiffness matrix */
 
 const char *strut_stability_name(strut_stability stability) {
   static const char *const names[] = {"stable", "floppy", "saddle", "maximum"};
+  assert((size_t)stability < sizeof names / sizeof names[0]);
   return names[stability];
 }
 
@@ -217,7 +224,7 @@ static double largest_diagonal(const strut_sparse *h) {
   return largest;
 }
 
-/* Whether products of two entries, as factors and eigenvalues form them, are numbers. */
+/* True if products of two entries, as factors and eigenvalues form them, cannot overflow. */
 static bool is_finite(const strut_sparse *h) {
   for (int32_t k = 0; k < h->start[h->n]; k++)
     if (!(fabs(h->value[k]) < LARGEST)) return false;

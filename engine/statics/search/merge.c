@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/merge.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/statics/search/critical.h"
 
-/* Rounding may set copies of one point apart by so many times what separates points elsewhere. */
+/* Largest factor by which a soft direction may enlarge the distance within which points are one. */
 static const double MOST_BLUR = 1000.0;
 
 struct strut_congruent_copy {
@@ -14,7 +15,7 @@ struct strut_congruent_copy {
   strut_congruent_copy *next;
 };
 
-/* What rigid motions of the whole change nothing: no support, no load, no ground is in their way. */
+/* Finds the rigid motions that no support, load or ground forbids. */
 static void find_free_motions(strut_stationary_set *g) {
   const strut_potential *p = g->potential;
   const strut_model *model = p->model;
@@ -53,7 +54,7 @@ void strut_stationary_set_free(strut_stationary_set *g) {
   g->points = NULL, g->placement = NULL, g->count = g->room = 0;
 }
 
-/* The largest distance between two placements, motions apart that change nothing. */
+/* Largest distance between two placements, up to the free rigid motions. */
 static double place_distance(const strut_stationary_set *g, const double *a, const double *b) {
   const strut_model *model = g->potential->model;
   double mean[2] = {0.0, 0.0}, largest = 0.0;
@@ -164,7 +165,7 @@ static int32_t count_placements(const strut_stationary_set *g, int32_t index) {
   return count;
 }
 
-/* An end of a continuum was found first: a point amid it says more. */
+/* Replaces the end of a continuum by a point inside it, which represents it better. */
 static void make_degenerate(strut_critical_point *known, const strut_critical_point *point) {
   if (is_degenerate(known)) return;
   strut_critical_point before = *known;
@@ -202,6 +203,8 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
 
 const double *strut_stationary_set_placement(const strut_stationary_set *g, int32_t index,
                                              int32_t k) {
+  assert(index >= 0 && (size_t)index < g->count);
+  assert(k >= 0);
   const strut_congruent_copy *at = g->placement[index];
   while (at && k-- > 0) at = at->next;
   return at ? at->q : NULL;

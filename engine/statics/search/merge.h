@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Stationary points put together: which are one and the same, which are copies of one shape.
- */
+/** A set of stationary points without duplicates, with copies of one shape merged. */
 #ifndef STRUT_ENGINE_STATICS_SEARCH_MERGE_H
 #define STRUT_ENGINE_STATICS_SEARCH_MERGE_H
 

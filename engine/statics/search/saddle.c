@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/saddle.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -78,7 +79,7 @@ static int32_t find_followed_mode(strut_climber *c) {
   return best;
 }
 
-/* Upside down along the modes that are followed; false where there are too few. */
+/* Negates the quadratic along the followed modes; false if there are too few. */
 static bool build_image_function(strut_climber *c, int32_t index, bool following) {
   if (following) {
     int32_t mode = find_followed_mode(c);
@@ -122,7 +123,7 @@ static void set_trial(strut_climber *c, const double *q) {
   for (int32_t i = 0; i < p->n; i++) c->trial[p->coordinate[i]] += c->step[i];
 }
 
-/* Brings modes much stiffer than mu, the followed ones apart, into balance at the step's end. */
+/* Balances modes much stiffer than mu, except followed ones, at the step's end. */
 static bool rebalance_stiff_modes(strut_climber *c, double mu, double scale) {
   int32_t n = c->now.n;
   double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
@@ -139,8 +140,9 @@ static bool rebalance_stiff_modes(strut_climber *c, double mu, double scale) {
 }
 
 /*
- * The way bends with every stiff bar that turns: as in a descent, without which a climb beside very
- * stiff bars gets nowhere. Lowers `there` as long as that makes the quadratic truer.
+ * Corrects the step in the stiff modes, as a descent does: turning stiff bars stretch to second
+ * order, and without the correction a climb beside them stalls. Stops when the energy `there` no
+ * longer falls.
  */
 static double bend_step(strut_climber *c, const double *q, double mu, double scale, double there,
                         double wanted) {
@@ -223,7 +225,7 @@ static bool has_collapsed(const strut_climber *c, const double *q) {
   return false;
 }
 
-/* Upwards there is often no end: bars that only stretch, bodies that only rise. */
+/* True if the climb has no end: bars that only stretch, bodies that only rise. */
 static bool has_escaped(const strut_climber *c, const double *q) {
   const strut_potential *p = c->potential;
   for (int32_t i = 0; i < p->n; i++)
@@ -232,6 +234,7 @@ static bool has_escaped(const strut_climber *c, const double *q) {
 }
 
 bool strut_climb(strut_climber *c, int32_t index, const double *direction, double *q) {
+  assert(index >= 1 && index <= c->potential->n);
   const strut_potential *p = c->potential;
   double radius = 0.03 * c->size, root = sqrt((double)p->n);
   memcpy(c->begin, q, (size_t)p->model->length * sizeof *q);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/search_batch.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #ifdef _OPENMP
@@ -80,7 +81,7 @@ void strut_search_tasks_free(strut_search_tasks *batch) {
   strut_release(batch);
 }
 
-/* How far b may be slid along x, where nothing holds that, to lie over a. */
+/* Shift along x that brings b over a; 0 if something holds the structure along x. */
 static double slide_onto(const strut_potential *p, const double *a, const double *b) {
   double sum = 0.0;
   int32_t nodes = p->model->node_count;
@@ -92,7 +93,7 @@ static double slide_onto(const strut_potential *p, const double *a, const double
   return nodes ? sum / nodes : 0.0;
 }
 
-/* The highest of seven places on the straight way from a to b. */
+/* The highest of seven points on the straight line from a to b. */
 static void highest_between(const strut_potential *p, const double *a, const double *b, double *q) {
   size_t length = (size_t)p->model->length;
   double highest = -HUGE_VAL, best = 0.5, slide = slide_onto(p, a, b);
@@ -105,6 +106,7 @@ static void highest_between(const strut_potential *p, const double *a, const dou
 }
 
 static bool climb_task(const strut_search_tasks *b, worker *w, const strut_task *task, double *q) {
+  assert(w->climber);
   const strut_potential *p = b->potential;
   double far = 0.02 * (p->model->size > 0 ? p->model->size : 1.0);
   size_t bytes = (size_t)p->model->length * sizeof *q;
@@ -168,6 +170,7 @@ static void run_task(strut_search_tasks *b, const strut_task *task, strut_task_r
 
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
                                                 size_t count) {
+  assert(count <= STRUT_BATCH);
   int tasks = (int)count;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(batch->worker_count)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/starts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -28,6 +29,7 @@ static double signed_unit(source *s) {
 }
 
 static int64_t random_below(source *s, int64_t count) {
+  assert(count > 0);
   return (int64_t)(strut_counted_bits(s->seed, s->index, &s->counter) % (uint64_t)count);
 }
 
@@ -89,6 +91,7 @@ static void mirror_whole(const strut_potential *p, int axis, double *q) {
 }
 
 void strut_fold(const strut_potential *p, int64_t fold, double *q) {
+  assert(fold >= 0 && fold < strut_fold_count(p));
   if (fold < WHOLE) {
     mirror_whole(p, (int)fold, q);
     return;
