@@ -11,7 +11,6 @@
 #define STRUT_ENGINE_OUTPUT_MATRIX_MARKET_H
 
 #include "engine/statics/rigidity/equilibrium_matrix.h"
-#include "engine/statics/rigidity/linear_matrices.h"
 
 /**
  * Writes them all, or none: those of an earlier export go when these come. q (length)

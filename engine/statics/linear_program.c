@@ -34,6 +34,8 @@ bool strut_linear_program_create(strut_linear_program *p, int32_t rows, int32_t 
 }
 
 void strut_linear_program_add(strut_linear_program *p, int32_t row, int32_t column, double value) {
+  assert(row >= 0 && row < p->rows);
+  assert(column >= 0 && column < p->columns);
   if (value == 0) return;
   assert(p->entry_count < p->entry_room);
   p->entry_row[p->entry_count] = row;
@@ -74,7 +76,7 @@ static void free_entries(entries *e) {
   strut_release(e->value);
 }
 
-static strut_quantity_program_end end_of(int code, int status) {
+static strut_linear_program_end end_of(int code, int status) {
   if (code == 0 && status == GLP_OPT) return STRUT_PROGRAM_OPTIMAL;
   if (code == 0 && status == GLP_NOFEAS) return STRUT_PROGRAM_INFEASIBLE;
   if (code == 0 && status == GLP_UNBND) return STRUT_PROGRAM_UNBOUNDED;
@@ -97,7 +99,7 @@ static int run_simplex(glp_prob *problem, int scaling) {
 }
 
 static void solve(const strut_linear_program *p, const entries *e, double *x, double *sum,
-                  strut_quantity_program_end *end) {
+                  strut_linear_program_end *end) {
   glp_prob *problem = glp_create_prob();
   glp_set_obj_dir(problem, GLP_MIN);
   if (p->rows > 0) glp_add_rows(problem, p->rows);
@@ -130,7 +132,8 @@ static int print_nothing(void *unused, const char *text) {
 }
 
 strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
-                                        strut_quantity_program_end *end) {
+                                        strut_linear_program_end *end) {
+  assert(p->entry_count <= p->entry_room);
   jmp_buf out;
   entries e = {0};
   if (!make_entries(p, &e) || glp_init_env() > 1) {

@@ -24,12 +24,12 @@ typedef struct strut_linear_program {
   double *entry;
 } strut_linear_program;
 
-typedef enum strut_quantity_program_end {
+typedef enum strut_linear_program_end {
   STRUT_PROGRAM_OPTIMAL,
   STRUT_PROGRAM_INFEASIBLE,
   STRUT_PROGRAM_UNBOUNDED,
   STRUT_PROGRAM_FAILED /* the simplex method gave up */
-} strut_quantity_program_end;
+} strut_linear_program_end;
 
 /** Room for `entries` nonzeros, all in the arena; false: out of memory. */
 bool strut_linear_program_create(strut_linear_program *program, int32_t rows, int32_t columns,
@@ -39,6 +39,6 @@ void strut_linear_program_add(strut_linear_program *program, int32_t row, int32_
                               double value);
 /** x (columns) and the sum, filled where optimal; STRUT_NO_MEMORY or STRUT_OK. */
 strut_status strut_linear_program_solve(const strut_linear_program *program, double *x, double *sum,
-                                        strut_quantity_program_end *end);
+                                        strut_linear_program_end *end);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The trust region itself: how far a step may go, whether it was any good, and when to stop. */
+/* The trust-region loop: step length, acceptance, and termination. */
 #include "engine/statics/minimise.h"
 
 #include <float.h>
@@ -7,21 +7,21 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/statics/descent_parts.h"
+#include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
 
 struct strut_minimiser {
   const strut_potential *potential;
   const strut_curvature *curvature;
-  void *room;
-  int64_t looks;
+  void *workspace;
+  int64_t hessian_count;
   double size;                /* of the structure [m] */
-  double farthest;            /* no step may be longer [m] */
-  double first;               /* how long the first step may be [m] */
+  double longest_step;        /* bound of all steps [m] */
+  double first_step;          /* bound of the first step [m] */
   bool short_steps;           /* they began short, and may grow fast where the quadratic is exact */
   double *g, *g_trial, *step; /* (n) */
-  double *straight;           /* (n) the step before it was bent */
+  double *unbent;             /* (n) the step before its correction */
   double *trial, *before;     /* (length) */
   strut_arena arena;
 };
@@ -34,18 +34,18 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   bool dense = potential->n <= STRUT_DENSE_STATICS;
   m->potential = potential;
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
-  m->farthest = HUGE_VAL;
-  m->first = 0.1 * m->size;
+  m->longest_step = HUGE_VAL;
+  m->first_step = 0.1 * m->size;
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
-  m->room =
+  m->workspace =
       dense ? strut_curvature_dense_create(potential) : strut_curvature_sparse_create(potential);
   m->g = strut_arena_allocate(&m->arena, n, sizeof *m->g);
   m->g_trial = strut_arena_allocate(&m->arena, n, sizeof *m->g_trial);
   m->step = strut_arena_allocate(&m->arena, n, sizeof *m->step);
-  m->straight = strut_arena_allocate(&m->arena, n, sizeof *m->straight);
+  m->unbent = strut_arena_allocate(&m->arena, n, sizeof *m->unbent);
   m->trial = strut_arena_allocate(&m->arena, length, sizeof *m->trial);
   m->before = strut_arena_allocate(&m->arena, length, sizeof *m->before);
-  if (m->room && m->g && m->g_trial && m->step && m->straight && m->trial && m->before)
+  if (m->workspace && m->g && m->g_trial && m->step && m->unbent && m->trial && m->before)
     return STRUT_OK;
   strut_minimiser_free(m);
   *minimiser = NULL;
@@ -54,20 +54,20 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
 
 void strut_minimiser_free(strut_minimiser *minimiser) {
   if (!minimiser) return;
-  if (minimiser->room) minimiser->curvature->free(minimiser->room);
+  if (minimiser->workspace) minimiser->curvature->free(minimiser->workspace);
   strut_arena_free(&minimiser->arena);
   strut_release(minimiser);
 }
 
-int64_t strut_minimiser_hessian_count(const strut_minimiser *m) { return m->looks; }
+int64_t strut_minimiser_hessian_count(const strut_minimiser *m) { return m->hessian_count; }
 
-static bool look(strut_minimiser *m, const double *q) {
-  m->looks++;
-  return m->curvature->look(m->room, q);
+static bool decompose_hessian(strut_minimiser *m, const double *q) {
+  m->hessian_count++;
+  return m->curvature->decompose(m->workspace, q);
 }
 
 /* trial = q + factor * step. */
-static void move(strut_minimiser *m, const double *q, double factor) {
+static void set_trial(strut_minimiser *m, const double *q, double factor) {
   const strut_potential *p = m->potential;
   memcpy(m->trial, q, (size_t)p->model->length * sizeof *q);
   for (int32_t i = 0; i < p->n; i++) m->trial[p->coordinate[i]] += factor * m->step[i];
@@ -89,27 +89,28 @@ static bool ran_away(const strut_minimiser *m, const double *q, const double *st
   return !(largest <= 1e4 * m->size);
 }
 
-static double tolerated(const strut_minimiser *m, const double *q, double tolerance,
-                        double *rounding) {
+static double residual_allowed(const strut_minimiser *m, const double *q, double tolerance,
+                               double *rounding) {
   *rounding = strut_potential_rounding(m->potential, q);
   return fmax(tolerance, 8.0 * *rounding);
 }
 
 /*
- * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may be
- * all rounding long before soft directions have converged. Ends with the last residual.
+ * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may
+ * be all rounding long before soft directions have converged. Ends with the last residual.
  */
-static void polish(strut_minimiser *m, double *q, double tolerance, double reach,
-                   strut_descent *end) {
+static void polish_point(strut_minimiser *m, double *q, double tolerance, double reach,
+                         strut_descent *end) {
   int32_t n = m->potential->n;
   double earlier = HUGE_VAL;
   for (int i = 0; i < MOST_POLISH; i++) {
-    double length = look(m, q) ? m->curvature->newton(m->room, m->g, m->step) : HUGE_VAL;
+    double length =
+        decompose_hessian(m, q) ? m->curvature->newton_step(m->workspace, m->g, m->step) : HUGE_VAL;
     if (!(length < 0.9 * earlier) || length > reach) break;
-    move(m, q, 1.0);
+    set_trial(m, q, 1.0);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
     double residual = strut_largest_magnitude(m->g_trial, n);
-    double allowed = tolerated(m, m->trial, tolerance, &end->rounding);
+    double allowed = residual_allowed(m, m->trial, tolerance, &end->rounding);
     if (!(residual <= fmax(allowed, end->residual))) break;
     keep_trial(m, q);
     end->residual = residual;
@@ -119,17 +120,17 @@ static void polish(strut_minimiser *m, double *q, double tolerance, double reach
   }
 }
 
-/* From a stationary point that is no minimum: the lower of both ways along the ridge's direction. */
+/* Leaves a stationary point that is no minimum along the unstable direction, on its lower side. */
 static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
   double here = strut_potential_value(m->potential, q);
-  if (!m->curvature->ridge(m->room, m->step)) return false;
+  if (!m->curvature->unstable_direction(m->workspace, m->step)) return false;
   for (double far = radius; far > 1e-6 * m->size; far *= 0.25) {
-    move(m, q, far);
+    set_trial(m, q, far);
     double up = strut_potential_value(m->potential, m->trial);
-    move(m, q, -far);
+    set_trial(m, q, -far);
     double down = strut_potential_value(m->potential, m->trial);
     if (!(up < here) && !(down < here)) continue;
-    if (!(down < up)) move(m, q, far);
+    if (!(down < up)) set_trial(m, q, far);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
     keep_trial(m, q);
     return true;
@@ -138,8 +139,8 @@ static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
 }
 
 /*
- * A member that has shrunk to a point pushes its ends apart in every direction, though no gradient
- * says so: its free end moves aside. False where there is none.
+ * A member that has shrunk to a point pushes its ends apart, but its gradient is undefined: moves
+ * its free end aside. False if there is no such member.
  */
 static bool leave_collapse(strut_minimiser *m, double *q) {
   const strut_potential *p = m->potential;
@@ -180,19 +181,19 @@ static double energy_lost(const strut_minimiser *m, double here, double there, d
 static double try_step(strut_minimiser *m, const double *q, double here, double expected,
                        double *there) {
   size_t bytes = (size_t)m->potential->n * sizeof *m->step;
-  move(m, q, 1.0);
+  set_trial(m, q, 1.0);
   *there = strut_potential_value(m->potential, m->trial);
   strut_potential_gradient(m->potential, m->trial, m->g_trial);
   double ratio = energy_lost(m, here, *there, expected) / expected;
   for (int i = 0; i < MOST_BENDS && !(ratio > 0.75); i++) {
-    memcpy(m->straight, m->step, bytes);
-    if (!m->curvature->straighten(m->room, m->g_trial, m->step)) break;
-    move(m, q, 1.0);
+    memcpy(m->unbent, m->step, bytes);
+    if (!m->curvature->rebalance(m->workspace, m->g_trial, m->step)) break;
+    set_trial(m, q, 1.0);
     double lower = strut_potential_value(m->potential, m->trial);
     bool better = lower < *there;
     if (better) *there = lower;
-    if (!better) memcpy(m->step, m->straight, bytes);
-    if (!better) move(m, q, 1.0);
+    if (!better) memcpy(m->step, m->unbent, bytes);
+    if (!better) set_trial(m, q, 1.0);
     strut_potential_gradient(m->potential, m->trial, m->g_trial);
     if (!better) break;
     ratio = energy_lost(m, here, *there, expected) / expected;
@@ -201,7 +202,7 @@ static double try_step(strut_minimiser *m, const double *q, double here, double 
 }
 
 /* How much longer the next step may be. Short ones grow as long as the quadratic is true. */
-static double growth(const strut_minimiser *m, double ratio) {
+static double radius_growth(const strut_minimiser *m, double ratio) {
   if (!m->short_steps) return 2.5;
   return fabs(ratio - 1.0) < 0.01 ? 10.0 : fabs(ratio - 1.0) < 0.25 ? 2.5 : 1.0;
 }
@@ -209,7 +210,7 @@ static double growth(const strut_minimiser *m, double ratio) {
 /* One trust-region step; false where the radius has shrunk to nothing. */
 static bool descend_once(strut_minimiser *m, double *q, double still, double *radius,
                          double *energy) {
-  strut_model_step step = m->curvature->descend(m->room, m->g, *radius, still, m->step);
+  strut_model_step step = m->curvature->trust_step(m->workspace, m->g, *radius, still, m->step);
   if (!(step.length > 0)) return false;
   for (int tries = 0; tries < 60; tries++) {
     double there, ratio = try_step(m, q, *energy, step.reduction, &there);
@@ -217,7 +218,7 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
     bool astray = m->short_steps && ratio > 1.75 && step.length > 1e-6 * m->size;
     if (ratio > 1e-4 && !astray) {
       if (ratio > 0.75 && step.length > 0.99 * *radius)
-        *radius = fmin(growth(m, ratio) * *radius, m->farthest);
+        *radius = fmin(radius_growth(m, ratio) * *radius, m->longest_step);
       if (ratio < 0.25) *radius = 0.5 * step.length;
       keep_trial(m, q);
       *energy = there;
@@ -225,72 +226,73 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
     }
     *radius = (ratio > -1.0 ? 0.25 : 0.1) * step.length;
     if (!(*radius > DBL_EPSILON * m->size)) return false;
-    step = m->curvature->descend(m->room, m->g, *radius, still, m->step);
+    step = m->curvature->trust_step(m->workspace, m->g, *radius, still, m->step);
   }
   return false;
 }
 
 /*
- * A gradient within rounding ends it only where little is left to go as well: beside very stiff
- * members rounding hides forces that soft ones still yield to.
+ * A gradient within rounding ends the descent only if the Newton step is short too: beside very
+ * stiff members rounding hides forces that soft members still yield to.
  */
 strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   int32_t n = m->potential->n, extra = 0;
-  double radius = fmin(m->first, m->farthest), energy = strut_potential_value(m->potential, q);
+  double radius = fmin(m->first_step, m->longest_step),
+         energy = strut_potential_value(m->potential, q);
   memcpy(m->before, q, (size_t)m->potential->model->length * sizeof *q);
   strut_potential_gradient(m->potential, q, m->g);
   for (; end.iterations < MOST_STEPS; end.iterations++) {
     end.residual = strut_largest_magnitude(m->g, n);
-    double allowed = tolerated(m, q, tolerance, &end.rounding);
+    double allowed = residual_allowed(m, q, tolerance, &end.rounding);
     end.end = STRUT_DESCENT_EXHAUSTED;
     if (ran_away(m, q, m->before)) {
       end.end = STRUT_DESCENT_RUNAWAY;
       return end;
     }
-    if (!look(m, q)) return end;
+    if (!decompose_hessian(m, q)) return end;
     if (end.residual <= allowed) {
       if ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius)) {
         energy = strut_potential_value(m->potential, q);
         continue;
       }
       end.end = STRUT_DESCENT_REACHED;
-      double left = m->curvature->newton(m->room, m->g, m->step);
+      double left = m->curvature->newton_step(m->workspace, m->g, m->step);
       end.step = left;
       if (left <= 1e-3 * m->size || extra++ == MOST_EXTRA) break;
     }
     if (!descend_once(m, q, sqrt((double)n) * allowed, &radius, &energy)) break;
   }
   if (end.end != STRUT_DESCENT_REACHED) return end;
-  polish(m, q, tolerance, 1e-3 * m->size, &end);
+  polish_point(m, q, tolerance, 1e-3 * m->size, &end);
   if (end.step > 1e-5 * m->size) end.end = STRUT_DESCENT_EXHAUSTED;
   return end;
 }
 
 /*
- * How far from a saddle the force down the step's direction is told from rounding. A well may lie as
- * near as that to its saddle, where it is about to vanish.
+ * Returns the distance from the saddle at which the force along the step exceeds rounding. A well
+ * about to vanish may lie that close to its saddle.
  */
 static double leave_saddle(strut_minimiser *m, const double *q, double side) {
   const strut_potential *p = m->potential;
   double far = 1e-7 * m->size, enough = 100.0 * strut_potential_rounding(p, q);
   for (; far < 0.02 * m->size; far *= 4.0) {
     double down = 0.0;
-    move(m, q, side * far);
+    set_trial(m, q, side * far);
     strut_potential_gradient(p, m->trial, m->g_trial);
     for (int32_t i = 0; i < p->n; i++) down -= side * m->step[i] * m->g_trial[i];
     if (down > enough) break;
   }
-  move(m, q, side * far);
+  set_trial(m, q, side * far);
   return far;
 }
 
-/* Down by steps of at most `first` at first, which stay in the valley they are in. */
-static strut_descent_end descend_shortly(strut_minimiser *m, double first, double *q) {
-  double usual = m->first;
-  m->first = first, m->farthest = 0.03 * m->size, m->short_steps = true;
+/* Down by steps that begin no longer than `first_step` and stay in the valley they are in. */
+static strut_descent_end descend_shortly(strut_minimiser *m, double first_step, double *q) {
+  double usual = m->first_step;
+  m->first_step = first_step, m->longest_step = 0.03 * m->size, m->short_steps = true;
   strut_descent end = strut_minimise(m, q, 0.0);
-  m->first = usual, m->farthest = HUGE_VAL, m->short_steps = false;
+  m->first_step = usual, m->longest_step = HUGE_VAL, m->short_steps = false;
   return end.end;
 }
 
@@ -301,17 +303,18 @@ strut_descent_end strut_descend_gently(strut_minimiser *m, double *q) {
 bool strut_descend_along(strut_minimiser *m, const double *direction, double side, double *q) {
   const strut_potential *p = m->potential;
   for (int32_t i = 0; i < p->n; i++) m->step[i] = direction[p->coordinate[i]];
-  double first = leave_saddle(m, q, side);
+  double first_step = leave_saddle(m, q, side);
   memcpy(q, m->trial, (size_t)p->model->length * sizeof *q);
-  return descend_shortly(m, first, q) == STRUT_DESCENT_REACHED;
+  return descend_shortly(m, first_step, q) == STRUT_DESCENT_REACHED;
 }
 
 strut_descent strut_polish(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   strut_potential_gradient(m->potential, q, m->g);
   end.residual = strut_largest_magnitude(m->g, m->potential->n);
-  polish(m, q, tolerance, 0.1 * m->size, &end);
+  polish_point(m, q, tolerance, 0.1 * m->size, &end);
   end.residual = strut_largest_magnitude(m->g, m->potential->n);
-  if (end.residual <= tolerated(m, q, tolerance, &end.rounding)) end.end = STRUT_DESCENT_REACHED;
+  if (end.residual <= residual_allowed(m, q, tolerance, &end.rounding))
+    end.end = STRUT_DESCENT_REACHED;
   return end;
 }

@@ -2,9 +2,9 @@
 /**
  * From a shape downhill to a stationary point of the potential: Newton's method in a trust region.
  *
- * Up to STRUT_DENSE_STATICS free coordinates by the eigenvectors of the Hessian; above by its sparse
- * L D L' factor, shifted until it is positive definite. Directions without stiffness and without
- * force (free bodies, mechanisms) are left alone. Deterministic.
+ * Up to STRUT_DENSE_STATICS free coordinates by the eigenvectors of the Hessian; above by its
+ * sparse L D L' factor, shifted until it is positive definite. Directions without stiffness and
+ * without force (free bodies, mechanisms) are left alone. Deterministic.
  */
 #ifndef STRUT_ENGINE_STATICS_MINIMISE_H
 #define STRUT_ENGINE_STATICS_MINIMISE_H
@@ -35,12 +35,30 @@ STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
 
 /**
  * Moves q (length) downhill to a point where g = 0, never uphill. It may end on a saddle only if
- * the start lies exactly on its ridge; then it leaves along the unstable direction. At the end it is
- * polished until |g| <= max(tolerance, a few times the rounding). tolerance [N]; 0: rounding alone.
+ * the start lies exactly on its ridge; then it leaves along the unstable direction. At the end it
+ * is polished until |g| <= max(tolerance, a few times the rounding). tolerance [N]; 0: rounding
+ * alone.
  */
 STRUT_API strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double tolerance);
 
-/** Plain Newton steps to the nearest stationary point of any kind, for a q that is close already. */
+/**
+ * Plain Newton steps to the nearest stationary point of any kind, for a q that is close already.
+ */
 STRUT_API strut_descent strut_polish(strut_minimiser *minimiser, double *q, double tolerance);
+
+/** Hessians decomposed so far: a measure of the work done. */
+int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser);
+
+/**
+ * From a saddle at q down one side (+1 or -1) of direction (length), by steps short enough to stay
+ * in the valley they began in; true if q has reached a minimum.
+ */
+bool strut_descend_along(strut_minimiser *minimiser, const double *direction, double side,
+                         double *q);
+
+/**
+ * From q by short steps, which pass over no well that is wider than a hundredth of the structure.
+ */
+strut_descent_end strut_descend_gently(strut_minimiser *minimiser, double *q);
 
 #endif

@@ -195,6 +195,7 @@ static void add_contact(void *context, int32_t i, const strut_closed_contact *co
 
 void strut_potential_hessian_above(const strut_potential *p, const double *q, double least,
                                    strut_sparse *hessian) {
+  assert(hessian->n == p->n);
   hessian_sum sum = {p, hessian->value};
   assert(hessian->n == p->n);
   memset(sum.value, 0, (size_t)hessian->start[hessian->n] * sizeof *sum.value);

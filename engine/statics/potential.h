@@ -2,9 +2,9 @@
 /**
  * The potential energy of a structure at rest, with its first and second derivatives.
  *
- * It is the scene without what moves: actuators at rest, loads with a signal left out, no friction,
- * no damping. Free coordinates are those that neither the scene nor `held` fixes. Positions q are
- * (length) as everywhere; g and the Hessian are over the free coordinates, in their order.
+ * Actuators are at rest, loads with a signal left out; friction and damping do not act. Free
+ * coordinates are those that neither the scene nor `held` fixes. Positions q are (length) as
+ * everywhere; g and the Hessian are over the free coordinates, in their order.
  */
 #ifndef STRUT_ENGINE_STATICS_POTENTIAL_H
 #define STRUT_ENGINE_STATICS_POTENTIAL_H
@@ -14,7 +14,7 @@
 
 typedef struct strut_potential {
   const strut_model *model;
-  bool ground;           /* contacts push with c_g depth; else the ground is not there */
+  bool ground;           /* contacts push with c_g depth; false: no ground */
   int32_t n;             /* free coordinates */
   int32_t *coordinate;   /* (n) index into coordinate arrays */
   int32_t *row_of;       /* (length) row of a coordinate, -1 where held */
@@ -34,7 +34,10 @@ STRUT_API strut_status strut_potential_create(const strut_model *model, const ui
                                               strut_error *error);
 STRUT_API void strut_potential_free(strut_potential *potential);
 
-/** What is stationary in equilibrium: (13), minus load times position, plus the ground's springs. */
+/**
+ * The potential that is stationary in equilibrium: (13), minus load times position, plus the energy
+ * of the ground's springs.
+ */
 STRUT_API double strut_potential_value(const strut_potential *potential, const double *q);
 
 /** (13) alone: elastic energy of the members and gravity's, zero at the origin [J]. */
@@ -50,7 +53,7 @@ STRUT_API void strut_potential_force(const strut_potential *potential, const dou
 
 /**
  * The rounding error that g may carry at best [N]: that of the largest sum of member forces and of
- * stiffness times the last bit of a coordinate. A residual below it says nothing.
+ * stiffness times the last bit of a coordinate. A residual below it is meaningless.
  */
 STRUT_API double strut_potential_rounding(const strut_potential *potential, const double *q);
 

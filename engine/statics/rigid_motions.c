@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigid_motions.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -104,6 +105,7 @@ int32_t strut_rigid_motions(const strut_potential *p, const double *q, double *m
 
 int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, int32_t count,
                                  double *motion, double *work) {
+  assert(count >= 0 && count <= 3);
   size_t n = (size_t)hessian->n, kept = 0;
   double form[3][3] = {{0}}, value[3], vector[3][3];
   for (size_t i = 0; i < (size_t)count; i++)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/tangent.h"
-#include "engine/statics/eigen.h"
+#include "engine/statics/dense_algebra.h"
 
 struct strut_spectrum_workspace {
   const strut_potential *potential;
@@ -97,8 +97,9 @@ static double moved(const strut_spectrum_workspace *room, const double *mode, ui
 }
 
 /*
- * Adds stiffness * x x' + geometric * y y' to the form on `count` modes, where x, y are how a member
- * stretches and turns in them; and to each mode's noise what the rounding of both amounts to.
+ * Adds stiffness * x x' + geometric * y y' to the form on `count` modes, where x, y are how a
+ * member stretches and turns in them; and to each mode's noise what the rounding of both amounts
+ * to.
  */
 static void add_form(strut_spectrum_workspace *room, int32_t count, double stiffness,
                      double geometric, double uncertain) {

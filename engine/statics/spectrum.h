@@ -2,9 +2,10 @@
 /**
  * All eigenvalues and eigenvectors of a small Hessian, the soft ones to their own last digits.
  *
- * A dense solver leaves every eigenvalue with the rounding error of the largest: beside bars of 1e12
- * N/m nothing is left of a spring of 1 N/m. The soft ones are therefore found again in the space of
- * their eigenvectors, from stretches summed member by member (Rayleigh-Ritz), which loses nothing.
+ * A dense solver leaves every eigenvalue with the rounding error of the largest: beside bars of
+ * 1e12 N/m nothing is left of a spring of 1 N/m. The soft ones are therefore found again in the
+ * space of their eigenvectors, from stretches summed member by member (Rayleigh-Ritz), which loses
+ * nothing.
  */
 #ifndef STRUT_ENGINE_STATICS_SPECTRUM_H
 #define STRUT_ENGINE_STATICS_SPECTRUM_H
@@ -25,9 +26,9 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
 void strut_spectrum_free(strut_spectrum_workspace *room);
 
 /**
- * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`: noise is told mode by mode
- * and soft modes are refined in any case; else only where the dense solver's error could matter, and
- * noise is the same for all. False where the Hessian holds numbers that are not finite.
+ * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`:
+ * noise is estimated mode by mode and soft modes are always refined; else only where the dense
+ * solver's error could matter, with one noise for all. False if the Hessian is not finite.
  */
 bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
                             bool careful, strut_spectrum *spectrum);

@@ -72,7 +72,7 @@ members:
   bc: {kind: cable, nodes: [b, c], stiffness: 1e13, rest_length: 1 - 1e-13}
 END
 expect 3 modes string.yaml
-err_has "cannot be had to 1e-8"
+err_has "not to 1e-8"
 err_has "condition"
 out_empty
 
@@ -97,7 +97,7 @@ grep -q rigid-body out && fail "held along the ground it has no rigid motion"
 expect 0 modes standing.yaml --at a-b-1
 out_has "modes at a-b-1, on"
 expect 1 modes standing.yaml --at a-b-99
-err_has "there is no equilibrium 'a-b-99'"
+err_has "unknown equilibrium 'a-b-99'"
 expect 1 modes standing.yaml --at top-1
-err_has "choose among: start, drawn"
+err_has "choose one of: start, drawn"
 done_testing

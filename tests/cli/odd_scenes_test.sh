@@ -72,16 +72,16 @@ done
 expect 0 modes one_on_ground.yaml
 out_has "50.3292 Hz"
 expect 3 modes pressed_sideways.yaml
-err_has "as nothing presses it down"
+err_has "because nothing presses it down"
 expect 3 equilibria pushed.yaml --starts 40
 err_has "leave the range of numbers"
 expect 3 form pushed.yaml --from lengths
-err_has "1e+300 N are left"
+err_has "the residual is 1e+300 N"
 expect 2 modes stiff.yaml
 err_has "check their units"
 expect 3 modes under.yaml
-err_has "moves off without end, n"
+err_has "moves away without end, n"
 expect 3 form "$models/gallery/d-bar.yaml" --from densities
-err_has "nodes 'n1' and 'n3', the ends of 'taut', lie in one place"
+err_has "nodes 'n1' and 'n3', the ends of 'taut', coincide"
 out_empty
 done_testing

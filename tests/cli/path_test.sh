@@ -43,7 +43,7 @@ out_has "stable"
 
 # A load that nothing resists, one that is not there, one that does nothing.
 expect 1 path arch.yaml --load wait
-err_has "there is no load 'wait'; the scene's loads are: weight, wind"
+err_has "unknown load 'wait'; the scene's loads are: weight, wind"
 expect 1 path arch.yaml --load wind
 err_has "acts on nothing that can move"
 expect 1 path arch.yaml --until "3 N"
@@ -132,9 +132,9 @@ expect 0 path over.yaml --at flat --from 1 --until 12 --json
 jq -e '.points[0].factor == 1 and .points[0].force == 1 and .points[0].nodes.top[1] < 0.2999 and
   .events[0].kind == "limit point"' "$work/out" >jq.out || fail "--at flat --from 1"
 expect 1 path over.yaml --at upright
-err_has "there is no configuration 'upright'"
+err_has "unknown configuration 'upright'"
 expect 3 path over.yaml --at drawn --from 1 --until 2
-err_has "'drawn' is no equilibrium where the path begins"
+err_has "'drawn' is no equilibrium where the path starts"
 
 # Where Zeeman's machine folds: first and second derivative zero on the circle of a rigid bar, to 30 digits.
 expect 0 path "$here/../../models/gallery/zeeman.yaml" --set "rod=1e11 N/m" --over control_y \

@@ -131,7 +131,7 @@ static void test_all_the_other_solutions(void **unused) {
     const strut_equilibrium *e = &all.list[i];
     if (!is_on(e, 1, 4) || e->point.label != STRUT_STABLE) continue;
     listed++;
-    below += e->fate == STRUT_OUTCOME_BELOW_GROUND;
+    below += e->outcome == STRUT_OUTCOME_BELOW_GROUND;
     bool known = false;
     for (int k = 0; k < count; k++)
       if (fabs(e->energy - energy[k]) < 1e-7) known = statics_congruent(e->point.q, found[k], 1e-7);
@@ -141,7 +141,7 @@ static void test_all_the_other_solutions(void **unused) {
       assert_int_equal(e->below[n], e->point.q[2 * n + 1] < -1e-9);
       under = under || e->below[n];
     }
-    assert_int_equal(under, e->fate == STRUT_OUTCOME_BELOW_GROUND);
+    assert_int_equal(under, e->outcome == STRUT_OUTCOME_BELOW_GROUND);
   }
   assert_int_equal(listed, 6);
   assert_int_equal(below, 4);
@@ -185,13 +185,13 @@ static void test_it_tips_onto_nodes_2_and_4(void **unused) {
   (void)unused;
   const strut_equilibrium *second = on_1_and_4(published[1].energy);
   const strut_equilibrium *one = called("I"), *two = called("II");
-  assert_int_equal(second->fate, STRUT_OUTCOME_TIPS);
+  assert_int_equal(second->outcome, STRUT_OUTCOME_TIPS);
   assert_int_equal(second->tips_over, 3);
   assert_true(rests_on(second, 2, 4));
   assert_string_equal(second->verdict, "tips over n4 onto n2 and n4: II");
   assert_ptr_equal(&all.list[second->ends_as], two);
   assert_true(is_on(two, 2, 4));
-  assert_int_equal(two->fate, STRUT_OUTCOME_STANDS);
+  assert_int_equal(two->outcome, STRUT_OUTCOME_STANDS);
   /* II is the mirror image of I, in which nodes 1 and 2 have changed places */
   static const int twin[5] = {1, 0, 2, 3, 4};
   assert_near(two->energy, one->energy, 1e-10);

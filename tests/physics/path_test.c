@@ -384,7 +384,7 @@ static void test_refusals(void **state) {
   strut_model *model = motion_compile(&setup.scene);
   assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
                    STRUT_USAGE);
-  assert_string_equal(error.message, "there is no load 'push'; the scene's loads are: l1");
+  assert_string_equal(error.message, "unknown load 'push'; the scene's loads are: l1");
   strut_path_free(&path);
   strut_model_free(model);
   setup.scene.loads[0].node = 0; /* a support */

@@ -26,7 +26,7 @@ static void test_optimum(void **state) {
   (void)state;
   strut_arena arena = {0};
   strut_linear_program p;
-  strut_quantity_program_end end;
+  strut_linear_program_end end;
   double x[2], sum;
   make_known(&p, &arena);
   assert_int_equal(strut_linear_program_solve(&p, x, &sum, &end), STRUT_OK);
@@ -45,7 +45,7 @@ static void test_no_optimum(void **state) {
   (void)state;
   strut_arena arena = {0};
   strut_linear_program p;
-  strut_quantity_program_end end = STRUT_PROGRAM_OPTIMAL;
+  strut_linear_program_end end = STRUT_PROGRAM_OPTIMAL;
   double x[2], sum;
   make_known(&p, &arena);
   p.low[1] = 5;

@@ -38,13 +38,13 @@ static void done(found *f) {
 
 static int32_t count(const found *f, strut_outcome fate) {
   int32_t n = 0;
-  for (size_t i = 0; i < f->all.count; i++) n += f->all.list[i].fate == fate;
+  for (size_t i = 0; i < f->all.count; i++) n += f->all.list[i].outcome == fate;
   return n;
 }
 
 static const strut_equilibrium *first(const found *f, strut_outcome fate) {
   for (size_t i = 0; i < f->all.count; i++)
-    if (f->all.list[i].fate == fate) return &f->all.list[i];
+    if (f->all.list[i].outcome == fate) return &f->all.list[i];
   fail_msg("nothing has that fate");
   return NULL;
 }
@@ -76,7 +76,7 @@ static void test_a_triangle_stands_on_every_side(void **unused) {
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 3);
   for (size_t i = 0; i < f.all.count; i++) {
     const strut_equilibrium *e = &f.all.list[i];
-    if (e->fate != STRUT_OUTCOME_STANDS) continue;
+    if (e->outcome != STRUT_OUTCOME_STANDS) continue;
     assert_string_equal(e->verdict, "stands");
     assert_int_equal(e->ends_as, i);
     double sum = 0, below = 0;
@@ -105,7 +105,7 @@ static void test_it_tips_over_its_foot(void **unused) {
   assert_says(e->verdict, "tips over n2 onto n2 and n3: ");
   assert_int_equal(e->contacts[0], 1);
   assert_int_equal(e->contacts[1], 2);
-  assert_int_equal(f.all.list[e->ends_as].fate, STRUT_OUTCOME_STANDS);
+  assert_int_equal(f.all.list[e->ends_as].outcome, STRUT_OUTCOME_STANDS);
   done(&f);
 }
 
@@ -219,7 +219,7 @@ static void test_a_push_along_the_ground(void **unused) {
   build_load(&f.setup.scene, 2, 2.5 * weight, 0, -1);
   search(&f);
   assert_int_equal(count(&f, STRUT_OUTCOME_STANDS), 0);
-  assert_says(f.all.remark, "a coefficient of at least 2.5 holds it");
+  assert_says(f.all.remark, "a friction coefficient of at least 2.5 holds it");
   done(&f);
 }
 
@@ -263,7 +263,7 @@ static void test_a_slope(void **unused) {
   assert_int_equal(level.all.count, steep.all.count);
   assert_true(steep.all.count >= 3);
   assert_int_equal(count(&steep, STRUT_OUTCOME_STANDS), 0);
-  assert_says(steep.all.remark, "a coefficient of at least 0.1003 holds it"); /* tan 0.1 */
+  assert_says(steep.all.remark, "a friction coefficient of at least 0.1003 holds it"); /* tan 0.1 */
   assert_string_equal(first(&steep, STRUT_OUTCOME_NO_REST)->verdict,
                       "slides along the ground without friction");
   for (size_t i = 0; i < steep.all.count; i++) {
@@ -291,7 +291,7 @@ static void test_supports_must_touch(void **unused) {
   strut_model *model = motion_compile(&setup.scene);
   assert_int_equal(strut_equilibria_find(model, &setup.experiment, &options, &all, &error),
                    STRUT_USAGE);
-  assert_says(error.message, "node 'n3' cannot touch the ground");
+  assert_says(error.message, "node 'n3' is no contact node");
   strut_equilibria_free(&all);
   strut_model_free(model);
   strut_setup_free(&setup);
@@ -344,7 +344,7 @@ static void test_stands(void **unused) {
   assert_true(one.residual < 1e-10 * one.scale);
   assert_int_equal(strut_rest_state_find(model, &setup.experiment, "III", &arena, &two, &error),
                    STRUT_USAGE);
-  assert_says(error.message, "choose among: start, drawn, I, II");
+  assert_says(error.message, "choose one of: start, drawn, I, II");
   strut_arena_free(&arena);
   strut_model_free(model);
   strut_setup_free(&setup);

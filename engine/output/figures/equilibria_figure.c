@@ -189,7 +189,7 @@ static bool choose_equilibria(plan *p) {
   for (size_t i = 0; i < count; i++) {
     const strut_equilibrium *e = &p->all->list[i];
     if (!is_stable(e)) continue;
-    if (e->fate == STRUT_OUTCOME_STANDS || e->fate == STRUT_OUTCOME_FLOPPY) {
+    if (e->outcome == STRUT_OUTCOME_STANDS || e->outcome == STRUT_OUTCOME_FLOPPY) {
       p->standing[p->standing_count++] = i;
     } else {
       p->aside[p->aside_count++] = i;

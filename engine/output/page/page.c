@@ -46,8 +46,8 @@ static bool is_saddle(const strut_equilibrium *e) {
 /* ENDS: stable on the ground, or another equilibrium comes to rest there. */
 static int rank_of(const strut_equilibrium *e) {
   if (is_saddle(e)) return SADDLES;
-  if (e->fate == STRUT_OUTCOME_BELOW_GROUND) return BELOW_GROUND;
-  if (e->fate != STRUT_OUTCOME_STANDS) return ELSEWHERE;
+  if (e->outcome == STRUT_OUTCOME_BELOW_GROUND) return BELOW_GROUND;
+  if (e->outcome != STRUT_OUTCOME_STANDS) return ELSEWHERE;
   return e->configured ? NAMED : ENDS;
 }
 
@@ -100,7 +100,7 @@ static void add_contacts(strut_json *json, struct cJSON *to, const strut_model *
   const double *up = model->contacts.normal;
   struct cJSON *contacts = strut_json_array(json, to, "contacts");
   struct cJSON *normal = strut_json_array(json, to, "normal");
-  bool rests = e->fate == STRUT_OUTCOME_STANDS || !e->supports;
+  bool rests = e->outcome == STRUT_OUTCOME_STANDS || !e->supports;
   size_t count = rests ? (size_t)e->contact_count : e->supports->count;
   for (size_t i = 0; i < count; i++) {
     int32_t node = rests ? e->contacts[i] : e->supports->node[i];
@@ -117,10 +117,10 @@ static void add_card(strut_json *json, struct cJSON *to, const strut_model *mode
   int32_t first = point->label == STRUT_STABLE ? point->zero : 0; /* free motions apart */
   strut_json_text(json, to, "name", e->name);
   strut_json_text(json, to, "label", strut_stability_name(point->label));
-  strut_json_text(json, to, "fate", strut_outcome_name(e->fate));
+  strut_json_text(json, to, "fate", strut_outcome_name(e->outcome));
   strut_json_text(json, to, "verdict", e->verdict);
   strut_json_number(json, to, "energy", e->energy);
-  strut_json_bool(json, to, "stands", e->fate == STRUT_OUTCOME_STANDS);
+  strut_json_bool(json, to, "stands", e->outcome == STRUT_OUTCOME_STANDS);
   add_numbers(json, to, "position", point->q, 2 * (size_t)model->node_count);
   add_numbers(json, to, "force", e->member_force, (size_t)model->members.count);
   add_contacts(json, to, model, e);

@@ -133,7 +133,7 @@ static void put_equilibrium(strut_json *json, struct cJSON *to, const strut_equi
   strut_json_number(json, to, "energy", e->energy);
   strut_json_number(json, to, "potential", p->potential);
   put_supports(json, to, scene, e);
-  strut_json_text(json, to, "outcome", strut_outcome_name(e->fate));
+  strut_json_text(json, to, "outcome", strut_outcome_name(e->outcome));
   strut_json_text(json, to, "verdict", e->verdict);
   strut_json_text(json, to, "tips_over",
                   e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL);
@@ -205,14 +205,14 @@ enum { MOST_ROWS = 80, MOST_BARRIERS = 24, MOST_NODES = 12, NAMES = 64, FLAWS = 
 typedef enum section { STANDING, HELD, UNSTABLE } section;
 
 static section section_of(const strut_equilibrium *e) {
-  if (e->fate == STRUT_OUTCOME_STANDS) return STANDING;
-  return e->fate == STRUT_OUTCOME_UNSTABLE ? UNSTABLE : HELD;
+  if (e->outcome == STRUT_OUTCOME_STANDS) return STANDING;
+  return e->outcome == STRUT_OUTCOME_UNSTABLE ? UNSTABLE : HELD;
 }
 
 static void list_names(const strut_scene *scene, const strut_equilibrium *e, char text[NAMES]) {
   const int32_t *node = e->contacts;
   size_t count = (size_t)e->contact_count, used = 0;
-  if (e->supports && e->fate != STRUT_OUTCOME_STANDS)
+  if (e->supports && e->outcome != STRUT_OUTCOME_STANDS)
     node = e->supports->node, count = e->supports->count;
   snprintf(text, NAMES, "-");
   for (size_t i = 0; i < count && used < NAMES; i++) {
@@ -236,7 +236,7 @@ static void describe_flaws(strut_shape_flaws flaws, char text[NAMES]) {
 /* Where a saddle leads down to, else what becomes of the equilibrium; nothing to say of standing. */
 static void add_end(strut_buffer *table, const strut_equilibria *all, const strut_equilibrium *e) {
   const int32_t *down = e->point.down;
-  if (e->fate == STRUT_OUTCOME_STANDS) return;
+  if (e->outcome == STRUT_OUTCOME_STANDS) return;
   if (e->point.negative == 1 && down[0] >= 0 && down[1] >= 0)
     strut_buffer_add(table, "  between %s and %s", all->list[down[0]].name,
                      all->list[down[1]].name);
@@ -254,7 +254,7 @@ static void add_row(strut_buffer *table, const strut_equilibria *all, const stru
   strut_buffer_add(table, "  %-18s %-12s %-8s %14s %13s %7" PRId64 "  %-*s", e->name, names,
                    strut_stability_name(e->point.label), strut_quantity_of(e->energy, 8, "J").text,
                    strut_quantity_of(lowest, 5, "N/m").text, e->point.found,
-                   e->fate == STRUT_OUTCOME_STANDS ? 0 : FLAWS, flaws);
+                   e->outcome == STRUT_OUTCOME_STANDS ? 0 : FLAWS, flaws);
   add_end(table, all, e);
   strut_buffer_add(table, "\n");
 }
@@ -285,7 +285,7 @@ static void add_counts(strut_buffer *table, const strut_equilibria *all) {
       [STRUT_OUTCOME_UNSTABLE] = "unstable (saddles and maxima)",
       [STRUT_OUTCOME_FLOPPY] = "floppy",
       [STRUT_OUTCOME_NO_REST] = "that come to no rest once released"};
-  for (size_t i = 0; i < all->count; i++) fates[all->list[i].fate]++;
+  for (size_t i = 0; i < all->count; i++) fates[all->list[i].outcome]++;
   for (int f = STRUT_OUTCOME_TIPS; f <= STRUT_OUTCOME_NO_REST; f++) {
     if (!fates[f]) continue;
     strut_buffer_add(table, any++ ? ",\n  " : "\n  not shown: ");
@@ -313,7 +313,7 @@ static void add_shape(strut_buffer *table, const strut_scene *scene, const strut
 
 static void add_shapes(strut_buffer *table, const strut_equilibria *all, const strut_scene *scene) {
   for (size_t i = 0; i < all->count; i++)
-    if (all->list[i].fate == STRUT_OUTCOME_STANDS) add_shape(table, scene, &all->list[i]);
+    if (all->list[i].outcome == STRUT_OUTCOME_STANDS) add_shape(table, scene, &all->list[i]);
 }
 
 static void add_barriers(strut_buffer *table, const strut_equilibria *all, bool everything) {

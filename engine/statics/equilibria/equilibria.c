@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/run/settle.h"
-#include "engine/statics/equilibria/barriers.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
@@ -15,7 +14,7 @@ static strut_status no_memory(strut_equilibrium_search *h) {
   return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
 }
 
-/* The largest doubt counts. */
+/* Adds a search's counts; of its estimates the largest is kept. */
 static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
   h->out->missed = fmax(h->out->missed, set->missed);
@@ -25,24 +24,24 @@ static void count_starts(strut_equilibrium_search *h, const strut_critical_set *
   h->out->cut_short = h->out->cut_short || set->cut_short;
 }
 
-/* The level scene with all shapes laid on the set, its start too: `placed` shares the rest. */
+/* Copies the level scene and places every configuration and the start on the support set. */
 static double *place_shapes(const strut_equilibrium_search *h, const strut_node_set *set,
                             strut_scene *placed, size_t length, strut_arena *arena) {
-  const strut_scene *flat = &h->flat.scene;
-  size_t nodes = flat->node_count, shapes = flat->configuration_count;
-  *placed = *flat;
+  const strut_scene *level = &h->level.scene;
+  size_t nodes = level->node_count, shapes = level->configuration_count;
+  *placed = *level;
   placed->nodes = strut_arena_allocate(arena, nodes, sizeof *placed->nodes);
   double *shape = strut_arena_allocate(arena, (shapes + 1) * length, sizeof *shape);
   double(*start)[2] = strut_arena_allocate(arena, nodes, sizeof *start);
   if (!placed->nodes || !shape || !start) return NULL;
-  memcpy(placed->nodes, flat->nodes, nodes * sizeof *placed->nodes);
+  memcpy(placed->nodes, level->nodes, nodes * sizeof *placed->nodes);
   for (size_t s = 0; s <= shapes; s++) {
     for (size_t i = 0; i < nodes; i++) {
-      bool drawn = s == shapes || !flat->configurations[s].shaped;
-      memcpy(start[i], drawn ? flat->nodes[i].position : flat->configurations[s].position[i],
+      bool drawn = s == shapes || !level->configurations[s].shaped;
+      memcpy(start[i], drawn ? level->nodes[i].position : level->configurations[s].position[i],
              sizeof *start);
     }
-    strut_supports_place(&h->supports, flat, set, start);
+    strut_supports_place(&h->supports, level, set, start);
     memcpy(shape + s * length, start, nodes * sizeof *start);
   }
   for (size_t i = 0; i < nodes; i++) memcpy(placed->nodes[i].start, start[i], sizeof *start);
@@ -55,10 +54,10 @@ static strut_status add_points(strut_equilibrium_search *h, const strut_critical
   for (size_t i = 0; i < set->count; i++) {
     int32_t at = strut_equilibrium_search_add(h);
     if (at < 0) return no_memory(h);
-    h->finds[at].group = group;
-    h->finds[at].number = (int32_t)i;
-    strut_status status =
-        strut_equilibrium_search_fill(h, &h->finds[at], potential, held, supports, &set->points[i]);
+    h->candidates[at].group = group;
+    h->candidates[at].number = (int32_t)i;
+    strut_status status = strut_equilibrium_search_fill(h, &h->candidates[at], potential, held,
+                                                        supports, &set->points[i]);
     if (status) return status;
   }
   return STRUT_OK;
@@ -68,7 +67,7 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
                                 const uint8_t *held, const double *shape, const strut_node_set *set,
                                 int32_t group, strut_arena *arena) {
   const strut_equilibria_options *o = h->options;
-  size_t shapes = h->flat.scene.configuration_count, length = (size_t)h->model->length;
+  size_t shapes = h->level.scene.configuration_count, length = (size_t)h->model->length;
   const double **extra = strut_arena_allocate(arena, shapes + 1, sizeof *extra);
   if (!extra) return no_memory(h);
   strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
@@ -77,7 +76,7 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
                                   .saddles = !o->standing_only,
                                   .extra = extra};
   for (size_t s = 0; s < shapes; s++)
-    if (h->flat.scene.configurations[s].shaped) extra[effort.extra_count++] = shape + s * length;
+    if (h->level.scene.configurations[s].shaped) extra[effort.extra_count++] = shape + s * length;
   strut_critical_set found = {0};
   strut_status status = strut_critical_search(potential, &effort, &found, h->error);
   if (!status) count_starts(h, &found);
@@ -87,7 +86,7 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
 }
 
 /* All solutions of (12) on one set of supports. */
-static strut_status search_on(strut_equilibrium_search *h, int32_t group) {
+static strut_status search_on_supports(strut_equilibrium_search *h, int32_t group) {
   const strut_node_set *set = &h->supports.sets[group];
   strut_arena scratch = {0};
   strut_scene placed;
@@ -104,8 +103,7 @@ static strut_status search_on(strut_equilibrium_search *h, int32_t group) {
   }
   if (!status && potential->n == 0)
     status = strut_fail(h->error, STRUT_USAGE,
-                        "with the supports held that were asked for nothing can move; hold fewer "
-                        "nodes");
+                        "with the requested supports held no node can move; hold fewer nodes");
   if (!status) status = search_held(h, potential, held, shape, set, group, &scratch);
   strut_potential_free(potential);
   strut_model_free(model);
@@ -119,40 +117,40 @@ static strut_status search_all_sets(strut_equilibrium_search *h) {
     const volatile sig_atomic_t *interrupt = h->options->interrupt;
     status = interrupt && *interrupt
                  ? strut_fail(h->error, STRUT_INTERRUPTED, "interrupted while searching")
-                 : search_on(h, (int32_t)i);
+                 : search_on_supports(h, (int32_t)i);
   }
   return status;
 }
 
-/* True where a support solution stands for that minimum of the real ground. */
-static bool stood_for(const strut_equilibrium_search *h, int32_t state) {
+/* True if a candidate found on supports stands in that minimum of the real ground. */
+static bool has_standing_candidate(const strut_equilibrium_search *h, int32_t state) {
   for (size_t i = 0; i < h->count; i++)
-    if (h->finds[i].e.supports && h->finds[i].e.fate == STRUT_OUTCOME_STANDS &&
-        h->finds[i].state == state)
+    if (h->candidates[i].e.supports && h->candidates[i].e.outcome == STRUT_OUTCOME_STANDS &&
+        h->candidates[i].state == state)
       return true;
   return false;
 }
 
-/* The real ground's own: stable ones that no supports stand for, and its saddles. */
+/* Adds the real ground's saddles, and its minima that no candidate on supports represents. */
 static strut_status add_ground(strut_equilibrium_search *h) {
   const strut_critical_set *set = &h->landscape.set;
   count_starts(h, set);
   for (size_t i = 0; i < set->count; i++) {
-    if ((int32_t)i < h->landscape.minima && stood_for(h, (int32_t)i)) continue;
+    if ((int32_t)i < h->landscape.minima && has_standing_candidate(h, (int32_t)i)) continue;
     int32_t at = strut_equilibrium_search_add(h);
     if (at < 0) return no_memory(h);
-    strut_candidate_equilibrium *f = &h->finds[at];
+    strut_candidate_equilibrium *f = &h->candidates[at];
     strut_equilibrium *e = &f->e;
     f->group = (int32_t)h->supports.count;
     strut_status status =
-        strut_equilibrium_search_fill(h, f, h->world, NULL, NULL, &set->points[i]);
+        strut_equilibrium_search_fill(h, f, h->potential, NULL, NULL, &set->points[i]);
     if (status) return status;
     f->number = (int32_t)i;
     f->state = (int32_t)i < h->landscape.minima ? (int32_t)i : -1;
-    e->fate = e->point.label == STRUT_STABLE   ? STRUT_OUTCOME_STANDS
-              : e->point.label == STRUT_FLOPPY ? STRUT_OUTCOME_FLOPPY
-                                               : STRUT_OUTCOME_UNSTABLE;
-    if (e->fate == STRUT_OUTCOME_UNSTABLE) continue;
+    e->outcome = e->point.label == STRUT_STABLE   ? STRUT_OUTCOME_STANDS
+                 : e->point.label == STRUT_FLOPPY ? STRUT_OUTCOME_FLOPPY
+                                                  : STRUT_OUTCOME_UNSTABLE;
+    if (e->outcome == STRUT_OUTCOME_UNSTABLE) continue;
     e->rest = e->point.q;
     e->rest_energy = e->energy;
     e->rest_residual = e->point.residual;
@@ -160,10 +158,11 @@ static strut_status add_ground(strut_equilibrium_search *h) {
   return STRUT_OK;
 }
 
-/* Within a group those that stand first, then stable by energy, then saddles, then maxima. */
-static int before(const void *pa, const void *pb) {
+/* Order within a group: standing ones, other stable ones by energy, saddles, maxima. */
+static int compare_candidates(const void *pa, const void *pb) {
   const strut_candidate_equilibrium *a = pa, *b = pb;
-  int stands_a = a->e.fate == STRUT_OUTCOME_STANDS, stands_b = b->e.fate == STRUT_OUTCOME_STANDS;
+  int stands_a = a->e.outcome == STRUT_OUTCOME_STANDS,
+      stands_b = b->e.outcome == STRUT_OUTCOME_STANDS;
   if (a->group != b->group) return a->group < b->group ? -1 : 1;
   if (stands_a != stands_b) return stands_b - stands_a;
   if (a->e.point.label != b->e.point.label) return (int)a->e.point.label - (int)b->e.point.label;
@@ -173,115 +172,118 @@ static int before(const void *pa, const void *pb) {
 
 static void link_ends(strut_equilibrium_search *h) {
   for (size_t i = 0; i < h->count; i++) {
-    strut_equilibrium *e = &h->finds[i].e;
-    if (e->fate == STRUT_OUTCOME_STANDS) e->ends_as = (int32_t)i;
-    for (size_t k = 0; k < h->count && e->fate == STRUT_OUTCOME_TIPS && e->ends_as < 0; k++)
-      if (h->finds[k].e.fate == STRUT_OUTCOME_STANDS && h->finds[k].state == h->finds[i].state &&
-          h->finds[i].state >= 0)
+    strut_equilibrium *e = &h->candidates[i].e;
+    if (e->outcome == STRUT_OUTCOME_STANDS) e->ends_as = (int32_t)i;
+    for (size_t k = 0; k < h->count && e->outcome == STRUT_OUTCOME_TIPS && e->ends_as < 0; k++)
+      if (h->candidates[k].e.outcome == STRUT_OUTCOME_STANDS &&
+          h->candidates[k].state == h->candidates[i].state && h->candidates[i].state >= 0)
         e->ends_as = (int32_t)k;
   }
 }
 
-/* What stands for point `number` of a search, in the list: on the ground what stands there. */
+/*
+ * Index in the list of point `number` of a search; on the ground that of the equilibrium standing
+ * there.
+ */
 static int32_t find_number(const strut_equilibrium_search *h, int32_t group, int32_t number) {
   for (size_t i = 0; i < h->count && number >= 0; i++) {
-    const strut_candidate_equilibrium *f = &h->finds[i];
+    const strut_candidate_equilibrium *f = &h->candidates[i];
     bool there = group == (int32_t)h->supports.count
-                     ? f->state == number && f->e.fate == STRUT_OUTCOME_STANDS
+                     ? f->state == number && f->e.outcome == STRUT_OUTCOME_STANDS
                      : false;
     if (there || (f->group == group && f->number == number)) return (int32_t)i;
   }
   return -1;
 }
 
-/* Where saddles lead down to: from numbers in their search to places in the list. */
+/* Translates the minima below saddles from numbers in their search to indices in the list. */
 static void link_saddles(strut_equilibrium_search *h) {
   for (size_t i = 0; i < h->count; i++) {
-    strut_candidate_equilibrium *f = &h->finds[i];
+    strut_candidate_equilibrium *f = &h->candidates[i];
     bool leads = f->e.point.label == STRUT_SADDLE && f->e.point.negative == 1;
     for (int k = 0; k < 2; k++)
       f->e.point.down[k] = leads ? find_number(h, f->group, f->e.point.down[k]) : -1;
   }
 }
 
-static void turn_back(strut_equilibrium_search *h, strut_equilibrium *e) {
+static void turn_to_original(strut_equilibrium_search *h, strut_equilibrium *e) {
   size_t nodes = (size_t)h->model->node_count;
-  strut_level_frame_to_original(&h->flat, nodes, e->point.q);
-  strut_level_frame_to_original(&h->flat, nodes, e->point.softest);
-  strut_level_frame_to_original(&h->flat, nodes, e->reaction[0]);
-  if (e->rest && e->rest != e->point.q) strut_level_frame_to_original(&h->flat, nodes, e->rest);
+  strut_level_frame_to_original(&h->level, nodes, e->point.q);
+  strut_level_frame_to_original(&h->level, nodes, e->point.softest);
+  strut_level_frame_to_original(&h->level, nodes, e->reaction[0]);
+  if (e->rest && e->rest != e->point.q) strut_level_frame_to_original(&h->level, nodes, e->rest);
 }
 
-/* Sorts, names, links and words the finds, and hands them over. */
-static strut_status finish(strut_equilibrium_search *h) {
+/* Sorts, names, links and describes the candidates, and moves them to the result. */
+static strut_status report_equilibria(strut_equilibrium_search *h) {
   strut_arena *arena = &h->out->arena;
-  if (h->count) qsort(h->finds, h->count, sizeof *h->finds, before);
+  if (h->count) qsort(h->candidates, h->count, sizeof *h->candidates, compare_candidates);
   strut_equilibrium **list = strut_arena_allocate(arena, h->count, sizeof *list);
   h->out->list = strut_arena_allocate(arena, h->count, sizeof *h->out->list);
   if (!list || !h->out->list) return no_memory(h);
-  for (size_t i = 0; i < h->count; i++) list[i] = &h->finds[i].e;
+  for (size_t i = 0; i < h->count; i++) list[i] = &h->candidates[i].e;
   if (strut_name_equilibria(h->model, h->count, list, arena)) return no_memory(h);
   link_ends(h);
   link_saddles(h);
-  strut_report_candidates(h, h->finds, h->count);
+  strut_report_candidates(h, h->candidates, h->count);
   strut_status status = STRUT_OK;
   if (h->explored && !h->options->standing_only) status = strut_barriers_find(h);
   for (size_t i = 0; i < h->count; i++) {
-    turn_back(h, &h->finds[i].e);
-    h->out->list[i] = h->finds[i].e;
+    turn_to_original(h, &h->candidates[i].e);
+    h->out->list[i] = h->candidates[i].e;
   }
   h->out->count = h->count;
   return status;
 }
 
-/* Nothing presses on the ground where no force acts across it and nothing is held there. */
+/* True if a force acts across the ground or a support holds a node across it. */
 static bool is_pressed(const strut_equilibrium_search *h) {
-  double scale = 1e-12 * h->world->force_scale, sum = 0.0;
+  double scale = 1e-12 * h->potential->force_scale, sum = 0.0;
   for (int32_t i = 0; i < h->model->node_count; i++) {
     if (h->model->fixed[2 * i + 1]) return true;
-    sum += h->world->force[2 * i + 1];
+    sum += h->potential->force[2 * i + 1];
   }
   return fabs(sum) > scale;
 }
 
-static strut_status make_world(strut_equilibrium_search *h, bool ground) {
-  strut_potential_free(h->world);
-  h->world = NULL;
+static strut_status create_potential(strut_equilibrium_search *h, bool ground) {
+  strut_potential_free(h->potential);
+  h->potential = NULL;
   h->on_ground = ground;
-  return strut_potential_create(h->model, NULL, ground, &h->world, h->error);
+  return strut_potential_create(h->model, NULL, ground, &h->potential, h->error);
 }
 
-static strut_status prepare(strut_equilibrium_search *h, const strut_model *original) {
+static strut_status prepare_search(strut_equilibrium_search *h, const strut_model *original) {
   const strut_equilibria_options *o = h->options;
   h->out->seed = o->seed ? *o->seed : h->experiment->search.seed;
-  strut_status status = strut_level_frame_create(original->scene, &h->flat, h->error);
-  if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
-  if (!status) status = make_world(h, h->model && h->model->contacts.count > 0);
-  if (!status && h->on_ground && !is_pressed(h)) status = make_world(h, false);
+  strut_status status = strut_level_frame_create(original->scene, &h->level, h->error);
+  if (!status) status = strut_model_compile(&h->level.scene, &h->model, h->error);
+  if (!status) status = create_potential(h, h->model && h->model->contacts.count > 0);
+  if (!status && h->on_ground && !is_pressed(h)) status = create_potential(h, false);
   if (status) return status;
-  if (h->on_ground && h->flat.askew < 0)
-    status = strut_supports_choose(&h->flat.scene, &h->experiment->search, o->supports,
+  if (h->on_ground && h->level.oblique_node < 0)
+    status = strut_supports_choose(&h->level.scene, &h->experiment->search, o->supports,
                                    &h->out->arena, &h->supports, h->error);
   else if (o->supports)
-    status = strut_fail(h->error, STRUT_USAGE,
-                        h->flat.askew >= 0
-                            ? "supports cannot take the place of a slope while a node is held in "
-                              "one direction only"
-                            : "no ground presses on the structure, so no supports can take its "
-                              "place");
+    status = strut_fail(
+        h->error, STRUT_USAGE,
+        h->level.oblique_node >= 0
+            ? "static supports cannot replace a sloped ground while a node is held in one "
+              "direction only"
+            : "the ground does not press on the structure, so supports cannot replace it");
   return status;
 }
 
-static strut_status search(strut_equilibrium_search *h) {
-  if (h->world->n == 0) {
+static strut_status search_scene(strut_equilibrium_search *h) {
+  if (h->potential->n == 0) {
     strncpy(h->out->remark, "nothing can move: the scene holds every node",
             sizeof h->out->remark - 1);
     return STRUT_OK;
   }
-  h->unrest = strut_equilibrium_search_instability(h);
-  if (h->unrest == STRUT_INSTABILITY_FALLS) return STRUT_OK;
+  h->instability = strut_equilibrium_search_instability(h);
+  if (h->instability == STRUT_INSTABILITY_FALLS) return STRUT_OK;
   strut_status status =
-      strut_relaxer_create(h->world, h->experiment->settle.limit, &h->relaxer, h->error);
+      strut_relaxer_create(h->potential, h->experiment->settle.limit, &h->relaxer, h->error);
   if (!status) status = search_all_sets(h);
   if (!status) status = strut_equilibrium_search_follow(h);
   if (!status && h->explored) status = add_ground(h);
@@ -295,8 +297,8 @@ static int32_t find_nearest(const strut_model *model, const strut_equilibria *al
   int32_t nearest = -1;
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
-    bool unstable = !e->supports && e->fate == STRUT_OUTCOME_UNSTABLE;
-    if (e->fate != STRUT_OUTCOME_STANDS && !unstable) continue;
+    bool unstable = !e->supports && e->outcome == STRUT_OUTCOME_UNSTABLE;
+    if (e->outcome != STRUT_OUTCOME_STANDS && !unstable) continue;
     const double *shape = unstable ? e->point.q : e->rest;
     double away = strut_shape_distance(model, q, shape, false, NULL);
     if (away < least) least = away, nearest = (int32_t)i;
@@ -304,7 +306,7 @@ static int32_t find_nearest(const strut_model *model, const strut_equilibria *al
   return nearest;
 }
 
-/* Where the run of the scene starts, if it settles: that, too, is one of the equilibria. */
+/* Finds the equilibrium that a settling run of the scene starts from. */
 static strut_status settle_start(strut_equilibrium_search *h, const strut_model *model) {
   double *q, time;
   strut_error trouble = {0};
@@ -319,7 +321,7 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)
     return strut_fail(h->error, status, "%s", trouble.message);
   snprintf(h->out->start_trouble, sizeof h->out->start_trouble, "%s", trouble.message);
-  return STRUT_OK; /* the list stands without it */
+  return STRUT_OK; /* the list is valid without it */
 }
 
 strut_status strut_equilibria_find(const strut_model *model, const strut_experiment *experiment,
@@ -328,15 +330,15 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
   memset(equilibria, 0, sizeof *equilibria);
   strut_equilibrium_search h = {
       .experiment = experiment, .options = options, .out = equilibria, .error = error};
-  strut_status status = prepare(&h, model);
-  if (!status) status = search(&h);
-  if (!status) status = finish(&h);
+  strut_status status = prepare_search(&h, model);
+  if (!status) status = search_scene(&h);
+  if (!status) status = report_equilibria(&h);
   if (!status) status = settle_start(&h, model);
   strut_landscape_free(&h.landscape);
   strut_relaxer_free(h.relaxer);
-  strut_potential_free(h.world);
+  strut_potential_free(h.potential);
   strut_model_free(h.model);
-  strut_level_frame_free(&h.flat);
+  strut_level_frame_free(&h.level);
   return status;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * All equilibria of a scene the paper's way: on static supports (12), then what becomes of each on
- * the real ground, and how high the passes between the stable ones are.
+ * All equilibria of a scene by the paper's method: on static supports (12), then their outcome on
+ * the real ground, and the barriers between the stable ones.
  */
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
@@ -31,7 +31,7 @@ typedef struct strut_equilibrium {
   double (*reaction)[2];          /* (node_count) of supports, the scene's own too [N] */
   uint8_t *below;                 /* (node_count) 1 where under the ground */
   double *member_force;           /* (member_count) tension positive [N] */
-  strut_outcome fate;
+  strut_outcome outcome;
   int32_t tips_over;    /* node about which it turns, or -1 */
   int32_t ends_as;      /* the equilibrium it ends in, or -1; itself if it stands */
   double *rest;         /* (length) where it comes to rest on the real ground, or NULL */
@@ -43,14 +43,14 @@ typedef struct strut_equilibrium {
   char verdict[208]; /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
 } strut_equilibrium;
 
-/** The lowest way known between two stable equilibria on the real ground. */
+/** The lowest known path between two stable equilibria on the real ground. */
 typedef struct strut_barrier {
   int32_t from, to; /* in the list */
   double height;    /* [J] above `from` */
-  int32_t saddle;   /* the highest saddle on the way, in the list */
+  int32_t saddle;   /* the highest saddle on the path, in the list */
   int32_t via_count;
   int32_t *via;  /* (via_count) stable or floppy equilibria in between, in the list, or -1 */
-  double direct; /* [J] of the lowest saddle that leads straight there; NAN: none is known */
+  double direct; /* [J] of the lowest saddle that connects them directly; NAN: unknown */
   int32_t direct_saddle; /* in the list, or -1 */
 } strut_barrier;
 
@@ -67,9 +67,9 @@ typedef struct strut_equilibria {
   int64_t unmet;       /* stable ones, over all searches, that no random start met */
   bool cut_short;      /* some search ended early, for the structure's size */
   strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
-  int32_t start;               /* the equilibrium it settled in, or -1: it is none of the list */
+  int32_t start;               /* the equilibrium it settled in, or -1: not in the list */
   char start_trouble[600];     /* why the start did not come to rest; else empty */
-  char remark[400];            /* why there is none, or what moves freely; else empty */
+  char remark[400];            /* why no equilibrium was found, or what moves freely; else empty */
   strut_arena arena;
 } strut_equilibria;
 
@@ -77,7 +77,7 @@ typedef struct strut_equilibria_options {
   int64_t starts;                 /* 0: as the experiment says */
   const uint64_t *seed;           /* NULL: as the experiment says */
   const strut_node_set *supports; /* NULL: as the experiment says */
-  bool standing_only;             /* no saddles and no barriers: what stands, and where */
+  bool standing_only;             /* only equilibria that stand: no saddles, no barriers */
   const volatile sig_atomic_t *interrupt;
 } strut_equilibria_options;
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/landscape.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
+#include "engine/statics/equilibria/equilibrium_search.h"
 
 /* Two shapes are one: as a share of the model's size, and of the potential. */
 static const double SAME_SHAPE = 1e-5, SAME_POTENTIAL = 1e-8;
@@ -32,7 +34,7 @@ static strut_status find_lowest(strut_landscape *l, strut_error *error) {
     l->lowest[i] = HUGE_VAL;
     for (size_t k = (size_t)l->minima; k < set->count; k++) {
       const strut_critical_point *pass = &set->points[k];
-      /* one whose ways down are not known may lead anywhere */
+      /* a pass with unknown ends may lead anywhere */
       if (!is_pass(pass) || !(leads_from(pass, i) || is_unknown(pass))) continue;
       if (pass->potential > set->points[i].potential)
         l->lowest[i] = fmin(l->lowest[i], pass->potential);
@@ -56,7 +58,7 @@ void strut_landscape_free(strut_landscape *landscape) {
   memset(landscape, 0, sizeof *landscape);
 }
 
-static double distance(const strut_landscape *l, const double *a, const double *b) {
+static double point_distance(const strut_landscape *l, const double *a, const double *b) {
   const strut_model *model = l->potential->model;
   if (l->merged) return strut_shape_distance(model, a, b, true, NULL);
   double most = 0.0;
@@ -72,7 +74,7 @@ int32_t strut_landscape_find(const strut_landscape *l, const double *q) {
     const strut_critical_point *p = &l->set.points[i];
     if (fabs(p->potential - potential) > SAME_POTENTIAL * scale) continue;
     /* a floppy shape is a whole family of one energy */
-    if (p->label == STRUT_FLOPPY || distance(l, p->q, q) <= SAME_SHAPE * size) return i;
+    if (p->label == STRUT_FLOPPY || point_distance(l, p->q, q) <= SAME_SHAPE * size) return i;
   }
   return -1;
 }
@@ -84,7 +86,7 @@ double strut_landscape_pass(const void *landscape, const double *q) {
 }
 
 /* The root of a's tree. */
-static int32_t root(int32_t *parent, int32_t a) {
+static int32_t find_root(int32_t *parent, int32_t a) {
   while (parent[a] != a) a = parent[a] = parent[parent[a]];
   return a;
 }
@@ -96,15 +98,16 @@ static bool connects(const strut_landscape *l, const strut_critical_point *pass)
 }
 
 int32_t strut_landscape_path(const strut_landscape *l, int32_t a, int32_t b) {
+  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
   const strut_critical_set *set = &l->set;
   int32_t *parent = l->parent;
   for (int32_t i = 0; i < l->minima; i++) parent[i] = i;
-  /* saddles come by energy: the one that connects the two is the highest on the lowest way */
+  /* saddles come by energy: the one that connects a and b is the highest on the lowest path */
   for (size_t k = (size_t)l->minima; k < set->count; k++) {
     const strut_critical_point *pass = &set->points[k];
     if (!connects(l, pass)) continue;
-    parent[root(parent, pass->down[0])] = root(parent, pass->down[1]);
-    if (root(parent, a) == root(parent, b)) return (int32_t)k;
+    parent[find_root(parent, pass->down[0])] = find_root(parent, pass->down[1]);
+    if (find_root(parent, a) == find_root(parent, b)) return (int32_t)k;
   }
   return -1;
 }
@@ -119,10 +122,11 @@ int32_t strut_landscape_direct(const strut_landscape *l, int32_t a, int32_t b) {
 
 int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, int32_t highest,
                                 int32_t *via) {
+  assert(a >= 0 && a < l->minima && b >= 0 && b < l->minima);
   int32_t *next = l->parent, count = 0;
   for (int32_t i = 0; i < l->minima; i++) next[i] = -1;
   next[b] = b;
-  /* in rounds from b, so that each minimum gets its next one on a shortest way */
+  /* in rounds from b, so that each minimum gets its successor on a shortest path */
   for (bool grew = true; grew && next[a] < 0;) {
     grew = false;
     for (int32_t i = 0; i < l->minima; i++) via[i] = next[i];
@@ -138,4 +142,89 @@ int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, 
   }
   for (int32_t at = next[a]; at >= 0 && at != b; at = next[at]) via[count++] = at;
   return count;
+}
+
+/* The first candidate that stands in each of the landscape's minima, or -1. */
+static void find_representatives(const strut_equilibrium_search *h, int32_t *of_state) {
+  for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
+  for (size_t i = 0; i < h->count; i++) {
+    const strut_candidate_equilibrium *f = &h->candidates[i];
+    if (f->e.outcome != STRUT_OUTCOME_STANDS || f->state < 0) continue;
+    if (of_state[f->state] < 0) of_state[f->state] = (int32_t)i;
+  }
+}
+
+static bool is_named(const strut_equilibrium_search *h, int32_t find) {
+  return find >= 0 && h->candidates[find].e.configured;
+}
+
+static bool is_next_to_named(const strut_equilibrium_search *h, const int32_t *of_state,
+                             int32_t s) {
+  for (int32_t t = 0; t < h->landscape.minima; t++) {
+    if (t == s || !is_named(h, of_state[t])) continue;
+    if (strut_landscape_direct(&h->landscape, t, s) >= 0) return true;
+  }
+  return false;
+}
+
+/* States that enter the table, at most STRUT_MOST_BARRIERS_BETWEEN; their count. */
+static int choose_states(const strut_equilibrium_search *h, const int32_t *of_state,
+                         int32_t *chosen) {
+  int32_t minima = h->landscape.minima;
+  bool names = false;
+  int count = 0;
+  for (int32_t s = 0; s < minima; s++) names = names || is_named(h, of_state[s]);
+  for (int pass = 0; pass < 2; pass++) /* named ones first: the limit must not drop them */
+    for (int32_t s = 0; s < minima && count < STRUT_MOST_BARRIERS_BETWEEN; s++) {
+      if (of_state[s] < 0 || is_named(h, of_state[s]) != (pass == 0)) continue;
+      if (pass == 1 && names && !is_next_to_named(h, of_state, s)) continue;
+      chosen[count++] = s;
+    }
+  return count;
+}
+
+static int32_t find_saddle(const strut_equilibrium_search *h, int32_t saddle) {
+  for (size_t i = 0; i < h->count; i++)
+    if (!h->candidates[i].e.supports && h->candidates[i].number == saddle) return (int32_t)i;
+  return -1;
+}
+
+/* The barrier from one of the landscape's minima to another; false: out of memory. */
+static bool fill_barrier(const strut_equilibrium_search *h, const int32_t *of_state, int32_t a,
+                         int32_t b, int32_t way, strut_barrier *barrier) {
+  const strut_landscape *l = &h->landscape;
+  const strut_critical_point *points = l->set.points;
+  int32_t direct = strut_landscape_direct(l, a, b);
+  *barrier = (strut_barrier){
+      .from = of_state[a],
+      .to = of_state[b],
+      .height = points[way].potential - points[a].potential,
+      .saddle = find_saddle(h, way),
+      .direct = direct >= 0 ? points[direct].potential - points[a].potential : (double)NAN,
+      .direct_saddle = direct >= 0 ? find_saddle(h, direct) : -1};
+  barrier->via = strut_arena_allocate(&h->out->arena, (size_t)l->minima, sizeof *barrier->via);
+  if (!barrier->via) return false;
+  barrier->via_count = strut_landscape_between(l, a, b, way, barrier->via);
+  for (int32_t i = 0; i < barrier->via_count; i++) barrier->via[i] = of_state[barrier->via[i]];
+  return true;
+}
+
+strut_status strut_barriers_find(strut_equilibrium_search *h) {
+  const strut_landscape *l = &h->landscape;
+  int32_t chosen[STRUT_MOST_BARRIERS_BETWEEN];
+  int32_t *of_state = strut_allocate((size_t)l->minima, sizeof *of_state);
+  size_t most = (size_t)STRUT_MOST_BARRIERS_BETWEEN * (STRUT_MOST_BARRIERS_BETWEEN - 1);
+  h->out->barriers = strut_arena_allocate(&h->out->arena, most, sizeof *h->out->barriers);
+  bool good = of_state && h->out->barriers;
+  if (good) find_representatives(h, of_state);
+  int count = good ? choose_states(h, of_state, chosen) : 0;
+  for (int a = 0; a < count; a++)
+    for (int b = 0; b < count && good; b++) {
+      int32_t way = a == b ? -1 : strut_landscape_path(l, chosen[a], chosen[b]);
+      if (way < 0) continue;
+      good = fill_barrier(h, of_state, chosen[a], chosen[b], way,
+                          &h->out->barriers[h->out->barrier_count++]);
+    }
+  strut_release(of_state);
+  return good ? STRUT_OK : strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
 }

@@ -13,7 +13,7 @@ typedef struct strut_landscape {
   strut_critical_set set;
   int32_t minima;    /* stable and floppy points: the first ones of the set */
   double *lowest;    /* (minima) potential of the lowest pass out of it [J]; HUGE_VAL: none known */
-  int32_t *parent;   /* (minima) scratch of the ways below */
+  int32_t *parent;   /* (minima) scratch of the path searches below */
   strut_arena arena; /* of the above */
 } strut_landscape;
 
@@ -30,8 +30,8 @@ int32_t strut_landscape_find(const strut_landscape *landscape, const double *q);
 double strut_landscape_pass(const void *landscape, const double *q);
 
 /**
- * The lowest way from minimum a to minimum b: the index of the highest saddle on it, -1 where the
- * known saddles do not connect them.
+ * Index of the highest saddle on the lowest path from minimum a to minimum b; -1 if the known
+ * saddles do not connect them.
  */
 int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_t b);
 
@@ -39,8 +39,8 @@ int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_
 int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);
 
 /**
- * The minima between a and b on the shortest way over saddles up to `highest`, in order: their
- * count into via (minima).
+ * Writes the minima between a and b on the shortest path over saddles up to `highest` to via
+ * (minima), in order; returns their count.
  */
 int32_t strut_landscape_between(const strut_landscape *landscape, int32_t a, int32_t b,
                                 int32_t highest, int32_t *via);

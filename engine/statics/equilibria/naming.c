@@ -52,7 +52,8 @@ static bool mirror_axis(const strut_model *model, const uint8_t *held, const dou
 }
 
 /* Distance to the nearest configuration if that is near enough to lend its name, else HUGE_VAL. */
-static double to_configurations(const strut_model *model, const double *q, double *scratch) {
+static double distance_to_configurations(const strut_model *model, const double *q,
+                                         double *scratch) {
   const strut_scene *scene = model->scene;
   double nearest = HUGE_VAL;
   for (size_t c = 0; c < scene->configuration_count; c++) {
@@ -63,7 +64,7 @@ static double to_configurations(const strut_model *model, const double *q, doubl
   return nearest < STRUT_NAMED_WITHIN * model->size ? nearest : HUGE_VAL;
 }
 
-static double to_drawn(const strut_model *model, const double *q, double *scratch) {
+static double distance_to_drawn(const strut_model *model, const double *q, double *scratch) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(scratch + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
@@ -80,11 +81,11 @@ strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, d
   double *scratch = mirrored + length;
   memcpy(mirrored, q, length * sizeof *q);
   for (int32_t i = 0; i < model->node_count; i++) mirrored[2 * i] = x + (x - q[2 * i]);
-  double as_is = to_configurations(model, q, scratch);
-  double as_mirrored = to_configurations(model, mirrored, scratch);
+  double as_is = distance_to_configurations(model, q, scratch);
+  double as_mirrored = distance_to_configurations(model, mirrored, scratch);
   if (as_is == as_mirrored) { /* most often both HUGE_VAL */
-    as_is = to_drawn(model, q, scratch);
-    as_mirrored = to_drawn(model, mirrored, scratch);
+    as_is = distance_to_drawn(model, q, scratch);
+    as_mirrored = distance_to_drawn(model, mirrored, scratch);
   }
   if (as_mirrored < as_is) {
     memcpy(q, mirrored, length * sizeof *q);
@@ -94,14 +95,14 @@ strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, d
   return STRUT_OK;
 }
 
-static bool on_a_set(const strut_configuration *c, const strut_equilibrium *e) {
+static bool rests_on_set(const strut_configuration *c, const strut_equilibrium *e) {
   for (size_t k = 0; k < c->set_count; k++)
     if (strut_same_nodes(&c->sets[k], e->contacts, e->contact_count)) return true;
   return c->set_count == 0;
 }
 
 static bool may_be_named(const strut_equilibrium *e) {
-  return !e->name && e->fate == STRUT_OUTCOME_STANDS;
+  return !e->name && e->outcome == STRUT_OUTCOME_STANDS;
 }
 
 static void name_shaped(const strut_model *model, const strut_configuration *c, size_t count,
@@ -110,7 +111,7 @@ static void name_shaped(const strut_model *model, const strut_configuration *c, 
   double least = STRUT_NAMED_WITHIN * model->size;
   memcpy(scratch, c->position[0], 2 * model->scene->node_count * sizeof *scratch);
   for (size_t i = 0; i < count; i++) {
-    if (!may_be_named(list[i]) || !on_a_set(c, list[i])) continue;
+    if (!may_be_named(list[i]) || !rests_on_set(c, list[i])) continue;
     double d = strut_shape_distance(model, scratch, list[i]->rest, false, NULL);
     if (!(d < least)) continue;
     least = d;
@@ -119,8 +120,8 @@ static void name_shaped(const strut_model *model, const strut_configuration *c, 
   if (nearest) nearest->name = c->name;
 }
 
-static bool taken(size_t count, strut_equilibrium **list, const strut_scene *scene,
-                  const char *name) {
+static bool is_name_taken(size_t count, strut_equilibrium **list, const strut_scene *scene,
+                          const char *name) {
   for (size_t i = 0; i < count; i++)
     if (list[i]->name && strcmp(list[i]->name, name) == 0) return true;
   for (size_t i = 0; i < scene->configuration_count; i++)
@@ -128,13 +129,13 @@ static bool taken(size_t count, strut_equilibrium **list, const strut_scene *sce
   return false;
 }
 
-/* STEM-n with the first n from *n on that nothing is called yet. */
-static const char *numbered(size_t count, strut_equilibrium **list, const strut_scene *scene,
-                            const char *stem, int *n, strut_arena *arena) {
+/* STEM-n with the first unused n from *n on. */
+static const char *numbered_name(size_t count, strut_equilibrium **list, const strut_scene *scene,
+                                 const char *stem, int *n, strut_arena *arena) {
   const char *name;
   do {
     name = strut_arena_format(arena, "%s-%d", stem, (*n)++);
-  } while (name && taken(count, list, scene, name));
+  } while (name && is_name_taken(count, list, scene, name));
   return name;
 }
 
@@ -150,7 +151,7 @@ static bool name_on_set(const strut_model *model, const strut_configuration *c, 
       if (!lowest || e->rest_energy < lowest->rest_energy) lowest = e;
     }
     if (!lowest) return true;
-    lowest->name = *n == 1 ? c->name : numbered(count, list, model->scene, c->name, n, arena);
+    lowest->name = *n == 1 ? c->name : numbered_name(count, list, model->scene, c->name, n, arena);
     if (*n == 1) *n = 2;
     if (!lowest->name) return false;
   }
@@ -182,7 +183,7 @@ static const char *make_stem(const strut_scene *scene, const strut_equilibrium *
   size_t used = 0;
   int shown = 0;
   if (e->contact_count == 0) return kind_names[kind_of(e)];
-  bool held = e->supports && e->fate != STRUT_OUTCOME_STANDS;
+  bool held = e->supports && e->outcome != STRUT_OUTCOME_STANDS;
   if (held) used = (size_t)snprintf(text, sizeof text, "%s", HELD);
   for (size_t i = 0; i < scene->node_count && used < sizeof text; i++) {
     bool touches = false;
@@ -200,8 +201,8 @@ static const char *make_stem(const strut_scene *scene, const strut_equilibrium *
   return strut_arena_format(arena, "%s", text);
 }
 
-/* The i-th number of a description of the shape that no rigid motion changes; mirroring does. */
-static double invariant(const strut_model *model, const double *q, int32_t i) {
+/* The i-th invariant of the shape under rigid motions; mirroring changes it. */
+static double shape_invariant(const strut_model *model, const double *q, int32_t i) {
   int32_t node = i / 2, second = model->node_count > 1 ? 1 : 0;
   double x = q[2 * node] - q[0], y = q[2 * node + 1] - q[1];
   if (i % 2 == 0) return hypot(x, y) / model->size;
@@ -215,13 +216,15 @@ static bool comes_before(const strut_model *model, const strut_equilibrium *a,
   double scale = fmax(fabs(a->energy), fabs(b->energy));
   if (fabs(a->energy - b->energy) > SAME * scale) return a->energy < b->energy;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    double x = invariant(model, a->point.q, i), y = invariant(model, b->point.q, i);
+    double x = shape_invariant(model, a->point.q, i), y = shape_invariant(model, b->point.q, i);
     if (fabs(x - y) > 100 * SAME) return x < y;
   }
   return false;
 }
 
-/* Insertion sort: few share a stem, and it stands a comparison that rounding makes intransitive. */
+/*
+ * Insertion sort: few share a stem, and it tolerates a comparison that rounding makes intransitive.
+ */
 static void sort_by_energy(const strut_model *model, size_t count, unnamed *rows) {
   for (size_t i = 1; i < count; i++) {
     unnamed row = rows[i];
@@ -254,7 +257,7 @@ static strut_status name_by_contacts(const strut_model *model, size_t count,
     for (to = from + 1; to < rest && strcmp(rows[to].stem, rows[from].stem) == 0;) to++;
     sort_by_energy(model, to - from, rows + from);
     for (size_t i = from; i < to && good; i++) {
-      rows[i].e->name = numbered(count, list, model->scene, rows[i].stem, &n, arena);
+      rows[i].e->name = numbered_name(count, list, model->scene, rows[i].stem, &n, arena);
       good = rows[i].e->name;
     }
   }

@@ -8,7 +8,7 @@
 
 #include "engine/statics/equilibria/equilibria.h"
 
-/** What a shape may differ from a configuration that it bears the name of, in model sizes. */
+/** Largest distance of a shape from the configuration that names it, in model sizes. */
 #define STRUT_NAMED_WITHIN 0.05
 
 /**
@@ -31,7 +31,7 @@ strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, d
 strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
                                    strut_arena *arena);
 
-/** Could strut_name_equilibria give this name? */
+/** True if strut_name_equilibria may give this name. */
 bool strut_is_listed_name(const strut_scene *scene, const char *name);
 
 /** True where the set holds the same nodes, in any order. */

@@ -1,12 +1,111 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was found, in words: verdicts, what moves freely, why nothing can rest. */
+#include "engine/statics/equilibria/equilibrium_search.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/statics/equilibria/equilibrium_search.h"
-#include "engine/statics/equilibria/floppy.h"
 #include "engine/statics/equilibria/naming.h"
+#include "engine/statics/minimise.h"
+
+/* Nodes that move at least this share of the one that moves most. */
+static const double MOVES = 0.1;
+/* How far it is pushed, and how far it must stay away, in model sizes. */
+static const double PUSHED = 0.02, AWAY = 0.005;
+
+/* A velocity of one node, and a rate of turning about it. */
+typedef struct whole {
+  int32_t about;
+  double shift[2], turn;
+} whole;
+
+static double node_speed(const double *q, const double *mode, const whole *w, int32_t i) {
+  double dx = q[2 * i] - q[2 * w->about], dy = q[2 * i + 1] - q[2 * w->about + 1];
+  return hypot(mode[2 * i] - w->shift[0] + w->turn * dy,
+               mode[2 * i + 1] - w->shift[1] - w->turn * dx);
+}
+
+/* Flags the nodes that move besides w; their count. */
+static int32_t flag_moving(const strut_model *model, const strut_critical_point *point,
+                           const whole *w, uint8_t *flag) {
+  double most = 0.0;
+  int32_t count = 0;
+  for (int32_t i = 0; i < model->node_count; i++)
+    most = fmax(most, node_speed(point->q, point->softest, w, i));
+  for (int32_t i = 0; i < model->node_count; i++)
+    count += flag[i] = node_speed(point->q, point->softest, w, i) > MOVES * most;
+  return count;
+}
+
+/* The rigid motion that goes with node a, and with b as far as turning can. */
+static whole rigid_motion_of(const strut_critical_point *point, bool turns, int32_t a, int32_t b) {
+  const double *q = point->q, *mode = point->softest;
+  double dx = q[2 * b] - q[2 * a], dy = q[2 * b + 1] - q[2 * a + 1], square = dx * dx + dy * dy;
+  whole w = {.about = a, .shift = {mode[2 * a], turns ? mode[2 * a + 1] : 0.0}};
+  if (turns && square > 0)
+    w.turn = ((mode[2 * b + 1] - mode[2 * a + 1]) * dx - (mode[2 * b] - mode[2 * a]) * dy) / square;
+  return w;
+}
+
+/*
+ * flag (node_count): 1 where a node moves in point->softest, once the free rigid motion is added
+ * that keeps most nodes still.
+ */
+static void flag_floppy_nodes(const strut_model *model, const strut_critical_point *point,
+                              uint8_t *flag) {
+  whole still = {0}, best = still;
+  int32_t least = flag_moving(model, point, &still, flag);
+  bool turns = point->rigid == 3;
+  for (int32_t a = 0; a < model->node_count && point->rigid > 0; a++)
+    for (int32_t b = 0; b < (turns ? model->node_count : 1); b++) {
+      whole w = rigid_motion_of(point, turns, a, b);
+      int32_t count = flag_moving(model, point, &w, flag);
+      if (count > 0 && count < least) least = count, best = w;
+    }
+  flag_moving(model, point, &best, flag);
+}
+
+/* Largest distance moved, up to rigid motions if the structure is free. */
+static double distance_moved(const strut_model *model, const strut_critical_point *point,
+                             const double *q) {
+  double most = 0.0;
+  if (point->rigid > 0) return strut_shape_distance(model, point->q, q, false, NULL);
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    most = fmax(most, fabs(q[at] - point->q[at]));
+  return most;
+}
+
+/*
+ * True where the structure, pushed along point->softest by a fiftieth of its size and let down
+ * again, stays away at the same energy: else stiffness of a higher order brings it back, or it
+ * falls further. False when memory is out too.
+ */
+static bool stays_displaced(const strut_potential *p, const strut_critical_point *point) {
+  const strut_model *model = p->model;
+  size_t length = (size_t)model->length;
+  double size = model->size > 0 ? model->size : 1.0, most = 0.0, stiffest = 0.0;
+  strut_minimiser *minimiser = NULL;
+  double *q = strut_allocate(length, sizeof *q);
+  bool good = q && strut_minimiser_create(p, &minimiser, NULL) == STRUT_OK, stays = false;
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    most = fmax(most, fabs(point->softest[at]));
+  for (int32_t j = 0; j < model->members.count; j++)
+    stiffest = fmax(stiffest, model->members.stiffness[j]);
+  double same = 1e-12 * (fabs(point->potential) + stiffest * size * size);
+  for (int side = -1; side <= 1 && good && most > 0 && !stays; side += 2) {
+    memcpy(q, point->q, length * sizeof *q);
+    for (int32_t at = 0; at < 2 * model->node_count; at++)
+      q[at] += side * PUSHED * size / most * point->softest[at];
+    strut_descent end = strut_minimise(minimiser, q, 0.0);
+    stays = end.end == STRUT_DESCENT_REACHED && distance_moved(model, point, q) > AWAY * size &&
+            fabs(strut_potential_value(p, q) - point->potential) <= same;
+  }
+  strut_minimiser_free(minimiser);
+  strut_release(q);
+  return stays;
+}
+
+/* Verdicts, free motions and causes of instability in words. */
 
 enum { NAMES = 100 };
 
@@ -33,16 +132,16 @@ static void sum_parts(const strut_equilibrium_search *h, int32_t *parent, part *
     part *p = &parts[parent[i] = root(parent, i)];
     for (int c = 0; c < 2; c++) {
       p->held[c] = p->held[c] || model->fixed[2 * i + c];
-      if (!model->fixed[2 * i + c]) p->force[c] += h->world->force[2 * i + c];
+      if (!model->fixed[2 * i + c]) p->force[c] += h->potential->force[2 * i + c];
     }
   }
   for (int32_t i = 0; i < model->contacts.count && h->on_ground; i++)
     parts[parent[model->contacts.entry[i].node]].touches = true;
 }
 
-/* Why a part cannot be at rest: the forces on it against what could hold them. */
-static strut_instability_cause unrest_of(const strut_equilibrium_search *h, const part *p) {
-  double scale = 1e-12 * h->world->force_scale;
+/* Why a part cannot rest: the forces on it against the supports that could balance them. */
+static strut_instability_cause instability_of(const strut_equilibrium_search *h, const part *p) {
+  double scale = 1e-12 * h->potential->force_scale;
   bool across = !p->held[1] && fabs(p->force[1]) > scale;
   bool along = !p->held[0] && fabs(p->force[0]) > scale;
   if (!p->touches) return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
@@ -50,28 +149,28 @@ static strut_instability_cause unrest_of(const strut_equilibrium_search *h, cons
   return along ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
 }
 
-/* What friction would have to do: the force along the ground against the one that presses on it. */
-static void say_friction(const part *p, size_t room, char *text) {
+/* The friction coefficient that would hold the part: force along the ground over normal force. */
+static void describe_friction(const part *p, size_t room, char *text) {
   if (p->force[1] < 0)
-    snprintf(text, room, "with it, a coefficient of at least %.4g holds it",
+    snprintf(text, room, "a friction coefficient of at least %.4g holds it",
              fabs(p->force[0] / p->force[1]));
   else
-    snprintf(text, room, "with it too, as nothing presses it down");
+    snprintf(text, room, "friction cannot hold it, because nothing presses it down");
 }
 
-static void say_unrest(strut_equilibrium_search *h, strut_instability_cause unrest, const part *p,
-                       const uint8_t *flag) {
+static void describe_instability(strut_equilibrium_search *h, strut_instability_cause cause,
+                                 const part *p, const uint8_t *flag) {
   char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t count = 0;
-  say_friction(p, sizeof friction, friction);
+  describe_friction(p, sizeof friction, friction);
   for (int32_t i = 0; i < h->model->node_count; i++) count += flag[i];
   bool all = count == h->model->node_count;
-  if (!all) strut_list_nodes(&h->flat.scene, flag, sizeof names, names);
+  if (!all) strut_list_nodes(&h->level.scene, flag, sizeof names, names);
   const char *what = all ? "the structure" : "a part of the structure";
-  if (unrest == STRUT_INSTABILITY_FALLS)
+  if (cause == STRUT_INSTABILITY_FALLS)
     snprintf(remark, room, "nothing holds %s: it falls freely, %s", what, names);
-  else if (unrest == STRUT_INSTABILITY_LIFTED)
+  else if (cause == STRUT_INSTABILITY_LIFTED)
     snprintf(remark, room, "loads lift %s off the ground, %s", what, names);
   else
     snprintf(remark, room,
@@ -89,36 +188,37 @@ strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_s
   if (parent && parts && flag) {
     sum_parts(h, parent, parts);
     for (int32_t i = 0; i < nodes && worst == STRUT_INSTABILITY_NONE; i++)
-      if (parent[i] == i && (worst = unrest_of(h, &parts[i])) != STRUT_INSTABILITY_NONE) moves = i;
+      if (parent[i] == i && (worst = instability_of(h, &parts[i])) != STRUT_INSTABILITY_NONE)
+        moves = i;
     for (int32_t i = 0; i < nodes; i++) flag[i] = parent[i] == moves;
-    if (moves >= 0) say_unrest(h, worst, &parts[moves], flag);
+    if (moves >= 0) describe_instability(h, worst, &parts[moves], flag);
   }
   strut_arena_free(&scratch);
   return worst;
 }
 
-/* Does the free motion lead anywhere? Asked of the forces that it was found with. */
+/* True if the free motion leads away, under the potential that the equilibrium was found with. */
 static bool leads_away(const strut_equilibrium_search *h, const strut_equilibrium *e,
                        uint8_t *held) {
   strut_potential *potential = NULL;
-  if (!e->supports) return strut_floppy_stays(h->world, &e->point);
+  if (!e->supports) return stays_displaced(h->potential, &e->point);
   memset(held, 0, (size_t)h->model->length);
   strut_supports_hold(&h->supports, e->supports, held);
   bool stays = strut_potential_create(h->model, held, false, &potential, NULL) == STRUT_OK &&
-               strut_floppy_stays(potential, &e->point);
+               stays_displaced(potential, &e->point);
   strut_potential_free(potential);
   return stays;
 }
 
-/* True if it leads away at one energy. flag: (length) */
-static bool say_floppy(strut_equilibrium_search *h, const strut_equilibrium *e, uint8_t *flag,
-                       size_t room, char *text) {
+/* Describes a motion without stiffness; true if it leads away at equal energy. flag: (length) */
+static bool describe_floppy_motion(strut_equilibrium_search *h, const strut_equilibrium *e,
+                                   uint8_t *flag, size_t room, char *text) {
   char names[NAMES];
   int32_t count = 0;
   bool away = leads_away(h, e, flag);
-  strut_floppy_nodes(h->model, &e->point, flag);
+  flag_floppy_nodes(h->model, &e->point, flag);
   for (int32_t i = 0; i < h->model->node_count; i++) count += flag[i];
-  strut_list_nodes(&h->flat.scene, flag, sizeof names, names);
+  strut_list_nodes(&h->level.scene, flag, sizeof names, names);
   if (away)
     snprintf(text, room, "%s %s %s without stiffness", count == 1 ? "node" : "nodes", names,
              count == 1 ? "moves" : "move together");
@@ -128,10 +228,11 @@ static bool say_floppy(strut_equilibrium_search *h, const strut_equilibrium *e, 
   return away;
 }
 
-static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds,
-                     const strut_candidate_equilibrium *f, uint8_t *flag, strut_equilibrium *e) {
+static void describe_tipping(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds,
+                             const strut_candidate_equilibrium *f, uint8_t *flag,
+                             strut_equilibrium *e) {
   char names[NAMES];
-  const strut_scene *scene = &h->flat.scene;
+  const strut_scene *scene = &h->level.scene;
   const char *over = e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL;
   memset(flag, 0, (size_t)h->model->node_count);
   for (int32_t i = 0; i < e->contact_count; i++) flag[e->contacts[i]] = 1;
@@ -144,67 +245,67 @@ static void say_tips(strut_equilibrium_search *h, const strut_candidate_equilibr
   if (length < 0) e->verdict[0] = '\0';
 }
 
-static void say_no_rest(const strut_equilibrium_search *h, strut_equilibrium *e) {
+static void describe_no_rest(const strut_equilibrium_search *h, strut_equilibrium *e) {
   static const char *const why[] = {
       [STRUT_INSTABILITY_NONE] = "does not come to rest",
       [STRUT_INSTABILITY_FALLS] = "falls",
       [STRUT_INSTABILITY_SLIDES] = "slides along the ground without friction",
       [STRUT_INSTABILITY_LIFTED] = "is lifted off the ground"};
-  snprintf(e->verdict, sizeof e->verdict, "%s", why[h->unrest]);
+  snprintf(e->verdict, sizeof e->verdict, "%s", why[h->instability]);
 }
 
-static void say_one(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
-                    strut_candidate_equilibrium *f, uint8_t *flag) {
+static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
+                             strut_candidate_equilibrium *f, uint8_t *flag) {
   strut_equilibrium *e = &f->e;
   size_t room = sizeof e->verdict;
   char names[NAMES];
-  switch (e->fate) {
+  switch (e->outcome) {
     case STRUT_OUTCOME_STANDS: snprintf(e->verdict, room, "stands"); break;
-    case STRUT_OUTCOME_TIPS: say_tips(h, finds, f, flag, e); break;
+    case STRUT_OUTCOME_TIPS: describe_tipping(h, finds, f, flag, e); break;
     case STRUT_OUTCOME_BELOW_GROUND:
-      strut_list_nodes(&h->flat.scene, e->below, sizeof names, names);
+      strut_list_nodes(&h->level.scene, e->below, sizeof names, names);
       snprintf(e->verdict, room, "below ground (%s)", names);
       break;
-    case STRUT_OUTCOME_FLOPPY: say_floppy(h, e, flag, room, e->verdict); break;
+    case STRUT_OUTCOME_FLOPPY: describe_floppy_motion(h, e, flag, room, e->verdict); break;
     case STRUT_OUTCOME_UNSTABLE:
       snprintf(e->verdict, room, "unstable: %d negative eigenvalue%s", (int)e->point.negative,
                e->point.negative == 1 ? "" : "s");
       break;
-    default: say_no_rest(h, e); break;
+    default: describe_no_rest(h, e); break;
   }
 }
 
-/* Only where there is nothing better to stand in do free motions need a remark. */
-static void remark_on(strut_equilibrium_search *h, strut_candidate_equilibrium *finds, size_t count,
-                      uint8_t *flag) {
+/* Free motions need a remark only if no equilibrium stands. */
+static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
+                         size_t count, uint8_t *flag) {
   char *remark = h->out->remark;
   size_t room = sizeof h->out->remark;
   int32_t floppy = -1;
   for (size_t i = 0; i < count; i++) {
-    if (finds[i].e.fate == STRUT_OUTCOME_STANDS) return;
-    if (floppy < 0 && finds[i].e.fate == STRUT_OUTCOME_FLOPPY) floppy = (int32_t)i;
+    if (finds[i].e.outcome == STRUT_OUTCOME_STANDS) return;
+    if (floppy < 0 && finds[i].e.outcome == STRUT_OUTCOME_FLOPPY) floppy = (int32_t)i;
   }
   if (floppy >= 0) {
-    bool away = say_floppy(h, &finds[floppy].e, flag, room, remark);
+    bool away = describe_floppy_motion(h, &finds[floppy].e, flag, room, remark);
     size_t used = strlen(remark);
     if (away)
-      snprintf(remark + used, room - used, ": '%s' is one of many shapes of one energy",
+      snprintf(remark + used, room - used,
+               ": '%s' is one of a continuous family of shapes of equal energy",
                finds[floppy].e.name);
     else
       snprintf(remark + used, room - used, " in '%s'; pushed further, it does not stay",
                finds[floppy].e.name);
   } else if (count == 0) {
-    snprintf(remark, room, "no equilibrium was found from any of %lld starts",
-             (long long)h->out->starts);
-  } else if (h->flat.askew >= 0) {
+    snprintf(remark, room, "no equilibrium was found from %lld starts", (long long)h->out->starts);
+  } else if (h->level.oblique_node >= 0) {
     snprintf(remark, room,
-             "node '%s' is held in one direction only, which no slope can be turned away from: "
-             "no contacts were held in turn, only the real ground was searched",
-             h->flat.scene.nodes[h->flat.askew].name);
+             "node '%s' is held in one direction only, so the slope cannot be turned level: only "
+             "the real ground was searched, without holding contacts in turn",
+             h->level.scene.nodes[h->level.oblique_node].name);
   } else if (h->supports.many) {
     snprintf(remark, room,
-             "there are too many pairs of contact nodes to hold each in turn: only the real ground "
-             "was searched; name some by equilibria.supports");
+             "too many pairs of contact nodes to hold each in turn: only the real ground was "
+             "searched; list pairs in equilibria.supports");
   }
 }
 
@@ -212,6 +313,6 @@ void strut_report_candidates(strut_equilibrium_search *h, strut_candidate_equili
                              size_t count) {
   uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, 1);
   if (!flag) return;
-  for (size_t i = 0; i < count; i++) say_one(h, finds, &finds[i], flag);
-  if (!h->out->remark[0]) remark_on(h, finds, count, flag);
+  for (size_t i = 0; i < count; i++) describe_outcome(h, finds, &finds[i], flag);
+  if (!h->out->remark[0]) write_remark(h, finds, count, flag);
 }

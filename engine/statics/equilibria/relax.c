@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/relax.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,14 +12,14 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/statics/search/critical.h"
 
-/* Simulated steps between two looks at the energy; the pause grows while nothing is decided. */
+/* Simulated steps between two checks of the energy; they grow while nothing is decided. */
 static const int64_t FIRST_LOOK = 128, LAST_LOOK = 8192;
 /* Steps after which it counts as moving on, however short they are beside initial.settle.limit. */
 static const int64_t MOST_STEPS = 10000000;
 /* Quenches in a row that end in one place, and the share of the first excess energy still there. */
 enum { AGREE = 5 };
 static const double DIED = 1e-3;
-/* Two shapes are one, in model sizes; and this far away it has left. */
+/* Distances, in model sizes: two shapes are one; the structure has moved away. */
 static const double SAME = 1e-5, GONE = 1e3;
 /* The share of the stable step; folded shapes are stiffer than the start that the limit is for. */
 static const double CAREFUL = 0.5;
@@ -47,7 +48,7 @@ static bool loses_energy(const strut_model *model) {
   return false;
 }
 
-/* What only a simulation needs; a model that cannot be simulated does without. */
+/* Creates state and integrator, unless the model cannot be simulated. */
 static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
   strut_step_limit limit;
   if (!r->model->mass || !loses_energy(r->model) || r->potential->n > STRUT_DENSE_STATICS)
@@ -65,6 +66,7 @@ static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
 
 strut_status strut_relaxer_create(const strut_potential *potential, double limit,
                                   strut_relaxer **result, strut_error *error) {
+  assert(limit > 0.0);
   strut_relaxer *r = *result = strut_allocate(1, sizeof *r);
   if (!r) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   size_t length = (size_t)potential->model->length;
@@ -126,21 +128,21 @@ static double total_energy(const strut_relaxer *r) {
          strut_energy_kinetic(r->model, r->state->v);
 }
 
-static bool has_left(const strut_model *model, const double *start, const double *q) {
+static bool has_escaped(const strut_model *model, const double *start, const double *q) {
   double bound = GONE * (model->size > 0 ? model->size : 1.0);
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (!(fabs(q[i] - start[i]) <= bound)) return true;
   return false;
 }
 
-/* Is the present shape's minimum the only place left to go to? */
+/* Evidence that the minimum below the present shape is the only one left within reach. */
 typedef struct verdict {
   double excess; /* at the first look [J] */
   int agreed;
 } verdict;
 
-static bool decided(strut_relaxer *r, double energy, const double *q, strut_pass_of passes,
-                    const void *context, verdict *v) {
+static bool is_decided(strut_relaxer *r, double energy, const double *q, strut_pass_of passes,
+                       const void *context, verdict *v) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   memcpy(r->quenched, q, bytes);
   strut_descent descent = strut_relaxer_quench(r, r->quenched);
@@ -168,21 +170,21 @@ static outcome simulate(strut_relaxer *r, double step, strut_pass_of passes, con
   memcpy(r->state->q, r->start, bytes);
   memset(r->state->v, 0, bytes);
   double first = total_energy(r), look = (double)FIRST_LOOK;
-  if (decided(r, first, r->state->q, passes, context, &v)) return DECIDED;
+  if (is_decided(r, first, r->state->q, passes, context, &v)) return DECIDED;
   while (r->state->step < MOST_STEPS && (double)r->state->step * step < r->limit) {
     if (interrupt && *interrupt) return STOPPED;
     r->method->advance(r->model, r->state, r->workspace, step, (int64_t)look);
     double energy = total_energy(r);
     /* Nothing feeds the motion: an energy above the first comes from the step. */
     if (!isfinite(energy) || energy > first + GROWN * fabs(first)) return UNSTABLE_STEP;
-    if (has_left(r->model, r->start, r->state->q)) return LEFT;
-    if (decided(r, energy, r->state->q, passes, context, &v)) return DECIDED;
+    if (has_escaped(r->model, r->start, r->state->q)) return LEFT;
+    if (is_decided(r, energy, r->state->q, passes, context, &v)) return DECIDED;
     look = fmin(1.1 * look, (double)LAST_LOOK);
   }
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
 }
 
-/* The paper's break-off with all speeds 0: the residual, and what it accelerates. */
+/* Largest acceleration at rest: the paper's break-off criterion with all speeds 0. */
 static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed) {
   const strut_model *model = r->model;
   if (!r->state) return;
@@ -193,8 +195,8 @@ static void judge_rest(strut_relaxer *r, const double *q, strut_relaxed *relaxed
   relaxed->acceleration = strut_largest_magnitude(r->last, 2 * model->node_count);
 }
 
-/* Downhill from where it is, with the centre of mass brought to x. */
-static void come_down(strut_relaxer *r, double x, double *q, strut_relaxed *relaxed) {
+/* Minimises from q, with the centre of mass moved to x. */
+static void quench_to_rest(strut_relaxer *r, double x, double *q, strut_relaxed *relaxed) {
   strut_descent descent = strut_relaxer_quench(r, q);
   relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS
                  : descent.end == STRUT_DESCENT_RUNAWAY ? STRUT_RELAXED_LEAVES
@@ -206,7 +208,7 @@ static void come_down(strut_relaxer *r, double x, double *q, strut_relaxed *rela
 
 void strut_relax_down(strut_relaxer *r, double *q, strut_relaxed *relaxed) {
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
-  come_down(r, centre_x(r->model, q), q, relaxed);
+  quench_to_rest(r, centre_x(r->model, q), q, relaxed);
 }
 
 strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, const void *context,
@@ -228,7 +230,7 @@ strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, cons
   if (end == STOPPED)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
   if (end == DECIDED)
-    come_down(r, centre_x(r->model, r->start), q, relaxed);
+    quench_to_rest(r, centre_x(r->model, r->start), q, relaxed);
   else
     relaxed->end = end == LEFT ? STRUT_RELAXED_LEAVES : STRUT_RELAXED_MOVES;
   return STRUT_OK;

@@ -13,8 +13,8 @@
 #include "engine/statics/minimise.h"
 
 /**
- * The energy that it takes to leave the basin of the minimum q, over the lowest pass known [J];
- * -INFINITY where none is known: then the end shows only when the motion has died down.
+ * Potential energy of the lowest known pass out of the basin of the minimum q [J]; -INFINITY if
+ * none is known: then the end is known only when the motion has died down.
  */
 typedef double (*strut_pass_of)(const void *context, const double *q);
 
@@ -36,20 +36,21 @@ typedef struct strut_relaxed {
 typedef struct strut_relaxer strut_relaxer;
 /**
  * potential: of a model without actuators, friction and loads on a signal, its ground included. It
- * must outlive the relaxer. limit: of the time that a relaxation simulates [s]. Simulated are models with mass, some damping and up to
- * STRUT_DENSE_STATICS free coordinates; others go downhill from where they are.
+ * must outlive the relaxer. limit: of the time that a relaxation simulates [s]. Simulated are
+ * models with mass, some damping and up to STRUT_DENSE_STATICS free coordinates; others go downhill
+ * from where they are.
  */
 strut_status strut_relaxer_create(const strut_potential *potential, double limit,
                                   strut_relaxer **relaxer, strut_error *error);
 void strut_relaxer_free(strut_relaxer *relaxer);
 
-/** Whether it has a motion to simulate. */
+/** True if the model can be simulated. */
 bool strut_relaxer_simulates(const strut_relaxer *relaxer);
 
-/** Goes downhill from q (length) to the nearest minimum as strut_minimise does. */
+/** Minimises from q (length) as strut_minimise does. */
 strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *q);
 
-/** The same without a motion, for a q that can end in one place only: as strut_relax tells it. */
+/** Minimises without simulation, for a q with one possible end; reports as strut_relax does. */
 void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed);
 
 /**

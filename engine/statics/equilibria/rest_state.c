@@ -10,12 +10,12 @@
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
-/* A start that has less far to go is at rest but for the ground's compliance, in model sizes. */
+/* A start nearer to its minimum is at rest up to the ground's compliance; in model sizes. */
 static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
-static double member_forces(const strut_model *model, const double *q) {
+static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
@@ -25,34 +25,34 @@ static double member_forces(const strut_model *model, const double *q) {
   return sum;
 }
 
-static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *stand) {
+static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {
   const strut_contact_table *c = &model->contacts;
-  stand->closed = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->closed);
-  stand->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *stand->normal);
-  if (!stand->closed || !stand->normal) return false;
+  rest->closed = strut_arena_allocate(arena, (size_t)c->count, sizeof *rest->closed);
+  rest->normal = strut_arena_allocate(arena, (size_t)c->count, sizeof *rest->normal);
+  if (!rest->closed || !rest->normal) return false;
   for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap(c, i, stand->q);
+    double gap = strut_contact_gap(c, i, rest->q);
     if (!(gap < 0)) continue;
-    stand->closed[stand->closed_count] = c->entry[i].node;
-    stand->normal[stand->closed_count++] = -c->entry[i].stiffness * gap;
+    rest->closed[rest->closed_count] = c->entry[i].node;
+    rest->normal[rest->closed_count++] = -c->entry[i].stiffness * gap;
   }
   return true;
 }
 
-/* All but name and q from q. */
-static strut_status judge(const strut_model *model, strut_arena *arena, strut_rest_state *stand,
-                          strut_error *error) {
+/* Fills in all fields but name and q, from q. */
+static strut_status judge_rest(const strut_model *model, strut_arena *arena, strut_rest_state *rest,
+                               strut_error *error) {
   strut_potential *potential = NULL;
   strut_status status = strut_potential_create(model, NULL, true, &potential, error);
   if (status) return status;
   double *g = strut_allocate((size_t)potential->n, sizeof *g);
-  if (g && find_closed(model, arena, stand)) {
-    strut_potential_gradient(potential, stand->q, g);
-    stand->residual = strut_largest_magnitude(g, potential->n);
-    stand->scale = potential->force_scale;
-    if (!(stand->scale > 0)) stand->scale = member_forces(model, stand->q);
-    double rounding = 4 * strut_potential_rounding(potential, stand->q);
-    stand->at_rest = stand->residual <= fmax(AT_REST * stand->scale, rounding);
+  if (g && find_closed(model, arena, rest)) {
+    strut_potential_gradient(potential, rest->q, g);
+    rest->residual = strut_largest_magnitude(g, potential->n);
+    rest->scale = potential->force_scale;
+    if (!(rest->scale > 0)) rest->scale = sum_member_forces(model, rest->q);
+    double rounding = 4 * strut_potential_rounding(potential, rest->q);
+    rest->at_rest = rest->residual <= fmax(AT_REST * rest->scale, rounding);
   } else {
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }
@@ -61,47 +61,47 @@ static strut_status judge(const strut_model *model, strut_arena *arena, strut_re
   return status;
 }
 
-/* A relaxation by itself: the rooms of a hunt without the searches. */
-static strut_status prepare(strut_equilibrium_search *h, const strut_model *model) {
-  strut_status status = strut_level_frame_create(model->scene, &h->flat, h->error);
-  if (!status) status = strut_model_compile(&h->flat.scene, &h->model, h->error);
+/* Prepares a search for a single relaxation. */
+static strut_status prepare_relaxation(strut_equilibrium_search *h, const strut_model *model) {
+  strut_status status = strut_level_frame_create(model->scene, &h->level, h->error);
+  if (!status) status = strut_model_compile(&h->level.scene, &h->model, h->error);
   if (!status) {
     h->on_ground = h->model->contacts.count > 0;
-    status = strut_potential_create(h->model, NULL, h->on_ground, &h->world, h->error);
+    status = strut_potential_create(h->model, NULL, h->on_ground, &h->potential, h->error);
   }
   if (!status && strut_equilibrium_search_instability(h) != STRUT_INSTABILITY_NONE)
     status = strut_fail(h->error, STRUT_NOT_SETTLED, "%s", h->out->remark);
-  if (!status && h->world->n > 0)
-    status = strut_relaxer_create(h->world, h->experiment->settle.limit, &h->relaxer, h->error);
+  if (!status && h->potential->n > 0)
+    status = strut_relaxer_create(h->potential, h->experiment->settle.limit, &h->relaxer, h->error);
   return status;
 }
 
-static void clean_up(strut_equilibrium_search *h) {
+static void free_search(strut_equilibrium_search *h) {
   strut_relaxer_free(h->relaxer);
-  strut_potential_free(h->world);
+  strut_potential_free(h->potential);
   strut_model_free(h->model);
-  strut_level_frame_free(&h->flat);
+  strut_level_frame_free(&h->level);
   strut_arena_free(&h->out->arena);
 }
 
 /* The node that moved most from one shape to the other. */
-static const char *farthest(const strut_equilibrium_search *h, const double *from,
-                            const double *to) {
+static const char *farthest_node(const strut_equilibrium_search *h, const double *from,
+                                 const double *to) {
   int32_t node = 0;
   double most = -1.0;
   for (int32_t i = 0; i < h->model->node_count; i++) {
     double moved = hypot(to[2 * i] - from[2 * i], to[2 * i + 1] - from[2 * i + 1]);
     if (moved > most) most = moved, node = i;
   }
-  return h->flat.scene.nodes[node].name;
+  return h->level.scene.nodes[node].name;
 }
 
-/* q (level coordinates) goes where the structure comes to rest from it. */
-static strut_status relax(strut_equilibrium_search *h, const char *what, double *q) {
+/* Moves q (level coordinates) to where the structure comes to rest from it. */
+static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what, double *q) {
   size_t bytes = (size_t)h->model->length * sizeof *q;
   strut_relaxed relaxed;
   strut_status status = STRUT_OK;
-  if (h->world->n == 0) return STRUT_OK;
+  if (h->potential->n == 0) return STRUT_OK;
   double *near = strut_arena_allocate(&h->out->arena, 1, bytes);
   double *from = strut_arena_allocate(&h->out->arena, 1, bytes);
   if (!near || !from) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
@@ -115,24 +115,24 @@ static strut_status relax(strut_equilibrium_search *h, const char *what, double 
   else
     status = strut_relax(h->relaxer, q, NULL, NULL, NULL, &relaxed, h->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
-  return strut_fail(h->error, STRUT_NOT_SETTLED,
-                    relaxed.end == STRUT_RELAXED_LEAVES
-                        ? "from %s the structure moves off without end, %s farthest: nothing "
-                          "holds it there"
-                        : "from %s the structure does not come to rest within "
-                          "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
-                          "larger limit, or more damping",
-                    what, farthest(h, from, q));
+  return strut_fail(
+      h->error, STRUT_NOT_SETTLED,
+      relaxed.end == STRUT_RELAXED_LEAVES
+          ? "from %s the structure moves away without end, %s farthest: nothing holds it there"
+          : "from %s the structure does not come to rest within "
+            "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
+            "larger limit, or more damping",
+      what, farthest_node(h, from, q));
 }
 
-static strut_status from_start(strut_equilibrium_search *h, double *q) {
+static strut_status relax_from_start(strut_equilibrium_search *h, double *q) {
   memcpy(q, h->model->start, (size_t)h->model->length * sizeof *q);
-  return relax(h, "the scene's start", q);
+  return relax_to_rest(h, "the scene's start", q);
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
-static bool fits(strut_equilibrium_search *h, const strut_configuration *c, const double *shape,
-                 const double *q, strut_node_set *rests_on) {
+static bool fits_configuration(strut_equilibrium_search *h, const strut_configuration *c,
+                               const double *shape, const double *q, strut_node_set *rests_on) {
   strut_equilibrium e = {0};
   if (strut_equilibrium_search_contacts(h, q, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
@@ -143,24 +143,26 @@ static bool fits(strut_equilibrium_search *h, const strut_configuration *c, cons
                        STRUT_NAMED_WITHIN * h->model->size;
 }
 
-/* From the configuration's shape; *found tells whether it stands there, else *rests_on on what. */
-static strut_status from_shape(strut_equilibrium_search *h, const strut_configuration *c, double *q,
-                               bool *found, strut_node_set *rests_on) {
-  size_t nodes = h->flat.scene.node_count;
+/*
+ * Relaxes from the configuration's shape; *found: it stands there; else *rests_on has its contacts.
+ */
+static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_configuration *c,
+                                     double *q, bool *found, strut_node_set *rests_on) {
+  size_t nodes = h->level.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
   if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
   memcpy(shape, c->position[0], 2 * nodes * sizeof *shape);
-  for (size_t i = 0; i < nodes; i++) /* what is held stays where it is held */
+  for (size_t i = 0; i < nodes; i++) /* held coordinates stay */
     for (size_t k = 0; k < 2; k++)
-      if (h->flat.scene.nodes[i].fixed[k]) shape[2 * i + k] = h->flat.scene.nodes[i].start[k];
+      if (h->level.scene.nodes[i].fixed[k]) shape[2 * i + k] = h->level.scene.nodes[i].start[k];
   memcpy(q, shape, (size_t)h->model->length * sizeof *q);
-  strut_status status = relax(h, "the configuration's shape", q);
+  strut_status status = relax_to_rest(h, "the configuration's shape", q);
   if (status == STRUT_NOT_SETTLED) return STRUT_OK;
-  *found = !status && fits(h, c, shape, q, rests_on);
+  *found = !status && fits_configuration(h, c, shape, q, rests_on);
   return status;
 }
 
-static strut_status take_named(const strut_model *model, const strut_experiment *experiment,
+static strut_status find_named(const strut_model *model, const strut_experiment *experiment,
                                const strut_node_set *set, const char *name, double *q, bool *found,
                                strut_error *error) {
   strut_equilibria_options options = {.standing_only = true, .supports = set};
@@ -168,7 +170,7 @@ static strut_status take_named(const strut_model *model, const strut_experiment 
   strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   for (size_t i = 0; i < all.count && !status && !*found; i++) {
     const strut_equilibrium *e = &all.list[i];
-    if (e->fate != STRUT_OUTCOME_STANDS || strcmp(e->name, name) != 0) continue;
+    if (e->outcome != STRUT_OUTCOME_STANDS || strcmp(e->name, name) != 0) continue;
     memcpy(q, e->rest, (size_t)model->length * sizeof *q);
     *found = true;
   }
@@ -176,17 +178,21 @@ static strut_status take_named(const strut_model *model, const strut_experiment 
   return status;
 }
 
-/* On its contact sets in turn, else on all supports. In the original's coordinates. */
-static strut_status by_search(const strut_model *model, const strut_experiment *experiment,
-                              const strut_configuration *c, double *q,
-                              const strut_node_set *rests_on, strut_error *error) {
+/*
+ * Searches on the configuration's contact sets in turn, else on all supports; q in original
+ * coordinates.
+ */
+static strut_status search_configuration(const strut_model *model,
+                                         const strut_experiment *experiment,
+                                         const strut_configuration *c, double *q,
+                                         const strut_node_set *rests_on, strut_error *error) {
   bool found = false;
   strut_status status = STRUT_OK;
   for (size_t k = 0; k < c->set_count && !status && !found; k++)
-    status = take_named(model, experiment, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q,
+    status = find_named(model, experiment, c->sets[k].count == 2 ? &c->sets[k] : NULL, c->name, q,
                         &found, error);
   if (!status && !found && c->set_count == 0)
-    status = take_named(model, experiment, NULL, c->name, q, &found, error);
+    status = find_named(model, experiment, NULL, c->name, q, &found, error);
   if (status || found) return status;
   char instead[200] = "";
   size_t used = 0;
@@ -197,11 +203,10 @@ static strut_status by_search(const strut_model *model, const strut_experiment *
     if (n < 0) break;
     used += (size_t)n;
   }
-  return strut_fail(error, STRUT_NOT_SETTLED,
-                    "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut "
-                    "equilibria' lists what there is",
-                    c->name, c->set_count ? " on its contacts" : "",
-                    c->shaped ? " in about its shape" : "", instead);
+  return strut_fail(
+      error, STRUT_NOT_SETTLED,
+      "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut equilibria' lists all",
+      c->name, c->set_count ? " on its contacts" : "", c->shaped ? " near its shape" : "", instead);
 }
 
 static const strut_configuration *find_configuration(const strut_scene *scene, const char *name) {
@@ -210,7 +215,7 @@ static const strut_configuration *find_configuration(const strut_scene *scene, c
   return NULL;
 }
 
-static strut_status unknown(const strut_scene *scene, const char *name, strut_error *error) {
+static strut_status report_unknown(const strut_scene *scene, const char *name, strut_error *error) {
   char names[300] = "";
   size_t used = 0;
   for (size_t i = 0; i < scene->configuration_count && used < sizeof names; i++) {
@@ -219,14 +224,13 @@ static strut_status unknown(const strut_scene *scene, const char *name, strut_er
     used += (size_t)n;
   }
   return strut_fail(error, STRUT_USAGE,
-                    "there is no configuration '%.100s'; choose among: start, drawn%s", name,
-                    names);
+                    "unknown configuration '%.100s'; choose one of: start, drawn%s", name, names);
 }
 
 /* The equilibrium of that name in the list that the scene's own search makes. */
-static strut_status from_list(const strut_model *model, const strut_experiment *experiment,
-                              const char *name, strut_arena *arena, strut_rest_state *stand,
-                              strut_error *error) {
+static strut_status find_in_list(const strut_model *model, const strut_experiment *experiment,
+                                 const char *name, strut_arena *arena, strut_rest_state *rest,
+                                 strut_error *error) {
   strut_equilibria_options options = {0};
   strut_equilibria all;
   strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
@@ -235,77 +239,80 @@ static strut_status from_list(const strut_model *model, const strut_experiment *
     const strut_equilibrium *e = &all.list[i];
     if (strcmp(e->name, name) != 0) continue;
     found = true;
-    stand->name = strut_arena_text(arena, name, strlen(name));
-    if (!stand->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-    bool stands = e->fate == STRUT_OUTCOME_STANDS && e->rest;
-    memcpy(stand->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *stand->q);
+    rest->name = strut_arena_text(arena, name, strlen(name));
+    if (!rest->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    bool stands = e->outcome == STRUT_OUTCOME_STANDS && e->rest;
+    memcpy(rest->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *rest->q);
   }
   strut_equilibria_free(&all);
   if (status || found) return status;
   return strut_fail(error, STRUT_USAGE,
-                    "there is no equilibrium '%.100s'; 'strut equilibria' lists what there is",
-                    name);
+                    "unknown equilibrium '%.100s'; 'strut equilibria' lists all", name);
 }
 
-static strut_status seek(const strut_model *model, const strut_experiment *experiment,
-                         const strut_configuration *c, double *q, strut_error *error) {
+static strut_status find_rest(const strut_model *model, const strut_experiment *experiment,
+                              const strut_configuration *c, double *q, strut_error *error) {
   strut_equilibria scratch = {0};
   strut_equilibrium_search h = {.experiment = experiment, .out = &scratch, .error = error};
   strut_node_set rests_on = {0};
   bool found = !c, turned = true;
-  strut_status status = prepare(&h, model);
-  if (!status && !c) status = from_start(&h, q);
+  strut_status status = prepare_relaxation(&h, model);
+  if (!status && !c) status = relax_from_start(&h, q);
   if (!status && c && c->shaped)
-    status = from_shape(&h, &h.flat.scene.configurations[c - model->scene->configurations], q,
-                        &found, &rests_on);
+    status = relax_from_shape(&h, &h.level.scene.configurations[c - model->scene->configurations],
+                              q, &found, &rests_on);
   if (!status && !found) {
     turned = false;
-    status = by_search(model, experiment, c, q, &rests_on, error);
+    status = search_configuration(model, experiment, c, q, &rests_on, error);
   }
-  if (!status && turned) strut_level_frame_to_original(&h.flat, (size_t)model->node_count, q);
-  clean_up(&h);
+  if (!status && turned) strut_level_frame_to_original(&h.level, (size_t)model->node_count, q);
+  free_search(&h);
   return status;
 }
 
-/* What the scene's run starts from. Friction, where it is kept, may hold what does not rest else. */
-static strut_status from_settling(const strut_model *model, const strut_experiment *experiment,
-                                  strut_arena *arena, strut_rest_state *stand, strut_error *error) {
+/*
+ * Settles the scene as its run does. Friction, if kept, may hold a shape that is no equilibrium
+ * without.
+ */
+static strut_status settle_scene(const strut_model *model, const strut_experiment *experiment,
+                                 strut_arena *arena, strut_rest_state *rest, strut_error *error) {
   double time;
-  strut_status status = strut_settle_experiment(model, experiment, NULL, NULL, stand->q, &time,
-                                                &stand->settle, error);
-  if (!status) status = judge(model, arena, stand, error);
-  if (!experiment->settle.friction) stand->at_rest = true;
+  strut_status status =
+      strut_settle_experiment(model, experiment, NULL, NULL, rest->q, &time, &rest->settle, error);
+  if (!status) status = judge_rest(model, arena, rest, error);
+  if (!experiment->settle.friction) rest->at_rest = true;
   return status;
 }
 
 strut_status strut_rest_state_find(const strut_model *model, const strut_experiment *experiment,
-                                   const char *name, strut_arena *arena, strut_rest_state *stand,
+                                   const char *name, strut_arena *arena, strut_rest_state *rest,
                                    strut_error *error) {
   const strut_scene *scene = model->scene;
   const strut_configuration *c = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
-  *stand = (strut_rest_state){.name = start ? "start" : "drawn"};
-  stand->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *stand->q);
-  if (!stand->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (name && (c = find_configuration(scene, name))) start = drawn = false; /* called so */
+  *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
+  rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
+  if (!rest->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (name && (c = find_configuration(scene, name)))
+    start = drawn = false; /* a configuration has this name */
   if (!c && !start && !drawn) {
-    if (!strut_is_listed_name(scene, name)) return unknown(scene, name, error);
-    strut_status status = from_list(model, experiment, name, arena, stand, error);
-    return status ? status : judge(model, arena, stand, error);
+    if (!strut_is_listed_name(scene, name)) return report_unknown(scene, name, error);
+    strut_status status = find_in_list(model, experiment, name, arena, rest, error);
+    return status ? status : judge_rest(model, arena, rest, error);
   }
   if (!c && start && scene->start_equilibrium >= 0)
     c = &scene->configurations[scene->start_equilibrium];
-  if (c) stand->name = c->name;
+  if (c) rest->name = c->name;
   if (drawn) {
     for (size_t i = 0; i < scene->node_count; i++)
-      memcpy(stand->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
-    return judge(model, arena, stand, error);
+      memcpy(rest->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
+    return judge_rest(model, arena, rest, error);
   }
   if (!c && experiment->settle.wanted && model->mass)
-    return from_settling(model, experiment, arena, stand, error);
-  strut_status status = seek(model, experiment, c, stand->q, error);
-  if (!status) status = judge(model, arena, stand, error);
-  stand->at_rest = true;
+    return settle_scene(model, experiment, arena, rest, error);
+  strut_status status = find_rest(model, experiment, c, rest->q, error);
+  if (!status) status = judge_rest(model, arena, rest, error);
+  rest->at_rest = true;
   return status;
 }
 
@@ -315,13 +322,13 @@ strut_status strut_resolve_start_equilibrium(strut_setup *setup, strut_error *er
   const char *name = scene->configurations[scene->start_equilibrium].name;
   strut_model *model = NULL;
   strut_arena arena = {0};
-  strut_rest_state stand;
+  strut_rest_state rest;
   strut_status status = strut_model_compile(scene, &model, error);
   if (!status)
-    status = strut_rest_state_find(model, &setup->experiment, name, &arena, &stand, error);
+    status = strut_rest_state_find(model, &setup->experiment, name, &arena, &rest, error);
   for (size_t i = 0; i < scene->node_count && !status; i++)
     for (size_t c = 0; c < 2; c++)
-      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = stand.q[2 * i + c];
+      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = rest.q[2 * i + c];
   if (!status) scene->start_equilibrium = -1;
   strut_arena_free(&arena);
   strut_model_free(model);

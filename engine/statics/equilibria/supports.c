@@ -1,9 +1,126 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/supports.h"
 
+#include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
+
+/* Turns vectors counterclockwise by the angle of c, s; the identity is exact. */
+static void turn_vectors(double c, double s, size_t count, double *xy) {
+  if (s == 0.0 && c == 1.0) return;
+  for (size_t i = 0; i < count; i++, xy += 2) {
+    double x = xy[0], y = xy[1];
+    xy[0] = c * x - s * y;
+    xy[1] = s * x + c * y;
+  }
+}
+
+void strut_level_frame_to_original(const strut_level_frame *level, size_t count, double *xy) {
+  turn_vectors(level->cosine, level->sine, count, xy);
+}
+
+void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy) {
+  turn_vectors(level->cosine, -level->sine, count, xy);
+}
+
+/* A node that is held in x alone or in y alone has no such support in turned coordinates. */
+static int32_t find_oblique_node(const strut_scene *scene) {
+  if (!scene->ground.present || scene->ground.slope == 0.0) return -1;
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (scene->nodes[i].fixed[0] != scene->nodes[i].fixed[1]) return (int32_t)i;
+  return -1;
+}
+
+static void *copy_array(strut_arena *arena, const void *from, size_t count, size_t size) {
+  void *copy = strut_arena_allocate(arena, count, size);
+  if (copy && count) memcpy(copy, from, count * size);
+  return copy;
+}
+
+static bool copy_arrays(strut_level_frame *level) {
+  strut_scene *s = &level->scene;
+  s->nodes = copy_array(&level->arena, s->nodes, s->node_count, sizeof *s->nodes);
+  s->members = copy_array(&level->arena, s->members, s->member_count, sizeof *s->members);
+  s->contacts = copy_array(&level->arena, s->contacts, s->contact_count, sizeof *s->contacts);
+  s->loads = copy_array(&level->arena, s->loads, s->load_count, sizeof *s->loads);
+  s->configurations = copy_array(&level->arena, s->configurations, s->configuration_count,
+                                 sizeof *s->configurations);
+  if (!s->nodes || !s->members || !s->contacts || !s->loads || !s->configurations) return false;
+  for (size_t i = 0; i < s->configuration_count; i++) {
+    strut_configuration *c = &s->configurations[i];
+    if (c->position)
+      c->position = copy_array(&level->arena, c->position, s->node_count, sizeof *c->position);
+    if (c->shaped && !c->position) return false;
+  }
+  return true;
+}
+
+/* Rest lengths as resolved in the original, so that turning changes no bit of them. */
+static void keep_rest_lengths(const strut_scene *original, strut_scene *s) {
+  for (size_t j = 0; j < s->member_count; j++) {
+    strut_rest rest;
+    if (!strut_member_rest(original, j, &rest)) continue;
+    s->members[j].rest_kind = STRUT_REST_LENGTH;
+    s->members[j].rest_value = rest.length;
+    s->members[j].stiffness = rest.stiffness;
+    s->members[j].axial_stiffness = 0.0;
+  }
+}
+
+static void remove_motion(strut_scene *s) {
+  size_t kept = 0;
+  s->actuator_count = 0;
+  s->ground.belt_speed = 0.0;
+  for (size_t i = 0; i < s->load_count; i++)
+    if (s->loads[i].signal < 0) s->loads[kept++] = s->loads[i];
+  s->load_count = kept;
+  for (size_t i = 0; i < s->contact_count; i++) s->contacts[i].friction.law = STRUT_FRICTION_NONE;
+  for (size_t i = 0; i < s->node_count; i++)
+    s->nodes[i].velocity[0] = s->nodes[i].velocity[1] = 0.0;
+}
+
+static void make_level(strut_level_frame *level) {
+  strut_scene *s = &level->scene;
+  if (level->sine == 0.0) return;
+  s->ground.height *= level->cosine;
+  s->ground.slope = 0.0;
+  strut_level_frame_from_original(level, 1, s->gravity);
+  for (size_t i = 0; i < s->node_count; i++) {
+    strut_level_frame_from_original(level, 1, s->nodes[i].position);
+    strut_level_frame_from_original(level, 1, s->nodes[i].start);
+  }
+  for (size_t i = 0; i < s->load_count; i++)
+    strut_level_frame_from_original(level, 1, s->loads[i].force);
+  for (size_t i = 0; i < s->configuration_count; i++)
+    if (s->configurations[i].position)
+      strut_level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
+}
+
+strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *level,
+                                      strut_error *error) {
+  *level = (strut_level_frame){
+      .scene = *original, .cosine = 1.0, .oblique_node = find_oblique_node(original)};
+  level->scene.arena = (strut_arena){0};
+  if (!copy_arrays(level)) {
+    strut_level_frame_free(level);
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  }
+  if (original->ground.present && level->oblique_node < 0 && original->ground.slope != 0.0) {
+    level->cosine = cos(original->ground.slope);
+    level->sine = sin(original->ground.slope);
+  }
+  keep_rest_lengths(original, &level->scene);
+  remove_motion(&level->scene);
+  make_level(level);
+  return STRUT_OK;
+}
+
+void strut_level_frame_free(strut_level_frame *level) {
+  strut_arena_free(&level->arena);
+  memset(level, 0, sizeof *level);
+}
 
 /* Rank of the rows (1, 0, -y) and (0, 1, x) of coordinates: of all nodes, or of those held. */
 static int rank_of_rigid(const strut_scene *scene, bool only_fixed) {
@@ -52,15 +169,16 @@ static bool may_touch(const strut_scene *scene, int32_t node) {
   return false;
 }
 
-static strut_status take_wanted(const strut_scene *scene, const strut_node_set *wanted,
-                                strut_arena *arena, strut_supports *supports, strut_error *error) {
+static strut_status use_requested_set(const strut_scene *scene, const strut_node_set *wanted,
+                                      strut_arena *arena, strut_supports *supports,
+                                      strut_error *error) {
   for (size_t i = 0; i < wanted->count; i++) {
     int32_t node = wanted->node[i];
     if (!may_touch(scene, node))
-      return strut_fail(error, STRUT_USAGE,
-                        "node '%s' cannot touch the ground, so it cannot be a support in its "
-                        "place; name nodes that may touch it",
-                        scene->nodes[node].name);
+      return strut_fail(
+          error, STRUT_USAGE,
+          "node '%s' is no contact node, so it cannot be a support; name contact nodes",
+          scene->nodes[node].name);
   }
   supports->sets = strut_arena_allocate(arena, 1, sizeof *supports->sets);
   if (!supports->sets) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
@@ -70,8 +188,8 @@ static strut_status take_wanted(const strut_scene *scene, const strut_node_set *
 }
 
 /* Every set of one contact node, or of two. */
-static strut_status take_all(const strut_scene *scene, size_t size, strut_arena *arena,
-                             strut_supports *supports, strut_error *error) {
+static strut_status use_all_sets(const strut_scene *scene, size_t size, strut_arena *arena,
+                                 strut_supports *supports, strut_error *error) {
   size_t n = scene->contact_count, count = size == 1 ? n : n * (n - 1) / 2, at = 0;
   supports->many = count > STRUT_MOST_SUPPORTS;
   if (supports->many || n < size) return STRUT_OK;
@@ -96,26 +214,25 @@ static bool leaves_motion(const strut_scene *scene, size_t held) {
   return coordinates > held;
 }
 
-strut_status strut_supports_choose(const strut_scene *flat, const strut_search *search,
+strut_status strut_supports_choose(const strut_scene *level, const strut_search *search,
                                    const strut_node_set *wanted, strut_arena *arena,
                                    strut_supports *supports, strut_error *error) {
-  *supports = (strut_supports){.loose = holds_nothing(flat)};
-  if (!flat->ground.present || flat->contact_count == 0) {
+  *supports = (strut_supports){.loose = holds_nothing(level)};
+  if (!level->ground.present || level->contact_count == 0) {
     if (!wanted) return STRUT_OK;
-    return strut_fail(error, STRUT_USAGE,
-                      "the scene has no ground, so no supports can take its place");
+    return strut_fail(error, STRUT_USAGE, "the scene has no ground that supports could replace");
   }
-  supports->pin = !held_along_x(flat);
-  if (wanted) return take_wanted(flat, wanted, arena, supports, error);
+  supports->pin = !held_along_x(level);
+  if (wanted) return use_requested_set(level, wanted, arena, supports, error);
   if (search->support_count) {
     supports->sets = search->supports;
     supports->count = search->support_count;
     return STRUT_OK;
   }
-  int motions = rank_of_rigid(flat, false) - rank_of_rigid(flat, true);
+  int motions = rank_of_rigid(level, false) - rank_of_rigid(level, true);
   int size = motions - (supports->pin ? 1 : 0);
-  if (size <= 0 || !leaves_motion(flat, (size_t)motions)) return STRUT_OK;
-  return take_all(flat, size == 1 ? 1 : 2, arena, supports, error);
+  if (size <= 0 || !leaves_motion(level, (size_t)motions)) return STRUT_OK;
+  return use_all_sets(level, size == 1 ? 1 : 2, arena, supports, error);
 }
 
 void strut_supports_hold(const strut_supports *supports, const strut_node_set *set, uint8_t *held) {
@@ -124,25 +241,26 @@ void strut_supports_hold(const strut_supports *supports, const strut_node_set *s
 }
 
 /* Turns and moves the shape so that `a` comes to x, height and `b` level with it, on its side. */
-static void lay_down(const strut_scene *flat, int32_t a, int32_t b, double x, double height,
-                     double (*shape)[2]) {
+static void lay_on_ground(const strut_scene *level, int32_t a, int32_t b, double x, double height,
+                          double (*shape)[2]) {
   strut_vec2 d = strut_vec2_between(shape[a], shape[b]);
   double length = strut_vec2_length(d), from[2] = {shape[a][0], shape[a][1]};
   double c = length > 0 ? fabs(d.x) / length : 1, s = length > 0 ? d.y / length : 0;
   if (d.x < 0) s = -s;
-  for (size_t i = 0; i < flat->node_count; i++) {
+  for (size_t i = 0; i < level->node_count; i++) {
     double rx = shape[i][0] - from[0], ry = shape[i][1] - from[1];
     shape[i][0] = x + c * rx + s * ry;
     shape[i][1] = height - s * rx + c * ry;
   }
 }
 
-void strut_supports_place(const strut_supports *supports, const strut_scene *flat,
+void strut_supports_place(const strut_supports *supports, const strut_scene *level,
                           const strut_node_set *set, double (*shape)[2]) {
+  assert(set->count == 0 || set->node);
   if (set->count == 0) return;
   int32_t a = set->node[0], b = set->node[set->count > 1 ? 1 : 0];
-  double x = flat->nodes[a].position[0], height = flat->ground.height;
-  if (supports->loose) lay_down(flat, a, b, x, height, shape);
+  double x = level->nodes[a].position[0], height = level->ground.height;
+  if (supports->loose) lay_on_ground(level, a, b, x, height, shape);
   if (supports->pin) shape[a][0] = x;
   for (size_t i = 0; i < set->count; i++) shape[set->node[i]][1] = height;
 }

@@ -1,15 +1,238 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which way, and what every way ends with: a polished start, proof of stability, a run. */
-#include "engine/statics/form/form.h"
+#include "engine/statics/form/parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/statics/form/parts.h"
+#include "engine/model/pose.h"
+#include "engine/statics/form/form.h"
 #include "engine/statics/minimise.h"
+
+/* Parts that all methods of form finding share. */
+
+static const double TOUCH = 1e-6; /* of the size: nearer to the ground is drawn on it */
+
+double strut_form_depth(const strut_former *f, int32_t contact) {
+  assert(contact >= 0 && contact < f->model->contacts.count);
+  const strut_contact_table *c = &f->model->contacts;
+  const double *at = f->scene->nodes[c->entry[contact].node].position;
+  return -strut_ground_gap(c, at);
+}
+
+bool strut_form_touches(const strut_former *f, int32_t contact) {
+  return strut_form_depth(f, contact) >= -TOUCH * f->size;
+}
+
+strut_status strut_form_out_of_range(strut_error *error) {
+  return strut_fail(error, STRUT_DIVERGED,
+                    "energies and forces leave the range of numbers; check the units of sizes, "
+                    "stiffnesses and loads");
+}
+
+strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut_error *error) {
+  assert(j < f->scene->member_count);
+  strut_member *m = &f->scene->members[j];
+  const double *a = f->scene->nodes[m->node[0]].start;
+  const double *b = f->scene->nodes[m->node[1]].start;
+  double length = strut_distance(a, b);
+  double rest = m->axial_stiffness > 0 ? m->axial_stiffness * length / (m->axial_stiffness + force)
+                : m->stiffness > 0     ? length - force / m->stiffness
+                                       : length;
+  if (!isfinite(force) || !isfinite(length)) return strut_form_out_of_range(error);
+  bool carries = m->axial_stiffness > 0 || m->stiffness > 0 || force == 0;
+  if (!carries || !isfinite(rest) || rest < 0)
+    return strut_fail(error, STRUT_NOT_SETTLED,
+                      "member %s would have to carry %.4g N at a length of %.4g m, which its "
+                      "stiffness does not allow; make it stiffer",
+                      m->name, force, length);
+  m->rest_kind = STRUT_REST_LENGTH;
+  m->rest_value = rest;
+  f->form->largest_force = fmax(f->form->largest_force, fabs(force));
+  return STRUT_OK;
+}
+
+void strut_form_name_nodes(const strut_former *f, const uint8_t *marked, char *text, size_t size) {
+  assert(size > 20);
+  size_t used = 0, left = 0, room = size - 20;
+  *text = '\0';
+  for (size_t i = 0; i < f->scene->node_count; i++) {
+    if (!marked[i]) continue;
+    size_t need = strlen(f->scene->nodes[i].name) + 2;
+    if (left || used + need >= room) {
+      left++;
+      continue;
+    }
+    used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
+                             f->scene->nodes[i].name);
+  }
+  if (left) snprintf(text + used, size - used, " and %zu more", left);
+}
+
+/*
+ * The force density method (Schek 1974): with densities q = force / length equilibrium is linear in
+ * the positions, D x = f. Where that determines no shape, the nearest pair of shape and densities.
+ */
+
+static const double DETERMINED = 1e-12; /* least reciprocal condition of D */
+static const double SOUND = 1e-9;       /* least pivot that is no noise */
+static const double BEYOND = 1e3;       /* in sizes: farther solutions are rejected */
+enum { RIGID_MOTIONS = 3 };
+
+typedef struct density_problem {
+  strut_former *f;
+  double *q;     /* (members) [N/m] */
+  double *x;     /* (2 nodes) [m] */
+  uint8_t *held; /* (2 nodes) 1: keeps its coordinate, by a support or the ground */
+} density_problem;
+
+static strut_status read_densities(density_problem *p, strut_error *error) {
+  strut_scene *scene = p->f->scene;
+  double largest = 0;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    strut_rest rest;
+    const strut_member *m = &scene->members[j];
+    if (!strut_member_rest(scene, j, &rest)) continue;
+    bool given = m->rest_kind == STRUT_REST_FORCE_DENSITY;
+    p->q[j] = given ? m->rest_value : rest.force_density;
+    largest = fmax(largest, fabs(p->q[j]));
+    if (m->kind == STRUT_CABLE && p->q[j] < 0)
+      return strut_fail(error, STRUT_NOT_SETTLED,
+                        "cable %s is given the force density %.4g N/m, but cables only pull",
+                        m->name, p->q[j]);
+  }
+  if (largest > 0) return STRUT_OK;
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "no member has a force density: give some with force_density or pretension");
+}
+
+/* Marks coordinates held by supports or level ground; returns their number. */
+static int32_t mark_held(density_problem *p) {
+  const strut_former *f = p->f;
+  const strut_contact_table *c = &f->model->contacts;
+  int32_t count = 0;
+  for (size_t i = 0; i < f->scene->node_count; i++)
+    for (size_t k = 0; k < 2; k++) {
+      p->held[2 * i + k] = f->scene->nodes[i].fixed[k];
+      p->x[2 * i + k] = f->scene->nodes[i].position[k];
+    }
+  for (int32_t i = 0; i < c->count; i++)
+    if (strut_form_touches(f, i) && c->normal[0] == 0) p->held[c->at[i] + 1] = 1;
+  for (size_t i = 0; i < 2 * f->scene->node_count; i++) count += p->held[i];
+  return count;
+}
+
+/* D of one axis on the nodes that are free in it, and the forces on them (right). */
+static strut_sparse *assemble_axis(const density_problem *p, int axis, const int32_t *row_of,
+                                   int32_t n, double *right, strut_arena *arena) {
+  const strut_scene *scene = p->f->scene;
+  strut_triplets sum = {0};
+  if (!strut_triplets_reserve(&sum, 3 * scene->member_count, arena)) return NULL;
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (row_of[i] >= 0) right[row_of[i]] = p->f->potential->force[2 * i + (size_t)axis];
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const int32_t *node = scene->members[j].node;
+    int32_t a = row_of[node[0]], b = row_of[node[1]];
+    if (a >= 0) strut_triplets_add(&sum, a, a, p->q[j]);
+    if (b >= 0) strut_triplets_add(&sum, b, b, p->q[j]);
+    if (a >= 0 && b >= 0) strut_triplets_add(&sum, a > b ? a : b, a > b ? b : a, -p->q[j]);
+    if (a >= 0 && b < 0) right[a] += p->q[j] * p->x[2 * node[1] + axis];
+    if (b >= 0 && a < 0) right[b] += p->q[j] * p->x[2 * node[0] + axis];
+  }
+  return strut_sparse_build(n, &sum, arena);
+}
+
+/* One axis: STRUT_SINGULAR where D determines nothing. */
+static strut_status solve_axis(density_problem *p, int axis) {
+  size_t nodes = p->f->scene->node_count;
+  strut_arena arena = {0};
+  strut_ldl *ldl = NULL;
+  strut_inertia inertia;
+  int32_t n = 0;
+  int32_t *row_of = strut_arena_allocate(&arena, nodes, sizeof *row_of);
+  double *right = strut_arena_allocate(&arena, nodes, sizeof *right);
+  strut_sparse *matrix = NULL;
+  for (size_t i = 0; i < nodes && row_of; i++) row_of[i] = p->held[2 * i + (size_t)axis] ? -1 : n++;
+  if (row_of && right && n > 0) matrix = assemble_axis(p, axis, row_of, n, right, &arena);
+  strut_status status = !row_of || !right ? STRUT_NO_MEMORY : STRUT_OK;
+  if (n > 0 && status == STRUT_OK) {
+    status = matrix ? strut_ldl_create(matrix, &ldl, NULL) : STRUT_NO_MEMORY;
+    if (status == STRUT_OK) status = strut_ldl_factorise(ldl, matrix, 0.0, &inertia);
+    if (status == STRUT_OK && (inertia.smallest < SOUND || strut_ldl_rcond(ldl) < DETERMINED))
+      status = STRUT_SINGULAR;
+    if (status == STRUT_OK) strut_ldl_solve(ldl, right);
+    for (size_t i = 0; i < nodes && status == STRUT_OK; i++) {
+      if (row_of[i] < 0) continue;
+      double x = right[row_of[i]];
+      if (!(fabs(x - p->x[2 * i + (size_t)axis]) <= BEYOND * p->f->size)) status = STRUT_SINGULAR;
+    }
+    for (size_t i = 0; i < nodes && status == STRUT_OK; i++)
+      if (row_of[i] >= 0) p->x[2 * i + (size_t)axis] = right[row_of[i]];
+  }
+  strut_ldl_free(ldl);
+  strut_arena_free(&arena);
+  return status;
+}
+
+static strut_status solve_shape(density_problem *p, int32_t held, strut_error *error) {
+  size_t nodes = p->f->scene->node_count;
+  bool standing = held <= RIGID_MOTIONS;
+  strut_status status = STRUT_SINGULAR;
+  if (!standing) {
+    status = solve_axis(p, 0);
+    if (status == STRUT_OK) status = solve_axis(p, 1);
+  }
+  if (status == STRUT_NO_MEMORY) return strut_fail(error, status, "out of memory");
+  if (status == STRUT_OK) return status;
+  for (size_t i = 0; i < 2 * nodes; i++) p->x[i] = p->f->scene->nodes[i / 2].position[i % 2];
+  return strut_form_nearest(p->f, p->held, standing, p->x, p->q, error);
+}
+
+static strut_status apply_solution(density_problem *p, strut_error *error) {
+  strut_scene *scene = p->f->scene;
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (size_t k = 0; k < 2; k++)
+      scene->nodes[i].position[k] = scene->nodes[i].start[k] = p->x[2 * i + k];
+  for (size_t j = 0; j < scene->member_count && status == STRUT_OK; j++) {
+    const double *a = scene->nodes[scene->members[j].node[0]].position;
+    const double *b = scene->nodes[scene->members[j].node[1]].position;
+    double force = p->q[j] * strut_distance(a, b);
+    if (scene->members[j].kind == STRUT_CABLE && force < 0)
+      return strut_fail(error, STRUT_NOT_SETTLED,
+                        "the nearest densities in equilibrium make cable %s push (%.4g N/m); "
+                        "--from prestress keeps the drawn shape instead",
+                        scene->members[j].name, p->q[j]);
+    status = strut_form_set_force(p->f, j, force, error);
+  }
+  return status;
+}
+
+strut_status strut_form_densities(strut_former *f, strut_error *error) {
+  size_t nodes = f->scene->node_count, members = f->scene->member_count;
+  density_problem p = {.f = f,
+                       .q = strut_arena_allocate(&f->arena, members, sizeof(double)),
+                       .x = strut_arena_allocate(&f->arena, 2 * nodes, sizeof(double)),
+                       .held = strut_arena_allocate(&f->arena, 2 * nodes, 1)};
+  double *given = strut_arena_allocate(&f->arena, members, sizeof *given);
+  if (!p.q || !p.x || !p.held || !given) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = read_densities(&p, error);
+  if (status) return status;
+  memcpy(given, p.q, members * sizeof *given);
+  status = solve_shape(&p, mark_held(&p), error);
+  double largest = 0, change = 0;
+  for (size_t j = 0; j < members; j++) {
+    largest = fmax(largest, fabs(given[j]));
+    change = fmax(change, fabs(p.q[j] - given[j]));
+  }
+  f->form->density_change = change / largest;
+  return status == STRUT_OK ? apply_solution(&p, error) : status;
+}
+
+/* The choice of the method, and its common end: a polished start, proof of stability, a run. */
 
 static const double STABLE = 0.02;    /* of the size: what an equilibrium may move on being left */
 static const double NEARLY = 1e3;     /* of the rounding in forces: what a descent may leave */
@@ -22,10 +245,11 @@ static const double IDLE_STEP = 1e-3;     /* step where nothing limits it [s] */
 
 const char *strut_form_source_name(strut_form_source source) {
   static const char *const names[] = {"scene", "densities", "lengths", "prestress"};
+  assert((size_t)source < sizeof names / sizeof names[0]);
   return names[source];
 }
 
-static strut_form_source choose(const strut_scene *scene, strut_form_source wanted) {
+static strut_form_source choose_source(const strut_scene *scene, strut_form_source wanted) {
   bool density = false, length = false;
   for (size_t j = 0; j < scene->member_count; j++) {
     density = density || scene->members[j].rest_kind == STRUT_REST_FORCE_DENSITY;
@@ -35,8 +259,8 @@ static strut_form_source choose(const strut_scene *scene, strut_form_source want
   return density ? STRUT_FORM_DENSITIES : length ? STRUT_FORM_LENGTHS : STRUT_FORM_PRESTRESS;
 }
 
-/* The start of a scene that has just got a form; what would move it is not wanted. */
-static void quieten(strut_scene *scene, strut_experiment *experiment) {
+/* Removes velocities, settling and a start equilibrium from a scene whose form was found. */
+static void remove_motion(strut_scene *scene, strut_experiment *experiment) {
   for (size_t i = 0; i < scene->node_count; i++)
     scene->nodes[i].velocity[0] = scene->nodes[i].velocity[1] = 0.0;
   experiment->settle.wanted = false;
@@ -54,14 +278,14 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
     if (strut_member_rest(scene, j, &rest) && (apart || f->form->from != STRUT_FORM_DENSITIES))
       continue;
     return strut_fail(error, STRUT_NOT_SETTLED,
-                      "in this form nodes '%s' and '%s', the ends of '%s', lie in one place; "
-                      "other densities or supports keep them apart",
+                      "in this form nodes '%s' and '%s', the ends of '%s', coincide; choose other "
+                      "densities or supports",
                       a->name, b->name, m->name);
   }
   return STRUT_OK;
 }
 
-/* Rest lengths as lengths: said in other ways they would change with the drawn shape. */
+/* Writes rest lengths as lengths: given otherwise they would change with the drawn shape. */
 static void fix_lengths(strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
@@ -72,7 +296,7 @@ static void fix_lengths(strut_scene *scene) {
   }
 }
 
-/* May the structure be shifted along x, and turned and shifted at will, without meeting anything? */
+/* Finds whether the structure is free to shift along x, and to turn and shift in the plane. */
 static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
   const strut_contact_table *c = &f->model->contacts;
   *shift = c->count == 0 || c->normal[0] == 0;
@@ -83,8 +307,8 @@ static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
   }
 }
 
-/* Where nothing holds the whole, it may have drifted on its way: back to where it started. */
-static bool lay_back(const strut_former *f, double *q) {
+/* Undoes the drift of a structure that nothing holds. */
+static bool undo_drift(const strut_former *f, double *q) {
   const strut_scene *scene = f->scene;
   double n = (double)scene->node_count, from[2] = {0}, to[2] = {0}, cosine = 0, sine = 0;
   bool shift, turn;
@@ -129,9 +353,10 @@ static strut_status judge(const strut_former *f, const strut_descent *d, const d
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "nothing holds the structure: %s moves away without end; support it", name);
   if (d->end == STRUT_DESCENT_EXHAUSTED && !(d->residual <= NEARLY * d->rounding))
-    return strut_fail(error, STRUT_NOT_SETTLED,
-                      "the structure does not come to rest: %.3g N are left, and %s still moves",
-                      d->residual, name);
+    return strut_fail(
+        error, STRUT_NOT_SETTLED,
+        "the structure does not come to rest: the residual is %.3g N, and %s still moves",
+        d->residual, name);
   if (f->form->from != STRUT_FORM_LENGTHS && moved > STABLE * f->size)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "the equilibrium found is not stable: left to itself, %s moves by %.3g m; "
@@ -155,7 +380,7 @@ static strut_status polish(strut_former *f, strut_error *error) {
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
-    if (descent.end != STRUT_DESCENT_RUNAWAY && lay_back(f, q))
+    if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(f, q))
       descent = strut_polish(minimiser, q, 0.0);
     f->form->residual = descent.residual;
     status = judge(f, &descent, q, error);
@@ -190,8 +415,8 @@ static strut_status add_run(strut_former *f, strut_error *error) {
     status = strut_step_limit_estimate(model, &limit, error);
     if (status == STRUT_OK && !(limit.limit > LEAST_STEP))
       status = strut_fail(error, STRUT_BAD_SCENE,
-                          "stiffnesses are so large beside the masses that no step can be given; "
-                          "check their units");
+                          "stiffnesses are so large beside the masses that no time step can be "
+                          "chosen; check their units");
     f->form->run_added = e->step == 0 || (e->duration == 0 && e->periods == 0);
     if (status == STRUT_OK && (e->step == 0 || e->step > limit.limit))
       e->step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;
@@ -208,7 +433,7 @@ static strut_status find(strut_former *f, strut_error *error) {
   if (f->form->from == STRUT_FORM_PRESTRESS) status = strut_form_prestress(f, error);
   if (status != STRUT_OK) return status;
   fix_lengths(scene);
-  quieten(scene, f->experiment);
+  remove_motion(scene, f->experiment);
   status = check_lengths(f, error);
   if (status == STRUT_OK) status = polish(f, error);
   return status == STRUT_OK ? add_run(f, error) : status;
@@ -238,7 +463,7 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_scene *scene = &setup->scene;
   strut_model *model = NULL;
   strut_potential *potential = NULL;
-  *form = (strut_form){.from = choose(scene, options->from)};
+  *form = (strut_form){.from = choose_source(scene, options->from)};
   strut_former f = {
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);

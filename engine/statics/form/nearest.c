@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Densities that are nearly those of some shape. A structure that stands by itself in the plane needs
- * a matrix of densities D with three null vectors (1, x, y): shape and densities are improved in turn,
- * each the nearest that fits the other. Then both together by Gauss and Newton, with weight and
- * supports, each step the shortest from what was given.
+ * Densities that are nearly those of some shape. A structure that stands by itself in the plane
+ * needs a matrix of densities D with three null vectors (1, x, y): shape and densities are improved
+ * in turn, each the nearest that fits the other. Then both together by Gauss and Newton, with
+ * weight and supports, each step the shortest from what was given.
  */
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
@@ -234,11 +234,10 @@ static strut_status not_found(const joint *p, strut_error *error) {
       marked[i / 2] = 1;
   strut_form_name_nodes(p->f, marked, names, sizeof names);
   strut_release(marked);
-  return strut_fail(
-      error, STRUT_NOT_SETTLED,
-      "no shape and densities near the given ones are in equilibrium: forces are left "
-      "at %s; check supports, loads and densities there",
-      names);
+  return strut_fail(error, STRUT_NOT_SETTLED,
+                    "no shape and densities near the given ones are in equilibrium: forces remain "
+                    "at %s; check supports, loads and densities there",
+                    names);
 }
 
 static strut_status solve(joint *p, strut_error *error) {
@@ -263,8 +262,8 @@ strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool stand
   if (!x_given || !q_given || !row_of) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   if (coordinates > MOST_COORDINATES)
     return strut_fail(error, STRUT_SINGULAR,
-                      "the densities alone determine no shape, and to adjust them the structure is "
-                      "too large: %zu coordinates, at most %d",
+                      "the densities alone determine no shape, and the structure is too large to "
+                      "adjust them: %zu coordinates, at most %d",
                       coordinates, MOST_COORDINATES);
   memcpy(x_given, x, coordinates * sizeof *x);
   if (standing && !take_turns(f, x_given, x, q))

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The ways of form finding, each in a file of its own, and what they share. For the files of this folder.
- */
+/** The methods of form finding and their shared parts, for the files of this folder. */
 #ifndef STRUT_ENGINE_STATICS_FORM_PARTS_H
 #define STRUT_ENGINE_STATICS_FORM_PARTS_H
 
@@ -14,20 +12,23 @@ typedef struct strut_former {
   strut_experiment *experiment;
   const strut_form_options *options;
   strut_form *form;
-  const strut_model *model;         /* the scene as it was, compiled */
+  const strut_model *model;         /* the original scene, compiled */
   const strut_potential *potential; /* of it: free coordinates, weight and loads */
   double size;                      /* of the drawn shape [m], > 0 */
   strut_arena arena;
 } strut_former;
 
-/** How far below the ground contact i's node is drawn [m]: >= 0 where it touches, within rounding. */
+/**
+ * Depth below the ground at which contact i's node is drawn [m]; >= 0 where it touches, within
+ * rounding.
+ */
 double strut_form_depth(const strut_former *former, int32_t contact);
 bool strut_form_touches(const strut_former *former, int32_t contact);
 
 /** Gives member j the rest length with which it carries `force` at the length it starts with. */
 strut_status strut_form_set_force(strut_former *former, size_t member, double force,
                                   strut_error *error);
-/** Says that energies and forces are no numbers any more; returns the status. */
+/** Sets the error that energies and forces overflow; returns its status. */
 strut_status strut_form_out_of_range(strut_error *error);
 /** A list such as "n1, n4 and n5" of the nodes marked (node_count), for sentences. */
 void strut_form_name_nodes(const strut_former *former, const uint8_t *marked, char *text,
@@ -35,20 +36,22 @@ void strut_form_name_nodes(const strut_former *former, const uint8_t *marked, ch
 
 /** Shape and rest lengths from force densities. */
 strut_status strut_form_densities(strut_former *former, strut_error *error);
-/** Rest lengths from the drawn shape; start positions sink into the ground as the forces want. */
+/**
+ * Rest lengths from the drawn shape; start positions sink into the ground under the contact forces.
+ */
 strut_status strut_form_prestress(strut_former *former, strut_error *error);
 
 /**
- * The pair of shape x (2 node_count) and densities q (member_count) in equilibrium that is nearest to
- * the one given. held (2 node_count): 1 where a coordinate keeps its value. `standing`: held ones do
- * no more than keep the structure from moving as a whole.
+ * The pair of shape x (2 node_count) and densities q (member_count) in equilibrium that is nearest
+ * to the one given. held (2 node_count): 1 where a coordinate keeps its value. `standing`: the held
+ * coordinates only prevent rigid motions.
  */
 strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool standing, double *x,
                                 double *q, strut_error *error);
 
 /**
- * Least sum of (weight x)^2 with A x = b as `x` (count) satisfies it already, and x >= low: from x.
- * equations (rows, count), row by row. False: memory was out.
+ * Minimises the sum of (weight x)^2 subject to A x = b, with b from the initial `x` (count), and x
+ * >= low. equations (rows, count), row by row. False: memory was out.
  */
 bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
                            const double *weight, const double *low, double *x);

@@ -1,15 +1,166 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Forces that hold the drawn shape: unknown are the members' forces, tension p and compression m
- * apart, the ground's pushes, the largest magnitude z, and what is missing at each coordinate.
- */
+#include "engine/statics/form/parts.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/statics/form/parts.h"
+#include "engine/statics/dense_algebra.h"
 #include "engine/statics/linear_program.h"
+
+/*
+ * Weighted least squares under equations and lower bounds, by an active set. Steps are taken in the
+ * null space of the equations, from a point that satisfies everything.
+ */
+
+enum { ROUNDS = 1000 };
+
+static const double CUT = 1e-11;  /* of the largest singular value */
+static const double ZERO = 1e-12; /* of a step, of a multiplier */
+
+/* Columns that A maps to nothing: (count, k), in the arena of nobody; NULL: out of memory. */
+static gsl_matrix *null_space(int32_t rows, int32_t count, const double *equations) {
+  size_t n = (size_t)count, m = (size_t)rows, tall = m > n ? m : n, k = 0;
+  gsl_matrix *a = gsl_matrix_calloc(tall, n), *v = gsl_matrix_alloc(n, n), *basis = NULL;
+  gsl_vector *s = gsl_vector_alloc(n), *w = gsl_vector_alloc(n);
+  if (a && v && s && w) {
+    for (size_t i = 0; i < m; i++)
+      for (size_t j = 0; j < n; j++) gsl_matrix_set(a, i, j, equations[i * n + j]);
+    gsl_linalg_SV_decomp(a, v, s, w);
+    while (k < n && gsl_vector_get(s, k) > CUT * gsl_vector_get(s, 0)) k++;
+    basis = gsl_matrix_calloc(n, n - k + 1); /* one column to spare: GSL knows no empty matrix */
+    for (size_t i = 0; i < n && basis; i++)
+      for (size_t j = k; j < n; j++) gsl_matrix_set(basis, i, j - k, gsl_matrix_get(v, i, j));
+  }
+  gsl_matrix_free(a);
+  gsl_matrix_free(v);
+  gsl_vector_free(s);
+  gsl_vector_free(w);
+  return basis;
+}
+
+typedef struct problem {
+  size_t count, free; /* unknowns; columns of the basis in use */
+  const gsl_matrix *basis;
+  const double *weight, *low;
+  double *x;
+  uint8_t *active;
+  gsl_matrix *system;
+  gsl_vector *right, *solution;
+  gsl_permutation *order;
+} problem;
+
+/* The step (free) to the least sum with the active bounds kept, and their multipliers behind it. */
+static size_t find_step(problem *p) {
+  size_t size = p->free;
+  gsl_matrix_set_zero(p->system);
+  gsl_vector_set_zero(p->right);
+  for (size_t i = 0; i < p->count; i++) {
+    double square = p->weight[i] * p->weight[i];
+    for (size_t a = 0; a < p->free; a++) {
+      double za = gsl_matrix_get(p->basis, i, a);
+      *gsl_vector_ptr(p->right, a) -= square * p->x[i] * za;
+      for (size_t b = 0; b < p->free; b++)
+        *gsl_matrix_ptr(p->system, a, b) += square * za * gsl_matrix_get(p->basis, i, b);
+    }
+    if (!p->active[i]) continue;
+    for (size_t a = 0; a < p->free; a++) {
+      gsl_matrix_set(p->system, a, size, gsl_matrix_get(p->basis, i, a));
+      gsl_matrix_set(p->system, size, a, gsl_matrix_get(p->basis, i, a));
+    }
+    size++;
+  }
+  return size;
+}
+
+static bool solve_step(problem *p, size_t size) {
+  gsl_matrix_view a = gsl_matrix_submatrix(p->system, 0, 0, size, size);
+  gsl_vector_view b = gsl_vector_subvector(p->right, 0, size);
+  gsl_vector_view x = gsl_vector_subvector(p->solution, 0, size);
+  gsl_permutation order = {size, p->order->data};
+  strut_lu_factor(&a.matrix, &order);
+  for (size_t i = 0; i < size; i++)
+    if (gsl_matrix_get(&a.matrix, i, i) == 0) return false;
+  return gsl_linalg_LU_solve(&a.matrix, &order, &b.vector, &x.vector) == 0;
+}
+
+static double step_component(const problem *p, size_t i) {
+  double sum = 0;
+  for (size_t a = 0; a < p->free; a++)
+    sum += gsl_matrix_get(p->basis, i, a) * gsl_vector_get(p->solution, a);
+  return sum;
+}
+
+/*
+ * Steps as far as the bounds allow; a bound that stops the step becomes active. True: nothing
+ * moved.
+ */
+static bool advance_to_bound(problem *p) {
+  double share = 1, most = 0, scale = 0;
+  size_t stop = p->count;
+  for (size_t i = 0; i < p->count; i++) {
+    double step = step_component(p, i), room = p->low[i] - p->x[i];
+    most = fmax(most, fabs(step)), scale = fmax(scale, fabs(p->x[i]));
+    if (p->active[i] || !(step < 0) || !isfinite(room)) continue;
+    if (room / step < share) share = fmax(room / step, 0), stop = i;
+  }
+  for (size_t i = 0; i < p->count; i++) p->x[i] += share * step_component(p, i);
+  if (stop < p->count) p->active[stop] = 1, p->x[stop] = p->low[stop];
+  return stop == p->count && most <= ZERO * scale;
+}
+
+/* Releases the active bound with the worst multiplier; false if all signs are right. */
+static bool release_bound(problem *p) {
+  size_t at = p->free, worst = p->count;
+  double least = 0, scale = 0;
+  for (size_t i = 0; i < p->count; i++) {
+    if (!p->active[i]) continue;
+    double multiplier = gsl_vector_get(p->solution, at++);
+    scale = fmax(scale, fabs(multiplier));
+    if (multiplier > least) least = multiplier, worst = i;
+  }
+  if (worst == p->count || least <= ZERO * scale) return false;
+  p->active[worst] = 0;
+  return true;
+}
+
+bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
+                           const double *weight, const double *low, double *x) {
+  size_t n = (size_t)count;
+  gsl_matrix *basis = null_space(rows, count, equations);
+  problem p = {.count = n,
+               .free = basis ? basis->size2 - 1 : 0,
+               .basis = basis,
+               .weight = weight,
+               .low = low,
+               .x = x};
+  size_t room = p.free + n + 1;
+  p.active = strut_allocate(n, 1);
+  p.system = gsl_matrix_alloc(room, room);
+  p.right = gsl_vector_alloc(room);
+  p.solution = gsl_vector_alloc(room);
+  p.order = gsl_permutation_alloc(room);
+  bool good = basis && p.active && p.system && p.right && p.solution && p.order;
+  for (int k = 0; k < ROUNDS && good && p.free > 0; k++) {
+    if (!solve_step(&p, find_step(&p))) break;
+    if (advance_to_bound(&p) && !release_bound(&p)) break;
+  }
+  gsl_matrix_free(basis);
+  strut_release(p.active);
+  gsl_matrix_free(p.system);
+  gsl_vector_free(p.right);
+  gsl_vector_free(p.solution);
+  gsl_permutation_free(p.order);
+  return good;
+}
+
+/*
+ * Forces that hold the drawn shape: unknown are the members' forces, tension p and compression m
+ * apart, the ground's pushes, the largest magnitude z, and what is missing at each coordinate.
+ */
 
 enum { PASSES = 6 };
 
@@ -55,7 +206,7 @@ static double least_tension(const strut_former *f) {
   return isfinite(least) ? least : 0.0;
 }
 
-static columns lay_out(const strut_former *f) {
+static columns number_columns(const strut_former *f) {
   columns at = {.members = f->model->members.count,
                 .contacts = f->model->contacts.count,
                 .n = f->potential->n};
@@ -121,8 +272,8 @@ static void set_costs(prestress *p, int32_t from, int32_t to, double cost) {
   for (int32_t j = from; j < to; j++) p->program.cost[j] = cost;
 }
 
-static strut_status solve(prestress *p, double *sum, strut_error *error) {
-  strut_quantity_program_end end;
+static strut_status solve_program(prestress *p, double *sum, strut_error *error) {
+  strut_linear_program_end end;
   strut_status status = strut_linear_program_solve(&p->program, p->x, sum, &end);
   if (status) return strut_fail(error, status, "out of memory");
   if (end == STRUT_PROGRAM_OPTIMAL) return STRUT_OK;
@@ -136,7 +287,7 @@ static bool has_cables(const strut_former *f) {
   return false;
 }
 
-/* Which nodes lack a force, and how much at the worst of them. */
+/* Reports the nodes that lack a force, and the largest missing force. */
 static strut_status cannot_hold(const prestress *p, strut_error *error) {
   const strut_former *f = p->f;
   const columns *at = &p->at;
@@ -163,29 +314,29 @@ static strut_status cannot_hold(const prestress *p, strut_error *error) {
                     has_cables(f) ? cables : "", names, worst * p->scale);
 }
 
-/* First whether any forces hold the shape, then which. */
+/* Checks that some forces hold the shape, then minimises the objective over them. */
 static strut_status find_forces(prestress *p, strut_error *error) {
   const columns *at = &p->at;
   double sum = 0;
   set_costs(p, at->up, at->count, 1);
-  strut_status status = solve(p, &sum, error);
+  strut_status status = solve_program(p, &sum, error);
   if (status) return status;
   if (sum > MISSING * (1 + (double)at->n)) return cannot_hold(p, error);
   set_costs(p, at->up, at->count, 0);
   for (int32_t j = at->up; j < at->count; j++) p->program.high[j] = 0;
   if (p->f->options->objective == STRUT_FORM_LARGEST) {
     p->program.cost[at->most] = 1;
-    status = solve(p, &sum, error);
+    status = solve_program(p, &sum, error);
     if (status) return status;
     p->program.cost[at->most] = 0;
     p->program.high[at->most] = sum * (1 + SLACKEN) + 1e-12;
   }
   set_costs(p, at->pull, at->ground, 1);
-  return solve(p, &sum, error);
+  return solve_program(p, &sum, error);
 }
 
 /* From forces that hold the shape to those whose cables have the least squares of densities. */
-static bool spread(prestress *p) {
+static bool minimise_squares(prestress *p) {
   const strut_former *f = p->f;
   const columns *at = &p->at;
   const double faint = 1e-5; /* bars and contacts decide only what cables leave open */
@@ -228,8 +379,11 @@ static bool spread(prestress *p) {
   return good;
 }
 
-/* Nodes on the ground go as deep into it as they are pushed. How far they went. */
-static double sink(prestress *p) {
+/*
+ * Moves nodes into the ground to the depth that their contact force needs; returns the largest move
+ * [m].
+ */
+static double sink_nodes(prestress *p) {
   const strut_contact_table *c = &p->f->model->contacts;
   double moved = 0;
   for (int32_t i = 0; i < p->at.contacts; i++) {
@@ -255,8 +409,8 @@ static strut_status set_forces(prestress *p, strut_error *error) {
   return status;
 }
 
-/* Forces for the shape as it starts. */
-static strut_status pass(prestress *p, strut_error *error) {
+/* Computes the forces for the start positions. */
+static strut_status compute_forces(prestress *p, strut_error *error) {
   const columns *at = &p->at;
   size_t entries = 11 * (size_t)at->members + 2 * (size_t)at->contacts + 2 * (size_t)at->n;
   strut_arena arena = {0};
@@ -265,7 +419,8 @@ static strut_status pass(prestress *p, strut_error *error) {
     fill_rows(p);
     fill_bounds(p);
     status = find_forces(p, error);
-    if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES && !spread(p))
+    if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES &&
+        !minimise_squares(p))
       status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   } else {
     strut_fail(error, status, "out of memory");
@@ -275,7 +430,7 @@ static strut_status pass(prestress *p, strut_error *error) {
 }
 
 strut_status strut_form_prestress(strut_former *f, strut_error *error) {
-  prestress p = {.f = f, .at = lay_out(f), .least = least_tension(f)};
+  prestress p = {.f = f, .at = number_columns(f), .least = least_tension(f)};
   p.scale = fmax(f->potential->force_scale, fmax(p.least, f->options->least_density * f->size));
   if (!(p.scale > 0)) p.scale = 1.0;
   f->form->least_tension = p.least;
@@ -285,8 +440,8 @@ strut_status strut_form_prestress(strut_former *f, strut_error *error) {
     memcpy(f->scene->nodes[i].start, f->scene->nodes[i].position, sizeof f->scene->nodes[i].start);
   strut_status status = STRUT_OK;
   for (int k = 0; k < PASSES && status == STRUT_OK; k++) { /* sinking turns members a little */
-    status = pass(&p, error);
-    if (status == STRUT_OK && sink(&p) <= SUNK * f->size) break;
+    status = compute_forces(&p, error);
+    if (status == STRUT_OK && sink_nodes(&p) <= SUNK * f->size) break;
   }
   return status == STRUT_OK ? set_forces(&p, error) : status;
 }

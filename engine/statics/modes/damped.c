@@ -55,7 +55,7 @@ static void fill_system(const strut_modes_work *work, quadratic *p) {
   }
 }
 
-static void weigh(quadratic *p) {
+static void compute_weights(quadratic *p) {
   for (size_t i = 0; i < 2 * p->n; i++)
     for (size_t j = 0; j < p->n; j++) {
       gsl_complex a = gsl_matrix_complex_get(p->vector, j, i);
@@ -65,8 +65,8 @@ static void weigh(quadratic *p) {
     }
 }
 
-/* The best pair of a free solution and a mode that lacks one in `slot`, again and again. */
-static void match(quadratic *p, bool oscillating, int32_t *slot) {
+/* Repeatedly assigns the best free solution to a mode that lacks one in `slot`. */
+static void assign_solutions(quadratic *p, bool oscillating, int32_t *slot) {
   for (;;) {
     double most = LEAST_SHARE;
     size_t solution = 0, mode = 0;
@@ -84,18 +84,18 @@ static void match(quadratic *p, bool oscillating, int32_t *slot) {
 }
 
 /* Modes that swing by themselves get a conjugate pair, or two real solutions. */
-static void match_all(quadratic *p, const strut_mode *list) {
+static void assign_all_solutions(quadratic *p, const strut_mode *list) {
   for (size_t j = 0; j < p->n; j++)
     p->first[j] = p->second[j] = list[j].kind == STRUT_MODE_ELASTIC ? NONE : NOT_WANTED;
-  match(p, true, p->first);
+  assign_solutions(p, true, p->first);
   for (size_t j = 0; j < p->n; j++)
     if (p->first[j] >= 0) p->second[j] = NOT_WANTED;
-  match(p, false, p->first);
-  match(p, false, p->second);
+  assign_solutions(p, false, p->first);
+  assign_solutions(p, false, p->second);
 }
 
 /* From the two roots of a mode: a conjugate pair, or two real ones. */
-static void describe(const quadratic *p, size_t j, strut_mode *mode) {
+static void set_damped_mode(const quadratic *p, size_t j, strut_mode *mode) {
   if (p->first[j] < 0) return;
   gsl_complex z = gsl_vector_complex_get(p->value, (size_t)p->first[j]);
   double re = GSL_REAL(z), im = GSL_IMAG(z);
@@ -112,8 +112,9 @@ static void describe(const quadratic *p, size_t j, strut_mode *mode) {
   if (re * other > 0) mode->damping_ratio = -(re + other) / (2.0 * sqrt(re * other));
 }
 
-/* Each mode by itself: exact where the damping does not couple them. */
-static void by_quotient(const strut_modes_work *work, size_t j, double damping, strut_mode *mode) {
+/* Damps each mode separately: exact if the damping does not couple them. */
+static void apply_modal_quotient(const strut_modes_work *work, size_t j, double damping,
+                                 strut_mode *mode) {
   double z = work->set.value[j], half = 0.5 * damping, inside = half * half - z;
   mode->decay_rate = inside > 0 ? half - sqrt(inside) : half;
   if (inside > 0 && half > 0 && z > 0) mode->decay_rate = z / (half + sqrt(inside));
@@ -121,7 +122,7 @@ static void by_quotient(const strut_modes_work *work, size_t j, double damping, 
   if (z > 0) mode->damping_ratio = half / sqrt(z);
 }
 
-static void all_by_quotient(const strut_modes_work *work, strut_mode *list) {
+static void apply_modal_quotients(const strut_modes_work *work, strut_mode *list) {
   size_t n = (size_t)work->set.n;
   double *product = (double *)work->v->work;
   for (size_t j = 0; j < (size_t)work->set.count; j++) {
@@ -129,11 +130,11 @@ static void all_by_quotient(const strut_modes_work *work, strut_mode *list) {
     double sum = 0.0;
     strut_vibration_multiply(work->v, work->v->d, x, product);
     for (size_t k = 0; k < n; k++) sum += x[k] * product[k];
-    by_quotient(work, j, sum, &list[j]);
+    apply_modal_quotient(work, j, sum, &list[j]);
   }
 }
 
-static bool allocate(const strut_modes_work *work, quadratic *p) {
+static bool allocate_quadratic(const strut_modes_work *work, quadratic *p) {
   size_t n = p->n;
   p->system = gsl_matrix_calloc(2 * n, 2 * n);
   p->damping = gsl_matrix_calloc(n, n);
@@ -150,18 +151,18 @@ static bool allocate(const strut_modes_work *work, quadratic *p) {
 
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
                                  strut_error *error) {
-  all_by_quotient(work, list);
+  apply_modal_quotients(work, list);
   if (!exactly) return STRUT_OK;
   quadratic p = {.n = (size_t)work->set.count};
   strut_status status = STRUT_OK;
-  if (!allocate(work, &p)) {
+  if (!allocate_quadratic(work, &p)) {
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory for damped modes");
   } else if (fill_damping(work, p.damping)) {
     fill_system(work, &p);
     if (gsl_eigen_nonsymmv(p.system, p.value, p.vector, p.w) == 0) {
-      weigh(&p);
-      match_all(&p, list);
-      for (size_t j = 0; j < p.n; j++) describe(&p, j, &list[j]);
+      compute_weights(&p);
+      assign_all_solutions(&p, list);
+      for (size_t j = 0; j < p.n; j++) set_damped_mode(&p, j, &list[j]);
     }
   }
   gsl_matrix_free(p.system);

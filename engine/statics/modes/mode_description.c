@@ -1,19 +1,116 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a mode looks like, in words made from its figures. */
+#include "engine/statics/modes/parts.h"
+
+#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/statics/modes/parts.h"
+/* The motions of the plane as a whole that supports and closed contacts leave free. */
+
+/* A motion (a, b, w): a - w (y - y0) / size in x, b + w (x - x0) / size in y. */
+typedef struct pivot {
+  double x, y, size;
+} pivot;
+
+static pivot middle_of(const strut_vibration *v) {
+  pivot c = {0.0, 0.0, v->model->size > 0 ? v->model->size : 1.0};
+  for (int32_t i = 0; i < v->model->node_count; i++)
+    c.x += v->q[2 * i].hi, c.y += v->q[2 * i + 1].hi;
+  c.x /= v->model->node_count;
+  c.y /= v->model->node_count;
+  return c;
+}
+
+/* Adds what holding direction (nx, ny) at coordinates `at` forbids: g += row row'. */
+static void add_constraint(const strut_vibration *v, const pivot *c, int32_t at, double nx,
+                           double ny, gsl_matrix *g) {
+  double x = (v->q[at].hi - c->x) / c->size, y = (v->q[at + 1].hi - c->y) / c->size;
+  double row[3] = {nx, ny, ny * x - nx * y};
+  for (size_t i = 0; i < 3; i++)
+    for (size_t k = 0; k < 3; k++)
+      gsl_matrix_set(g, i, k, gsl_matrix_get(g, i, k) + row[i] * row[k]);
+}
+
+static void add_constraints(const strut_vibration *v, const pivot *c, gsl_matrix *g) {
+  const strut_model *model = v->model;
+  const strut_contact_table *contacts = &model->contacts;
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    if (v->shape->row_of[at] < 0) add_constraint(v, c, at & ~1, at % 2 == 0, at % 2 != 0, g);
+  for (int32_t i = 0; i < contacts->count; i++)
+    if (v->closed[i])
+      add_constraint(v, c, (int32_t)contacts->at[i], contacts->normal[0], contacts->normal[1], g);
+}
+
+static void fill_motion(const strut_vibration *v, const pivot *c, const double motion[3],
+                        double *x) {
+  for (int32_t i = 0; i < v->n; i++) {
+    int32_t at = v->shape->coordinate[i], node = at / 2;
+    if (at % 2)
+      x[i] = motion[1] + motion[2] * (v->q[2 * node].hi - c->x) / c->size;
+    else
+      x[i] = motion[0] - motion[2] * (v->q[2 * node + 1].hi - c->y) / c->size;
+  }
+}
+
+/* Gram and Schmidt, twice, in the product of the mass; false: nothing is left of x. */
+static bool orthonormalise(const strut_modes_work *work, double *x, double *product) {
+  const strut_vibration *v = work->v;
+  double square = 0.0;
+  for (int pass = 0; pass < 2; pass++)
+    for (int32_t k = 0; k <= work->rigid_count; k++) {
+      const double *y = k < work->rigid_count ? work->rigid + (size_t)k * (size_t)v->n : x;
+      double share = 0.0;
+      strut_vibration_multiply(v, v->m, x, product);
+      for (int32_t i = 0; i < v->n; i++) share += y[i] * product[i];
+      square = share;
+      for (int32_t i = 0; i < v->n && k < work->rigid_count; i++) x[i] -= share * y[i];
+    }
+  if (!(square > 0)) return false;
+  for (int32_t i = 0; i < v->n; i++) x[i] /= sqrt(square);
+  return true;
+}
+
+strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
+  const strut_vibration *v = work->v;
+  pivot c = middle_of(v);
+  work->rigid_count = 0;
+  work->rigid = strut_arena_allocate(work->arena, 3 * (size_t)v->n, sizeof *work->rigid);
+  gsl_matrix *g = gsl_matrix_calloc(3, 3), *vector = gsl_matrix_alloc(3, 3);
+  gsl_vector *value = gsl_vector_alloc(3);
+  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(3);
+  bool good = work->rigid && g && vector && value && w;
+  if (good) {
+    add_constraints(v, &c, g);
+    double trace = gsl_matrix_get(g, 0, 0) + gsl_matrix_get(g, 1, 1) + gsl_matrix_get(g, 2, 2);
+    good = gsl_eigen_symmv(g, value, vector, w) == 0 &&
+           gsl_eigen_symmv_sort(value, vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
+    for (size_t i = 0; i < 3 && good; i++) {
+      if (gsl_vector_get(value, i) > 1e-12 * trace) break;
+      double motion[3], *x = work->rigid + (size_t)work->rigid_count * (size_t)v->n;
+      for (size_t k = 0; k < 3; k++) motion[k] = gsl_matrix_get(vector, k, i);
+      fill_motion(v, &c, motion, x);
+      if (orthonormalise(work, x, (double *)v->work)) work->rigid_count++;
+    }
+  }
+  gsl_matrix_free(g);
+  gsl_matrix_free(vector);
+  gsl_vector_free(value);
+  gsl_eigen_symmv_free(w);
+  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+}
+
+/* Description of a mode in words, from its computed quantities. */
 
 enum { MOST_NODES = 3, MOST_MEMBERS = 3 };
 
 static const double MOVES = 0.5;  /* share of the largest amplitude from which a node is named */
 static const double COUNTS = 0.1; /* share of the energy from which a member is named */
 
-static void say(strut_mode *mode, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void say(strut_mode *mode, const char *format, ...) {
+static void append_text(strut_mode *mode, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static void append_text(strut_mode *mode, const char *format, ...) {
   size_t used = strlen(mode->description), room = sizeof mode->description - used;
   va_list arguments;
   va_start(arguments, format);
@@ -40,7 +137,7 @@ static int32_t largest_node(const strut_vibration *v, const double *x, double d[
   return node;
 }
 
-static const char *direction(const double d[2]) {
+static const char *direction_text(const double d[2]) {
   double size = hypot(d[0], d[1]);
   if (fabs(d[0]) > 0.95 * size) return " along x";
   if (fabs(d[1]) > 0.95 * size) return " along y";
@@ -64,18 +161,18 @@ static int name_side(const strut_vibration *v, const double *x, int32_t leader,
     motion_of(v, x, i, d);
     if (hypot(d[0], d[1]) < least || side_of(lead, d) != side) continue;
     if (count < MOST_NODES)
-      say(mode, "%s%s", count ? ", " : before, v->model->scene->nodes[i].name);
+      append_text(mode, "%s%s", count ? ", " : before, v->model->scene->nodes[i].name);
     count++;
   }
-  if (count > MOST_NODES) say(mode, " and %d more", count - MOST_NODES);
+  if (count > MOST_NODES) append_text(mode, " and %d more", count - MOST_NODES);
   return count;
 }
 
-static void say_nodes(const strut_vibration *v, const double *x, strut_mode *mode) {
+static void describe_nodes(const strut_vibration *v, const double *x, strut_mode *mode) {
   double lead[2];
   int32_t leader = largest_node(v, x, lead);
   int count = name_side(v, x, leader, lead, 1, "", mode);
-  say(mode, count == 1 ? " moves%s" : " move%s", direction(lead));
+  append_text(mode, count == 1 ? " moves%s" : " move%s", direction_text(lead));
   name_side(v, x, leader, lead, -1, " against ", mode);
   name_side(v, x, leader, lead, 0, ", across them ", mode);
 }
@@ -105,8 +202,8 @@ static energies energies_of(const strut_vibration *v, const double *x) {
   return e;
 }
 
-static void say_members(const strut_vibration *v, const double *x, const energies *e,
-                        strut_mode *mode) {
+static void describe_members(const strut_vibration *v, const double *x, const energies *e,
+                             strut_mode *mode) {
   int32_t named[MOST_MEMBERS];
   int count = 0;
   for (; count < MOST_MEMBERS; count++) {
@@ -120,15 +217,15 @@ static void say_members(const strut_vibration *v, const double *x, const energie
     }
     if (named[count] < 0) break;
     double share = 100.0 * stretch_energy(v, named[count], x) / e->all;
-    say(mode, "%s%s %.0f %%", count ? ", " : "; ", v->model->scene->members[named[count]].name,
-        share);
+    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ",
+                v->model->scene->members[named[count]].name, share);
   }
   if (e->ground > 0.05 * e->all)
-    say(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
-  if (count) say(mode, " of the energy");
+    append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
+  if (count) append_text(mode, " of the energy");
 }
 
-static void say_rigid(const strut_vibration *v, const double *x, strut_mode *mode) {
+static void describe_rigid(const strut_vibration *v, const double *x, strut_mode *mode) {
   double first[2], d[2];
   largest_node(v, x, first);
   bool shift = true;
@@ -136,23 +233,23 @@ static void say_rigid(const strut_vibration *v, const double *x, strut_mode *mod
     motion_of(v, x, i, d);
     shift = shift && hypot(d[0] - first[0], d[1] - first[1]) < 1e-6 * hypot(first[0], first[1]);
   }
-  const char *way = direction(first);
+  const char *way = direction_text(first);
   if (shift)
-    say(mode, "the whole moves%s", *way ? way : " freely");
+    append_text(mode, "the whole moves%s", *way ? way : " freely");
   else
-    say(mode, "the whole turns freely");
+    append_text(mode, "the whole turns freely");
 }
 
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
   const strut_vibration *v = work->v;
   mode->description[0] = '\0';
   if (mode->kind == STRUT_MODE_RIGID) {
-    say_rigid(v, x, mode);
+    describe_rigid(v, x, mode);
     return;
   }
-  say_nodes(v, x, mode);
+  describe_nodes(v, x, mode);
   if (mode->kind == STRUT_MODE_MECHANISM) {
-    say(mode, "; nothing resists");
+    append_text(mode, "; nothing resists");
     return;
   }
   energies e = energies_of(v, x);
@@ -161,9 +258,9 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
   double stiffness = mode->eigenvalue * mass;
   if (e.all < 0.5 * fabs(stiffness)) {
-    say(mode, "; %.0f %% of the stiffness is that of forces turning",
-        fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
+    append_text(mode, "; %.0f %% of the stiffness is geometric",
+                fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
     if (e.all < 0.01 * fabs(stiffness)) return;
   }
-  say_members(v, x, &e, mode);
+  describe_members(v, x, &e, mode);
 }

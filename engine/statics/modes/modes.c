@@ -1,41 +1,62 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/parts.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/statics/modes/parts.h"
+#include "engine/statics/modes/modes.h"
+
+/* The shape about which the structure vibrates. */
+
+/*
+ * A structure that nothing holds never comes to rest, but if it is drawn in equilibrium its modes
+ * are valid: some are the free motions.
+ */
+strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
+                               const char *name, strut_arena *arena, strut_rest_state *rest,
+                               strut_error *error) {
+  strut_status status = strut_rest_state_find(model, experiment, name, arena, rest, error);
+  if (status != STRUT_NOT_SETTLED || (name && strcmp(name, "start") != 0)) return status;
+  strut_rest_state drawn = {0};
+  strut_error ignored = {0};
+  if (strut_rest_state_find(model, experiment, "drawn", arena, &drawn, &ignored) != STRUT_OK ||
+      !drawn.at_rest)
+    return status;
+  *rest = drawn;
+  return STRUT_OK;
+}
 
 static const double ENOUGH = 1e-8;   /* relative error of an eigenvalue that is worth printing */
 static const double LARGEST = 1e150; /* eigenvalue; products of two of them are numbers */
 
 const char *strut_mode_kind_name(strut_mode_kind kind) {
   static const char *const names[] = {"rigid-body", "mechanism", "elastic", "unstable"};
+  assert((size_t)kind < sizeof names / sizeof names[0]);
   return names[kind];
 }
 
 /* Nodes that touch, held along the ground: only where that is one coordinate. */
-static strut_status hold_stuck(const strut_model *model, const strut_rest_state *stand,
+static strut_status hold_stuck(const strut_model *model, const strut_rest_state *rest,
                                uint8_t *held, strut_error *error) {
   const double *tangent = model->contacts.tangent;
-  if (stand->closed_count && tangent[0] != 0 && tangent[1] != 0)
+  if (rest->closed_count && tangent[0] != 0 && tangent[1] != 0)
     return strut_fail(error, STRUT_USAGE,
                       "--stuck needs a level ground; make this one level and turn gravity instead");
-  for (int32_t i = 0; i < stand->closed_count; i++)
-    held[2 * stand->closed[i] + (tangent[0] != 0 ? 0 : 1)] = 1;
+  for (int32_t i = 0; i < rest->closed_count; i++)
+    held[2 * rest->closed[i] + (tangent[0] != 0 ? 0 : 1)] = 1;
   return STRUT_OK;
 }
 
 static strut_status check_problem(strut_modes_work *work, strut_error *error) {
   const strut_vibration *v = work->v;
   if (v->n == 0 || v->massive == 0)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      v->n == 0
-                          ? "no node is free to move, so that there are no modes"
-                          : "no free node has mass, so that there are no modes: give nodes or "
-                            "members a mass");
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        v->n == 0 ? "no node is free to move, so there are no modes"
+                  : "no free node has mass, so there are no modes; give nodes or members a mass");
   if (!isfinite(v->largest) || v->largest > LARGEST)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "stiffnesses are so large beside the masses that frequencies cannot be "
@@ -45,12 +66,12 @@ static strut_status check_problem(strut_modes_work *work, strut_error *error) {
   int32_t weakest = work->solver.weakest;
   if (work->solver.loss > 1e-26 || v->mass[weakest] > 0) return STRUT_OK;
   return strut_fail(error, STRUT_SINGULAR,
-                    "node '%s' has no mass and can move without stiffness, so that it has no "
-                    "frequency: give it a mass or hold it",
+                    "node '%s' has no mass and can move without stiffness, so it has no frequency; "
+                    "give it a mass or hold it",
                     v->model->scene->nodes[v->shape->coordinate[weakest] / 2].name);
 }
 
-static double product_with(const strut_modes_work *work, const double *x, const double *y) {
+static double mass_product(const strut_modes_work *work, const double *x, const double *y) {
   double *product = (double *)work->v->work, sum = 0.0;
   strut_vibration_multiply(work->v, work->v->m, x, product);
   for (int32_t i = 0; i < work->v->n; i++) sum += y[i] * product[i];
@@ -58,16 +79,16 @@ static double product_with(const strut_modes_work *work, const double *x, const 
 }
 
 /* Takes from x its shares in the first `count` of the vectors; returns what is left, squared. */
-static double take_out(const strut_modes_work *work, const double *vectors, int32_t count,
-                       double *x) {
+static double remove_shares(const strut_modes_work *work, const double *vectors, int32_t count,
+                            double *x) {
   size_t n = (size_t)work->v->n;
   for (int pass = 0; pass < 2; pass++)
     for (int32_t k = 0; k < count; k++) {
       const double *y = vectors + (size_t)k * n;
-      double share = product_with(work, x, y);
+      double share = mass_product(work, x, y);
       for (size_t i = 0; i < n; i++) x[i] -= share * y[i];
     }
-  return product_with(work, x, x);
+  return mass_product(work, x, x);
 }
 
 /*
@@ -86,7 +107,7 @@ static int32_t sort_zeros(strut_modes_work *work, double *zero, int32_t count) {
   }
   for (int32_t r = 0; r < work->rigid_count && found < count; r++) {
     memcpy(x, work->rigid + (size_t)r * n, n * sizeof *x);
-    if (take_out(work, zero, count, x) > 1e-8) continue;
+    if (remove_shares(work, zero, count, x) > 1e-8) continue;
     memcpy(basis + (size_t)found++ * n, work->rigid + (size_t)r * n, n * sizeof *x);
   }
   rigid = found;
@@ -94,7 +115,7 @@ static int32_t sort_zeros(strut_modes_work *work, double *zero, int32_t count) {
     double most = -1.0, *next = basis + (size_t)found * n;
     for (int32_t k = 0; k < count; k++) {
       memcpy(x, zero + (size_t)k * n, n * sizeof *x);
-      double left = take_out(work, basis, found, x);
+      double left = remove_shares(work, basis, found, x);
       if (left > most) most = left, memcpy(next, x, n * sizeof *x);
     }
     for (size_t i = 0; i < n && most > 0; i++) next[i] /= sqrt(most);
@@ -145,15 +166,13 @@ static strut_status check_errors(const strut_modes_work *work, const strut_modes
     double value = set->value[i], wrong = (set->error[i] + set->noise[i]) / fabs(value);
     if (value == 0 || wrong <= ENOUGH) continue;
     return strut_fail(error, STRUT_SINGULAR,
-                      "mode %zu, of about %.6g Hz, cannot be had to 1e-8 but only to %.1g: the "
-                      "stiffnesses differ "
-                      "so much (condition about %.1g) that %s; bring them closer together, or ask "
-                      "for fewer modes "
-                      "with --count",
+                      "mode %zu, about %.6g Hz, is known to %.1g only, not to 1e-8: the "
+                      "stiffnesses differ so much (condition about %.1g) that %s; bring them "
+                      "closer together, or request fewer modes with --count",
                       i + 1, sqrt(fabs(value)) / STRUT_TAU, wrong, modes->condition,
                       set->noise[i] > set->error[i]
-                          ? "the last bits of rest lengths and positions decide"
-                          : "rounding decides");
+                          ? "the last bits of rest lengths and positions decide it"
+                          : "rounding decides it");
   }
   return STRUT_OK;
 }
@@ -181,8 +200,8 @@ static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind
   return STRUT_OK;
 }
 
-static strut_status report(strut_modes_work *work, int32_t wanted, strut_modes *modes,
-                           strut_error *error) {
+static strut_status fill_modes(strut_modes_work *work, int32_t wanted, strut_modes *modes,
+                               strut_error *error) {
   strut_eigen_set *set = &work->set;
   size_t found = (size_t)set->count;
   strut_mode_kind *kind = find_kinds(work, error);
@@ -200,8 +219,8 @@ static strut_status report(strut_modes_work *work, int32_t wanted, strut_modes *
   return status ? status : check_errors(work, modes, error);
 }
 
-static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *modes,
-                          strut_error *error) {
+static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_modes *modes,
+                                strut_error *error) {
   const strut_vibration *v = work->v;
   strut_status status = strut_modes_solver_create(v, &work->solver, error);
   if (status == STRUT_OK) status = check_problem(work, error);
@@ -220,11 +239,11 @@ static strut_status solve(strut_modes_work *work, int32_t wanted, strut_modes *m
   status = strut_modes_noise(work, modes->at_rest, error);
   if (status == STRUT_OK) status = strut_modes_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_refine(work, error);
-  return status ? status : report(work, wanted, modes, error);
+  return status ? status : fill_modes(work, wanted, modes, error);
 }
 
-/* The lowest so many that are wanted: of a dense problem all unless asked otherwise. */
-static int32_t wanted_of(const strut_modes_options *options, bool dense) {
+/* Number of modes requested; by default all of a dense problem. */
+static int32_t requested_count(const strut_modes_options *options, bool dense) {
   if (options->count > 0) return options->count;
   return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
 }
@@ -232,27 +251,27 @@ static int32_t wanted_of(const strut_modes_options *options, bool dense) {
 strut_status strut_modes_find(const strut_model *model, const strut_experiment *experiment,
                               const strut_modes_options *options, strut_modes *modes,
                               strut_error *error) {
-  strut_rest_state stand = {0};
+  strut_rest_state rest = {0};
   *modes = (strut_modes){0};
   strut_modes_work work = {.arena = &modes->arena};
   strut_status status =
-      strut_modes_shape(model, experiment, options->at, &modes->arena, &stand, error);
+      strut_modes_shape(model, experiment, options->at, &modes->arena, &rest, error);
   if (status != STRUT_OK) return status;
-  modes->at = stand.name;
-  modes->q = stand.q;
-  modes->at_rest = stand.at_rest;
-  modes->settle = stand.settle;
-  modes->closed = stand.closed;
-  modes->closed_count = stand.closed_count;
+  modes->at = rest.name;
+  modes->q = rest.q;
+  modes->at_rest = rest.at_rest;
+  modes->settle = rest.settle;
+  modes->closed = rest.closed;
+  modes->closed_count = rest.closed_count;
   uint8_t *held = strut_arena_allocate(&modes->arena, (size_t)model->length, sizeof *held);
   if (!held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (options->stuck) status = hold_stuck(model, &stand, held, error);
+  if (options->stuck) status = hold_stuck(model, &rest, held, error);
   if (status == STRUT_OK)
-    status = strut_vibration_create(model, stand.q, stand.closed, stand.closed_count, held, &work.v,
-                                    error);
+    status =
+        strut_vibration_create(model, rest.q, rest.closed, rest.closed_count, held, &work.v, error);
   if (status == STRUT_OK) {
     modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
-    status = solve(&work, wanted_of(options, modes->dense), modes, error);
+    status = solve_modes(&work, requested_count(options, modes->dense), modes, error);
   }
   strut_modes_solver_free(&work.solver);
   strut_vibration_free(work.v);

@@ -61,7 +61,7 @@ typedef struct strut_modes {
 
 typedef struct strut_modes_options {
   const char *at; /* as for strut_rest_state_find */
-  int32_t count;  /* lowest so many; 0: all where dense, else STRUT_SPARSE_MODES */
+  int32_t count;  /* number of lowest modes; 0: all if dense, else STRUT_SPARSE_MODES */
   bool stuck;     /* nodes that touch are held along the ground too, as friction would */
   bool sparse;    /* by Lanczos's method whatever the size */
 } strut_modes_options;

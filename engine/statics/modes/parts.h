@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the files of the room `modes` share: the problem on its way from matrices to named modes.
- */
+/** Shared by the files of this folder: the eigenproblem from matrices to named modes. */
 #ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
 #define STRUT_ENGINE_STATICS_MODES_PARTS_H
 
@@ -32,7 +30,7 @@ typedef struct strut_modes_work {
 
 /** The shape of that name, as strut_rest_state_find. */
 strut_status strut_modes_shape(const strut_model *model, const strut_experiment *experiment,
-                               const char *name, strut_arena *arena, strut_rest_state *stand,
+                               const char *name, strut_arena *arena, strut_rest_state *rest,
                                strut_error *error);
 
 /** All modes of a dense problem, or the lowest ones of a sparse one, into work->set. */
@@ -41,7 +39,9 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
 
 /** The shape to twice a double's precision, from one that is at rest as far as doubles tell. */
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);
-/** What the last bits of rest lengths, or of a shape that is not at rest, do to the eigenvalues. */
+/**
+ * Effect of the last bits of rest lengths, or of a shape that is not at rest, on the eigenvalues.
+ */
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error);
 /** Improves the eigenpairs and estimates their errors. */
 strut_status strut_modes_refine(strut_modes_work *work, strut_error *error);
@@ -53,7 +53,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
                                  strut_error *error);
 
-/** What a mode looks like, in words. */
+/** Describes a mode in words. */
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode);
 
 #endif

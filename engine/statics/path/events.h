@@ -7,7 +7,9 @@
 
 #include "engine/statics/path/system.h"
 
-/** A step: from one point (2 n + 2) of the path to the next, and the tangent (n + 1) it began with. */
+/**
+ * A step: from one point (2 n + 2) of the path to the next, and the tangent (n + 1) it began with.
+ */
 typedef struct strut_path_piece {
   const double *from, *tangent, *to;
   double length; /* tangent . (to - from) */
@@ -25,8 +27,8 @@ double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
                                      const strut_path_piece *piece, int32_t which);
 
 /**
- * The point y (2 n + 2) of the piece where the measure is 0; it must have different signs at the ends.
- * Returns the place along the tangent, 0 to piece->length, or -1: no such change of sign.
+ * The point y (2 n + 2) of the piece where the measure is 0; it must have different signs at the
+ * ends. Returns the place along the tangent, 0 to piece->length, or -1: no such change of sign.
  */
 double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,
                          strut_path_measure measure, int32_t which, double *y);

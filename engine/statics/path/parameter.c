@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared. */
+/*
+ * Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared.
+ */
 #include "engine/statics/path/parameter.h"
 
 #include <math.h>
@@ -67,8 +69,8 @@ static bool is_same_structure(const strut_model *a, const strut_model *b) {
   return memcmp(a->fixed, b->fixed, (size_t)a->length * sizeof *a->fixed) == 0;
 }
 
-/* Remembers that there is no equilibrium to ask for at a value, and why. */
-static bool refuse(strut_path_parameter *p, double value, const strut_error *why) {
+/* Records why the scene is invalid at a value. */
+static bool refuse_value(strut_path_parameter *p, double value, const strut_error *why) {
   p->refused_at = value;
   p->refusal = *why;
   return false;
@@ -79,17 +81,17 @@ static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_t
   strut_model *model = NULL;
   strut_error error = {0};
   strut_status status = p->options->scene_at(p->options->context, value, &setup, &error);
-  if (status != STRUT_OK) return refuse(p, value, &error);
+  if (status != STRUT_OK) return refuse_value(p, value, &error);
   status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK && !is_same_structure(p->model, model))
     status = strut_fail(&error, STRUT_USAGE,
                         "%s changes what the structure is made of (nodes, members, supports or "
-                        "contacts); a path needs the same structure all along",
+                        "contacts); a path needs the same structure throughout",
                         p->options->name);
   if (status == STRUT_OK) read_terms(model, terms);
   strut_model_free(model);
   strut_setup_free(&setup);
-  return status == STRUT_OK || refuse(p, value, &error);
+  return status == STRUT_OK || refuse_value(p, value, &error);
 }
 
 bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_path_terms *t) {
@@ -107,7 +109,7 @@ bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_p
     if (rest.hi < 0) {
       strut_fail(&error, STRUT_BAD_SCENE, "the rest length of %s would be negative",
                  p->model->scene->members[member].name);
-      return refuse(p, dd_double(value), &error);
+      return refuse_value(p, dd_double(value), &error);
     }
   } else {
     strut_dd place = dd_add(dd_of(p->base.position[at]), change);
@@ -163,23 +165,23 @@ bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_pat
   return false;
 }
 
-static bool is_same(const double *a, const double *b, size_t count) {
+static bool is_equal(const double *a, const double *b, size_t count) {
   return memcmp(a, b, count * sizeof *a) == 0;
 }
 
-/* Whether anything that matters at rest differs: positions do where they are held. */
+/* True if the terms differ in equilibrium; positions matter only where they are held. */
 static bool is_different(const strut_model *model, const strut_path_terms *a,
                          const strut_path_terms *b) {
   size_t slots = (size_t)model->members.slots;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (model->fixed[i] ? a->position[i] != b->position[i] : a->force[i] != b->force[i])
       return true;
-  return !is_same(a->stiffness, b->stiffness, slots) || !is_same(a->rest, b->rest, slots) ||
-         !is_same(a->ground, b->ground, (size_t)model->contacts.count) ||
-         !is_same(a->normal, b->normal, 2) || a->height != b->height;
+  return !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots) ||
+         !is_equal(a->ground, b->ground, (size_t)model->contacts.count) ||
+         !is_equal(a->normal, b->normal, 2) || a->height != b->height;
 }
 
-/* That a scene's number does something, and leaves the structure as it is. */
+/* Checks that a scene's number has an effect and does not change the structure. */
 static strut_status check_effect(strut_path_parameter *p, strut_error *error) {
   static const double places[] = {1e-3, 0.37, 1.0};
   if (p->options->over != STRUT_PATH_OVER_SCENE) return STRUT_OK;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What a path is followed over: how each number of the equations depends on the parameter.
- */
+/** The parameter of a path: how each number of the equations depends on it. */
 #ifndef STRUT_ENGINE_STATICS_PATH_PARAMETER_H
 #define STRUT_ENGINE_STATICS_PATH_PARAMETER_H
 
 #include "engine/base/double_double.h"
 #include "engine/statics/path/path.h"
 
-/** Numbers of the equations that a parameter may change, or their derivatives with respect to it. */
+/**
+ * Numbers of the equations that a parameter may change, or their derivatives with respect to it.
+ */
 typedef struct strut_path_terms {
   double *stiffness;               /* (slots) [N/m] */
   double *rest, *rest_low;         /* (slots) rest length as a sum of two [m] */

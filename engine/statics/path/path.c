@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is followed, from which equilibrium, and the walk from there. See path.h. */
+/* Parameter, start equilibrium and walk of a path. */
 #include "engine/statics/path/path.h"
 
 #include <math.h>
@@ -34,8 +34,7 @@ static strut_status no_such_load(const strut_scene *scene, const char *name, str
     used += length;
     list[used] = '\0';
   }
-  return strut_fail(error, STRUT_USAGE, "there is no load '%s'; the scene's loads are: %s", name,
-                    list);
+  return strut_fail(error, STRUT_USAGE, "unknown load '%s'; the scene's loads are: %s", name, list);
 }
 
 /* Is it one of the loads that the factor multiplies? */
@@ -43,7 +42,9 @@ static bool is_followed(const strut_load *load, const char *name) {
   return name ? strcmp(load->name, name) == 0 : load->signal < 0;
 }
 
-/* Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path. */
+/*
+ * Adds the loads that the factor multiplies to `load`, and what they are at factor 1 to the path.
+ */
 static strut_status choose_loads(const strut_scene *scene, const char *name, double *load,
                                  strut_path *path, strut_error *error) {
   bool found = false, acts = false, alike = true;
@@ -74,8 +75,8 @@ static strut_status choose_loads(const strut_scene *scene, const char *name, dou
                     name ? " " : "", name ? name : "");
 }
 
-/* All that a path is made from. */
-typedef struct beginning {
+/* The start of a path. */
+typedef struct path_start {
   const strut_path_options *options;
   const strut_model *drawn; /* the model that was given */
   strut_setup setup; /* where the parameter is `from`; its arena is its own only if `owned` */
@@ -84,10 +85,10 @@ typedef struct beginning {
   double *load, *q;   /* (length) loads at factor 1 [N]; the equilibrium [m] */
   uint8_t *held;      /* (length) a free coordinate that is displaced; NULL without one */
   strut_arena arena;
-} beginning;
+} path_start;
 
 /* Loads of the scene that is followed, at the factor that the path begins with. */
-static bool scale_loads(beginning *b) {
+static bool scale_loads(path_start *b) {
   const strut_scene *drawn = b->drawn->scene;
   strut_load *loads = strut_arena_allocate(&b->arena, drawn->load_count, sizeof *loads);
   if (!loads) return false;
@@ -102,7 +103,7 @@ static bool scale_loads(beginning *b) {
 }
 
 /* The driven member with the rest length that the path begins with. */
-static strut_status lengthen_member(beginning *b, strut_error *error) {
+static strut_status lengthen_member(path_start *b, strut_error *error) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t driven = drawn->actuators[b->options->index].member;
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
@@ -114,12 +115,12 @@ static strut_status lengthen_member(beginning *b, strut_error *error) {
   members[driven].rest_kind = STRUT_REST_LENGTH;
   members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
   if (members[driven].rest_value >= 0) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be negative at the beginning",
+  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be negative at the start",
                     members[driven].name);
 }
 
 /* A support where the path begins. */
-static bool move_support(beginning *b) {
+static bool move_support(path_start *b) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t at = b->options->index;
   strut_node *nodes = strut_arena_allocate(&b->arena, drawn->node_count, sizeof *nodes);
@@ -131,7 +132,7 @@ static bool move_support(beginning *b) {
 }
 
 /* Scene and model where the parameter is `from`. */
-static strut_status make_model(beginning *b, strut_error *error) {
+static strut_status make_model(path_start *b, strut_error *error) {
   const strut_path_options *o = b->options;
   strut_status status = STRUT_OK;
   bool made = true;
@@ -148,11 +149,11 @@ static strut_status make_model(beginning *b, strut_error *error) {
 }
 
 /* q goes downhill to an equilibrium, with `held` coordinates where they are. */
-static strut_status descend(const strut_model *model, const uint8_t *held, bool without, double *q,
-                            strut_error *error) {
+static strut_status descend_to_rest(const strut_model *model, const uint8_t *held, bool without,
+                                    double *q, strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
-  const char *where = without ? "without the load" : "at the beginning of the path";
+  const char *where = without ? "without the load" : "at the start of the path";
   strut_status status = strut_potential_create(model, held, true, &potential, error);
   if (status == STRUT_OK && potential->n > 0)
     status = strut_minimiser_create(potential, &minimiser, error);
@@ -160,13 +161,13 @@ static strut_status descend(const strut_model *model, const uint8_t *held, bool 
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "%s there is no equilibrium to begin at: nothing holds the "
-                          "structure; support it or give it a ground",
+                          "%s there is no equilibrium to start from: nothing holds the structure; "
+                          "support it or give it a ground",
                           where);
     else if (descent.end == STRUT_DESCENT_EXHAUSTED && descent.residual > NEARLY * descent.rounding)
       status = strut_fail(error, STRUT_NOT_SETTLED,
-                          "%s no equilibrium was found to begin at: %.3g N are left", where,
-                          descent.residual);
+                          "%s no equilibrium was found to start from: the residual is %.3g N",
+                          where, descent.residual);
   }
   strut_minimiser_free(minimiser);
   strut_potential_free(potential);
@@ -174,37 +175,37 @@ static strut_status descend(const strut_model *model, const uint8_t *held, bool 
 }
 
 /* The equilibrium of that name. */
-static strut_status begin_at_name(beginning *b, strut_error *error) {
-  strut_rest_state stand;
+static strut_status start_at_name(path_start *b, strut_error *error) {
+  strut_rest_state rest;
   strut_status status = strut_rest_state_find(b->model, &b->setup.experiment, b->options->at,
-                                              &b->arena, &stand, error);
+                                              &b->arena, &rest, error);
   if (status) return status;
-  if (!stand.at_rest)
+  if (!rest.at_rest)
     return strut_fail(error, STRUT_NOT_SETTLED,
-                      "'%.100s' is no equilibrium where the path begins: %.3g N are left",
-                      stand.name, stand.residual);
-  memcpy(b->q, stand.q, (size_t)b->model->length * sizeof *b->q);
+                      "'%.100s' is no equilibrium where the path starts: the residual is %.3g N",
+                      rest.name, rest.residual);
+  memcpy(b->q, rest.q, (size_t)b->model->length * sizeof *b->q);
   return STRUT_OK;
 }
 
 /* The equilibrium to begin at, in q. A free coordinate to be displaced is held from then on. */
-static strut_status find_beginning(beginning *b, strut_error *error) {
+static strut_status find_start(path_start *b, strut_error *error) {
   const strut_path_options *o = b->options;
   size_t length = (size_t)b->model->length;
   bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
   memcpy(b->q, b->model->start, length * sizeof *b->q);
   strut_status status =
-      o->at ? begin_at_name(b, error) : descend(b->model, NULL, without, b->q, error);
+      o->at ? start_at_name(b, error) : descend_to_rest(b->model, NULL, without, b->q, error);
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
   if (!b->held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   b->held[o->index] = 1;
   if (o->from == 0) return STRUT_OK;
   b->q[o->index] += o->from;
-  return descend(b->model, b->held, false, b->q, error);
+  return descend_to_rest(b->model, b->held, false, b->q, error);
 }
 
-static bool make_walk(strut_path_walk *w) {
+static bool allocate_walk(strut_path_walk *w) {
   size_t count = 2 * ((size_t)w->system.n + 1);
   double **arrays[] = {&w->y,     &w->tangent, &w->next,  &w->next_tangent,
                        &w->trial, &w->spare,   &w->upward};
@@ -217,7 +218,7 @@ static bool make_walk(strut_path_walk *w) {
   return true;
 }
 
-static strut_status create_walk(beginning *b, double until, strut_path_walk *w,
+static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                                 strut_error *error) {
   strut_path_system *s = &w->system;
   strut_status status = strut_path_system_create(b->model, b->held, s, error);
@@ -226,12 +227,12 @@ static strut_status create_walk(beginning *b, double until, strut_path_walk *w,
     return strut_fail(error, STRUT_USAGE,
                       "the structure has %d free coordinates; paths are followed with up to %d",
                       (int)s->n, STRUT_PATH_COORDINATES);
-  if (!make_walk(w)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!allocate_walk(w)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   return strut_path_parameter_create(b->model, b->options, b->load, b->options->from, until, b->q,
                                      &s->arena, &s->parameter, error);
 }
 
-static strut_status walk_from(beginning *b, double until, int32_t steps, strut_path *path,
+static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
   strut_path_walk w = {.path = path};
   strut_status status = create_walk(b, until, &w, error);
@@ -247,15 +248,15 @@ static strut_status walk_from(beginning *b, double until, int32_t steps, strut_p
     if (w.failed) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   }
   if (status == STRUT_OK && path->point_count == 0)
-    status = strut_fail(error, STRUT_NOT_SETTLED,
-                        "the structure has no stiffness against %s at the start, so that no "
-                        "path begins there",
-                        path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
+    status = strut_fail(
+        error, STRUT_NOT_SETTLED,
+        "the structure has no stiffness against %s at the start, so no path starts there",
+        path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
   strut_path_system_free(&w.system);
   return status;
 }
 
-/* What the path is over, for people. */
+/* Names the path's parameter for messages. */
 static strut_status name_parameter(const strut_model *model, const strut_path_options *o,
                                    strut_path *path, strut_error *error) {
   const strut_scene *scene = model->scene;
@@ -282,10 +283,10 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   bool unsaid = over_load && options->until == 0 && options->from == 0;
   double until = unsaid ? 1.0 : options->until;
   int32_t steps = options->steps > 0 ? options->steps : DEFAULT_STEPS;
-  beginning b = {.options = options, .drawn = model, .setup.experiment = *experiment};
+  path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
   if (!(fabs(until - options->from) > 0))
-    return strut_fail(error, STRUT_USAGE, "the path ends where it begins, at %.6g", until);
+    return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
   b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
   strut_status status = b.load && b.q ? name_parameter(model, options, path, error)
@@ -295,7 +296,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (status == STRUT_OK) status = make_model(&b, error);
   if (status == STRUT_OK && b.model->length != model->length)
     status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
-  if (status == STRUT_OK) status = find_beginning(&b, error);
+  if (status == STRUT_OK) status = find_start(&b, error);
   if (status == STRUT_OK) status = walk_from(&b, until, steps, path, error);
   if (status == STRUT_OK && path->end == STRUT_PATH_STEPS)
     snprintf(path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The path of equilibria that a parameter draws as it changes, past limit points too: a load's
- * factor, an actuator's length, the displacement of a node, or anything that a scene depends on.
+ * The path of equilibria as a parameter changes, past limit points too: a load's factor, an
+ * actuator's length, the displacement of a node, or anything that a scene depends on.
  *
  * Arc-length continuation: predictor along the tangent, Newton's method with one condition on the
  * length of the step. Between events what is taut and what touches stays fixed, so that the path is
@@ -19,15 +19,15 @@
 enum { STRUT_PATH_COORDINATES = 600 };
 
 typedef enum strut_path_event_kind {
-  STRUT_PATH_LIMIT,           /* the parameter turns back */
-  STRUT_PATH_BIFURCATION,     /* an eigenvalue of the stiffness changes its sign, the parameter
+  STRUT_PATH_LIMIT,       /* the parameter turns back */
+  STRUT_PATH_BIFURCATION, /* an eigenvalue of the stiffness changes its sign, the parameter
                                   goes on */
-  STRUT_PATH_SLACK,           /* a cable ceases to pull */
-  STRUT_PATH_TAUT,            /* a cable begins to pull */
-  STRUT_PATH_TOUCHDOWN,       /* a node meets the ground */
-  STRUT_PATH_LIFT_OFF,        /* a node leaves it */
-  STRUT_PATH_KINK_LIMIT,      /* the parameter turns back at a kink: no eigenvalue passes zero */
-  STRUT_PATH_KINK_BIFURCATION /* it goes on, but the number of negative eigenvalues jumps */
+  STRUT_PATH_SLACK,       /* a cable ceases to pull */
+  STRUT_PATH_TAUT,        /* a cable begins to pull */
+  STRUT_PATH_TOUCHDOWN,   /* a node meets the ground */
+  STRUT_PATH_LIFT_OFF,    /* a node leaves it */
+  STRUT_PATH_KINK_LIMIT,  /* the parameter turns back at a kink: no eigenvalue passes zero */
+  STRUT_PATH_KINK_BIFURCATION /* the parameter continues, but the number of negative eigenvalues jumps */
 } strut_path_event_kind;
 
 /**
@@ -59,13 +59,13 @@ typedef struct strut_path_event {
 
 typedef enum strut_path_end {
   STRUT_PATH_UNTIL,  /* the value asked for */
-  STRUT_PATH_STEPS,  /* as many steps as allowed */
+  STRUT_PATH_STEPS,  /* the maximum number of steps */
   STRUT_PATH_AWAY,   /* a node left all bounds, or the parameter went ten ranges the other way */
-  STRUT_PATH_LOST,   /* no equilibrium near: the remark says where */
-  STRUT_PATH_INVALID /* beyond this value the scene means nothing: the remark says why */
+  STRUT_PATH_LOST,   /* no equilibrium nearby; the remark says where */
+  STRUT_PATH_INVALID /* the scene is invalid beyond this value; the remark says why */
 } strut_path_end;
 
-/** What is continued over. */
+/** The parameter of the continuation. */
 typedef enum strut_path_over {
   STRUT_PATH_OVER_LOAD,       /* a factor of loads */
   STRUT_PATH_OVER_ACTUATOR,   /* what an actuator adds to its member's rest length [m] */
@@ -106,7 +106,7 @@ typedef struct strut_path_options {
                         comes to rest */
   double from;  /* where the path begins: in SI, or the factor */
   double until; /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps; /* most steps; 0: 400 */
+  int32_t steps; /* maximum number of steps; 0: 400 */
 } strut_path_options;
 
 /**
@@ -114,10 +114,10 @@ typedef struct strut_path_options {
  * them unless from says more. Everything else stays as it is. A free coordinate that is displaced
  * is held from the beginning: displacement counts from where the equilibrium has it. A named load
  * with a signal counts with its force alone. Friction and drives are left out. strut_path_free
- * releases it, after a failure too; model and options' texts must outlive it. STRUT_USAGE for a load that is
- * not there or no load at all, a parameter that does nothing or changes what the structure is made
- * of; STRUT_NOT_SETTLED where there is no equilibrium to begin at, STRUT_NO_MEMORY, and what
- * scene_at fails with at `from`.
+ * releases it, after a failure too; model and options' texts must outlive it. STRUT_USAGE for a
+ * load that is not there or no load at all, a parameter that does nothing or changes what the
+ * structure is made of; STRUT_NOT_SETTLED where there is no equilibrium to begin at,
+ * STRUT_NO_MEMORY, and what scene_at fails with at `from`.
  */
 STRUT_API strut_status strut_path_follow(const strut_model *model,
                                          const strut_experiment *experiment,

@@ -134,7 +134,7 @@ static size_t find_soft(const strut_path_system *s, double below, size_t *first)
   return count;
 }
 
-bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_wanted wanted) {
+bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spectrum_detail wanted) {
   size_t first;
   if (!strut_path_evaluate(s, y)) return false;
   s->negative = 0;

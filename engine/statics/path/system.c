@@ -2,8 +2,9 @@
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
 #include "engine/statics/path/system.h"
 #include "engine/forces/tangent.h"
-#include "engine/statics/lu.h"
+#include "engine/statics/dense_algebra.h"
 
+#include <assert.h>
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -397,6 +398,7 @@ bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
 }
 
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
+  assert(which >= 0 && which < strut_path_switch_count(s));
   int32_t members = s->model->members.count;
   if (which < members)
     s->pulling[which] = on;

@@ -54,15 +54,15 @@ typedef struct strut_path_system {
 } strut_path_system;
 
 /**
- * `held` (length) or NULL: coordinates held besides the supports. The parameter is created in
- * system->parameter by who asks, before anything else is asked of the system, whose address must not
- * change. Free it after a failure too.
+ * `held` (length) or NULL: coordinates held besides the supports. The caller creates the parameter
+ * in system->parameter before any other call; the system's address must not change. Free it after a
+ * failure too.
  */
 strut_status strut_path_system_create(const strut_model *model, const uint8_t *held,
                                       strut_path_system *system, strut_error *error);
 void strut_path_system_free(strut_path_system *system);
 
-/** y (2 n + 2) from positions of the free coordinates, at the parameter's beginning. */
+/** y (2 n + 2) from positions of the free coordinates, at the parameter's start. */
 void strut_path_unplace(const strut_path_system *system, const double *q, double *y);
 /** The parameter's value at y. */
 double strut_path_value(const strut_path_system *system, const double *y);
@@ -82,23 +82,26 @@ int strut_path_correct(strut_path_system *system, const double *row, double valu
 bool strut_path_tangent(strut_path_system *system, const double *y, const double *row,
                         double *tangent);
 
-/** What is wanted of the stiffness: each costs several times what the one before it does. */
-typedef enum strut_path_wanted {
+/** Detail of the stiffness's spectrum: each level costs several times the previous one. */
+typedef enum strut_path_spectrum_detail {
   STRUT_PATH_SIGNS,  /* of eigenvalues: how many are negative */
   STRUT_PATH_VALUES, /* with all digits near zero too, not only to those of the largest */
   STRUT_PATH_VECTORS /* and eigenvectors */
-} strut_path_wanted;
+} strut_path_spectrum_detail;
 
 /**
  * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
  * number of negative ones into system->negative. False: no scene has this value.
  */
-bool strut_path_spectrum(strut_path_system *system, const double *y, strut_path_wanted wanted);
+bool strut_path_spectrum(strut_path_system *system, const double *y,
+                         strut_path_spectrum_detail wanted);
 
 /** Cables first, then contacts: what may change along the path. */
 int32_t strut_path_switch_count(const strut_path_system *system);
-/** Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value; -INFINITY
- * for members that are no cables. */
+/**
+ * Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value;
+ * -INFINITY for members that are no cables.
+ */
 double strut_path_switch_value(strut_path_system *system, int32_t which, const double *y);
 bool strut_path_switch_is_on(const strut_path_system *system, int32_t which);
 void strut_path_switch_set(strut_path_system *system, int32_t which, bool on);

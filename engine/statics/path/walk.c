@@ -1,10 +1,96 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predictor, corrector, what happens in between, and on. See walk.h. */
 #include "engine/statics/path/walk.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* Points and events are kept with positions and all forces. */
+
+double strut_path_distance(const strut_path_walk *w, const double *a, const double *b) {
+  double sum = 0;
+  for (int32_t i = 0; i <= w->system.n; i++) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sqrt(sum);
+}
+
+/* Memory for one more of `size` bytes at *items. */
+static bool reserve_items(strut_path_walk *w, void **items, size_t count, size_t *room,
+                          size_t size) {
+  if (count < *room) return true;
+  size_t more = *room ? 2 * *room : 64;
+  void *block = *items ? strut_reallocate(*items, more, size) : strut_allocate(more, size);
+  if (!block) {
+    w->failed = true;
+    return false;
+  }
+  *items = block, *room = more;
+  return true;
+}
+
+/* Positions and forces at y; false: out of memory. */
+static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *point) {
+  strut_path_system *s = &w->system;
+  const strut_model *model = s->model;
+  size_t length = (size_t)model->length, members = (size_t)model->members.count;
+  point->q = strut_arena_allocate(&w->path->arena, length, sizeof(double));
+  point->force = strut_arena_allocate(&w->path->arena, members, sizeof(double));
+  point->reaction = strut_arena_allocate(&w->path->arena, length, sizeof(double));
+  point->contact =
+      strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
+  if (!point->q || !point->force || !point->reaction || !point->contact) {
+    w->failed = true;
+    return false;
+  }
+  strut_path_evaluate(s, y); /* y is of the path: its value was not refused */
+  memcpy(point->q, s->q, length * sizeof *s->q);
+  for (size_t j = 0; j < members; j++) {
+    bool cable = model->scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
+    point->force[j] = cable ? fmax(s->member[j].tension, 0.0) : s->member[j].tension;
+  }
+  strut_path_reactions(s, point->reaction, point->contact);
+  return true;
+}
+
+void strut_path_add_point(strut_path_walk *w, int32_t negative) {
+  strut_path *p = w->path;
+  void *items = p->points;
+  strut_path_point point = {
+      .factor = strut_path_value(&w->system, w->y), .arc = w->arc, .negative = negative};
+  if (!keep_state(w, w->y, &point) ||
+      !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
+    return;
+  p->points = items;
+  p->points[p->point_count++] = point;
+}
+
+void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const double *y,
+                          int32_t index, int32_t before, int32_t after, const char *detail) {
+  strut_path *p = w->path;
+  void *items = p->events;
+  strut_path_point state;
+  detail = strut_arena_text(&p->arena, detail, strlen(detail));
+  if (!detail) w->failed = true;
+  if (w->failed || !keep_state(w, y, &state) ||
+      !reserve_items(w, &items, p->event_count, &w->event_room, sizeof *p->events))
+    return;
+  p->events = items;
+  strut_path_event event = {.kind = kind,
+                            .factor = strut_path_value(&w->system, y),
+                            .arc = w->arc + strut_path_distance(w, w->y, y),
+                            .index = index,
+                            .before = before,
+                            .after = after,
+                            .detail = detail,
+                            .q = state.q,
+                            .force = state.force,
+                            .reaction = state.reaction,
+                            .contact = state.contact};
+  size_t at = p->event_count++; /* in the order of the path */
+  for (; at > 0 && p->events[at - 1].arc > event.arc; at--) p->events[at] = p->events[at - 1];
+  p->events[at] = event;
+}
+
+/* Predictor, corrector, and the events between them. */
 
 enum { SLOW = 8, ROUNDS = 4 };
 
@@ -17,13 +103,13 @@ static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way
 /* Of the size: a loose cable that is as long as its rest length all along, but for rounding. */
 static const double HANGING = 1e-15;
 static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
-static const double NEARBY = 1e-6; /* what a beginning is sharpened by at most */
+static const double NEARBY = 1e-6; /* largest correction of the start */
 
 static size_t bytes_of(const strut_path_walk *w) {
   return 2 * ((size_t)w->system.n + 1) * sizeof(double);
 }
 
-static double dot(const strut_path_walk *w, const double *a, const double *b) {
+static double dot_product(const strut_path_walk *w, const double *a, const double *b) {
   double sum = 0;
   for (int32_t i = 0; i <= w->system.n; i++) sum += a[i] * b[i];
   return sum;
@@ -119,22 +205,22 @@ void strut_path_count_negative(strut_path_walk *w) {
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
 static bool find_next(strut_path_walk *w) {
   strut_path_system *s = &w->system;
-  double here = dot(w, w->tangent, w->y);
+  double here = dot_product(w, w->tangent, w->y);
   for (; w->step >= SHORTEST; w->step *= 0.5) {
     memcpy(w->next, w->y, bytes_of(w));
     for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
     int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
     if (used < 0 || used > SLOW || strut_path_distance(w, w->next, w->y) > 1.5 * w->step) continue;
     if (!strut_path_tangent(s, w->next, w->tangent, w->next_tangent)) continue;
-    if (dot(w, w->tangent, w->next_tangent) < BEND) continue;
+    if (dot_product(w, w->tangent, w->next_tangent) < BEND) continue;
     return true;
   }
   w->step = SHORTEST;
   return false;
 }
 
-/* Ends the path exactly at the value asked for if this piece passes it. */
-static bool land(strut_path_walk *w) {
+/* Ends the path exactly at the requested value if this piece passes it. */
+static bool land_on_end(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   double from = w->y[s->n], to = w->next[s->n];
   if (!(from < 1 && to >= 1)) return false;
@@ -166,7 +252,7 @@ static bool is_away(const strut_path_walk *w) {
   return most > BOUND || w->y[w->system.n] < DEEP;
 }
 
-/* Why no step leads on: the scene means nothing there, or there is no equilibrium nearby. */
+/* Why no step succeeds: the scene is invalid there, or no equilibrium is nearby. */
 static strut_path_end find_reason(strut_path_walk *w) {
   const strut_path_parameter *p = &w->system.parameter;
   double here = strut_path_value(&w->system, w->y);
@@ -176,7 +262,7 @@ static strut_path_end find_reason(strut_path_walk *w) {
   return STRUT_PATH_INVALID;
 }
 
-static bool give_up(strut_path_walk *w, strut_path_end end) {
+static bool end_path(strut_path_walk *w, strut_path_end end) {
   const strut_path_parameter *p = &w->system.parameter;
   size_t room = sizeof w->path->remark;
   double value = strut_path_value(&w->system, w->y);
@@ -184,11 +270,11 @@ static bool give_up(strut_path_walk *w, strut_path_end end) {
   w->path->end = end;
   if (end == STRUT_PATH_LOST)
     snprintf(w->path->remark, room,
-             "the path ends at %s %.6g%s%s: no equilibrium follows it nearby",
+             "the path ends at %s %.6g%s%s: no equilibrium was found nearby beyond it",
              strut_path_subject(w), value, gap, unit);
   if (end == STRUT_PATH_AWAY)
     snprintf(w->path->remark, room,
-             "followed to %s %.6g%s%s: from there it leads ever further away",
+             "followed to %s %.6g%s%s: beyond, the structure moves away without end",
              strut_path_subject(w), value, gap, unit);
   if (end == STRUT_PATH_INVALID)
     snprintf(w->path->remark, room, "the path ends at %s %.6g%s%s: beyond, at %.6g%s%s, %s",
@@ -196,7 +282,7 @@ static bool give_up(strut_path_walk *w, strut_path_end end) {
   return false;
 }
 
-/* The piece ends early where a switch is thrown, and the walk goes on from there. */
+/* Ends the piece where a switch is thrown and continues from there. */
 static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t which,
                           double *beyond) {
   memcpy(beyond, w->next, bytes_of(w));
@@ -209,16 +295,16 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
   memcpy(w->tangent, w->next_tangent, bytes_of(w));
   bool on = strut_path_pass_kink(w, which, beyond);
   strut_path_add_point(w, w->negative);
-  return on || give_up(w, STRUT_PATH_LOST);
+  return on || end_path(w, STRUT_PATH_LOST);
 }
 
 bool strut_path_walk_step(strut_path_walk *w) {
   strut_path_piece piece = {w->y, w->tangent, w->next, 0};
   int32_t which;
-  if (!find_next(w)) return give_up(w, find_reason(w));
-  piece.length = dot(w, w->tangent, w->next) - dot(w, w->tangent, w->y);
-  bool landed = land(w);
-  if (landed) piece.length = dot(w, w->tangent, w->next) - dot(w, w->tangent, w->y);
+  if (!find_next(w)) return end_path(w, find_reason(w));
+  piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
+  bool landed = land_on_end(w);
+  if (landed) piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
   double place = first_switch(w, &piece, &which);
   if (which >= 0) {
     piece.length = place;
@@ -238,12 +324,15 @@ bool strut_path_walk_step(strut_path_walk *w) {
     w->path->end = STRUT_PATH_UNTIL;
     return false;
   }
-  if (is_away(w)) return give_up(w, STRUT_PATH_AWAY);
+  if (is_away(w)) return end_path(w, STRUT_PATH_AWAY);
   w->step = fmin(1.4 * w->step, w->path->coordinate >= 0 ? LONGEST_HELD : LONGEST);
   return true;
 }
 
-/* The tangent at the beginning: with the load; where the load alone decides, so that it does work. */
+/*
+ * The tangent at the start: with growing load; if only the load moves the structure, so that it
+ * does work.
+ */
 static bool first_tangent(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   if (strut_path_tangent(s, w->y, w->upward, w->tangent)) return true;
@@ -252,8 +341,8 @@ static bool first_tangent(strut_path_walk *w) {
   return strut_path_tangent(s, w->y, w->trial, w->tangent);
 }
 
-/* To all digits where it is: the descent that found y was content with a double's. */
-static void sharpen(strut_path_walk *w) {
+/* Corrects the start to all digits: the descent that found y used doubles. */
+static void sharpen_start(strut_path_walk *w) {
   memcpy(w->next, w->y, bytes_of(w));
   if (strut_path_correct(&w->system, w->upward, 0.0, w->next) < 0) return;
   if (strut_path_distance(w, w->next, w->y) > NEARBY) return;
@@ -268,8 +357,8 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     double value = strut_path_switch_value(s, k, w->y);
     if (isfinite(value)) strut_path_switch_set(s, k, value > -STRUT_PATH_EVEN * s->size);
   }
-  sharpen(w);
-  for (int round = 0; round < ROUNDS; round++) { /* what stands at zero goes the way of the path */
+  sharpen_start(w);
+  for (int round = 0; round < ROUNDS; round++) { /* switches at zero follow the path */
     bool changed = false;
     if (!first_tangent(w)) continue;
     memcpy(w->next, w->y, bytes_of(w));
@@ -283,7 +372,7 @@ bool strut_path_walk_begin(strut_path_walk *w) {
     }
     if (!changed) break;
   }
-  if (!first_tangent(w) || s->drifts) return give_up(w, STRUT_PATH_LOST);
+  if (!first_tangent(w) || s->drifts) return end_path(w, STRUT_PATH_LOST);
   strut_path_count_negative(w);
   strut_path_add_point(w, w->negative);
   return !w->failed;

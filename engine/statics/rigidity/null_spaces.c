@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigidity/null_spaces.h"
 
+#include <assert.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
@@ -173,6 +174,7 @@ strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_a
 
 strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a, strut_arena *arena,
                                     strut_null_spaces *spaces, strut_error *error) {
+  assert(a->rows >= 0 && a->columns >= 0);
   int32_t most = a->rows > a->columns ? a->rows : a->columns;
   return most <= STRUT_DENSE_RIGIDITY ? strut_null_spaces_dense(a, arena, spaces, error)
                                       : strut_null_spaces_sparse(a, arena, spaces, error);

@@ -3,9 +3,9 @@
  * The rank of an equilibrium matrix, with the gap that decides it, and its two null spaces.
  *
  * Up to STRUT_DENSE_RIGIDITY rows and columns by singular values; above by sparse QR, the diagonal
- * of whose R then stands in for them. Kept is what is larger than
- * STRUT_RANK_TOLERANCE times the largest.
- * Since the columns of A are unit vectors, the size of a structure or of its parts changes nothing.
+ * of whose R then stands in for them. Values above STRUT_RANK_TOLERANCE times the largest count
+ * towards the rank. Since the columns of A are unit vectors, the size of a structure or of its
+ * parts changes nothing.
  */
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_NULL_SPACES_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_NULL_SPACES_H
@@ -33,7 +33,7 @@ typedef struct strut_null_spaces {
 STRUT_API strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a, strut_arena *arena,
                                               strut_null_spaces *spaces, strut_error *error);
 
-/* The two ways, for tests. */
+/* Both decompositions, for tests. */
 strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_arena *arena,
                                      strut_null_spaces *spaces, strut_error *error);
 strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_arena *arena,

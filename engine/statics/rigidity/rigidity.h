@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What the statics of a shape say: self-stress, mechanisms, their counts, and what the forces in
- * the shape make of them. In the plane: there is no third coordinate to move along.
+ * Statics of a shape: self-stress, mechanisms, their counts, and what the forces in the shape make
+ * of them. In the plane: there is no third coordinate to move along.
  */
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H

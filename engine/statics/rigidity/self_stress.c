@@ -5,13 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/statics/dense_algebra.h"
+#include "engine/statics/linear_program.h"
+
 static const double TINY = 1e-11;      /* beside the largest force: rounding */
 static const double PIVOT_SHARE = 0.1; /* of the largest entry: what a pivot must have */
 static const double MOST_WORK = 4e8;   /* multiplications spent on locality */
 static const double LEADS = 0.01;      /* of the largest: what a force made 1 must have */
 
 /* Reduced echelon form, members from `shift` on: 1 at its own pivot, 0 at the others. */
-static void reduce(double *rows, size_t count, size_t columns, size_t shift) {
+static void reduce_echelon(double *rows, size_t count, size_t columns, size_t shift) {
   size_t done = 0;
   for (size_t c = 0; c < columns && done < count; c++) {
     size_t j = (c + shift) % columns, best = done;
@@ -39,21 +42,24 @@ static void reduce(double *rows, size_t count, size_t columns, size_t shift) {
   }
 }
 
-static void clean(double *row, size_t columns) {
+static void drop_rounding(double *row, size_t columns) {
   double largest = 0.0;
   for (size_t k = 0; k < columns; k++) largest = fmax(largest, fabs(row[k]));
   for (size_t k = 0; k < columns; k++)
     if (fabs(row[k]) <= TINY * largest) row[k] = 0.0;
 }
 
-static size_t support(const double *row, size_t columns) {
+static size_t count_members(const double *row, size_t columns) {
   size_t count = 0;
   for (size_t k = 0; k < columns; k++) count += row[k] != 0.0;
   return count;
 }
 
-/* What is left of a candidate beside the `count` orthonormal rows chosen; makes it one of them. */
-static bool independent(double *chosen, size_t count, size_t columns, const double *row) {
+/*
+ * Orthogonalises a candidate against the `count` rows chosen and appends it; false if nothing is
+ * left.
+ */
+static bool add_if_independent(double *chosen, size_t count, size_t columns, const double *row) {
   double *rest = chosen + count * columns, before = 0.0, after = 0.0;
   memcpy(rest, row, columns * sizeof *rest);
   for (size_t k = 0; k < columns; k++) before += row[k] * row[k];
@@ -74,13 +80,13 @@ typedef struct candidate {
   const double *row;
 } candidate;
 
-static int by_members(const void *a, const void *b) {
+static int compare_member_counts(const void *a, const void *b) {
   const candidate *x = a, *y = b;
   if (x->members != y->members) return x->members < y->members ? -1 : 1;
   return x->number < y->number ? -1 : x->number > y->number;
 }
 
-/* Echelon forms from every member on; the states of fewest members that are independent. */
+/* Echelon forms from every member on; the states of fewest members that are add_if_independent. */
 static bool choose_local(const double *basis, size_t count, size_t columns, size_t orders,
                          strut_arena *scratch, double *result) {
   size_t total = count * orders, size = count * columns, kept = 0;
@@ -90,23 +96,23 @@ static bool choose_local(const double *basis, size_t count, size_t columns, size
   if (!rows || !chosen || !list) return false;
   for (size_t o = 0; o < orders; o++) {
     memcpy(rows + o * size, basis, size * sizeof *rows);
-    reduce(rows + o * size, count, columns, o * columns / orders);
+    reduce_echelon(rows + o * size, count, columns, o * columns / orders);
   }
   for (size_t i = 0; i < total; i++) {
     double *row = rows + i * columns;
-    clean(row, columns);
-    list[i] = (candidate){.members = support(row, columns), .number = i, .row = row};
+    drop_rounding(row, columns);
+    list[i] = (candidate){.members = count_members(row, columns), .number = i, .row = row};
   }
-  qsort(list, total, sizeof *list, by_members);
+  qsort(list, total, sizeof *list, compare_member_counts);
   for (size_t i = 0; i < total && kept < count; i++) {
-    if (!independent(chosen, kept, columns, list[i].row)) continue;
+    if (!add_if_independent(chosen, kept, columns, list[i].row)) continue;
     memcpy(result + kept++ * columns, list[i].row, columns * sizeof *result);
   }
   return true;
 }
 
 /* The member whose force is made 1. */
-static size_t leader(const strut_model *model, const double *force, size_t columns) {
+static size_t unit_member(const strut_model *model, const double *force, size_t columns) {
   static const strut_member_kind order[] = {STRUT_CABLE, STRUT_SPRING, STRUT_BAR};
   double largest = 0.0;
   for (size_t j = 0; j < columns; j++) largest = fmax(largest, fabs(force[j]));
@@ -126,9 +132,9 @@ static void count_cables(const strut_model *model, const double *force, size_t c
   }
 }
 
-static bool scale(const strut_model *model, double *force, size_t columns) {
+static bool scale_to_unit(const strut_model *model, double *force, size_t columns) {
   size_t pulled, pressed;
-  double unit = force[leader(model, force, columns)];
+  double unit = force[unit_member(model, force, columns)];
   for (size_t j = 0; j < columns && unit != 0.0; j++) force[j] = force[j] / unit + 0.0; /* no -0 */
   count_cables(model, force, columns, &pulled, &pressed);
   return pressed == 0;
@@ -149,6 +155,213 @@ strut_status strut_self_stress_sort(const strut_model *model, const strut_null_s
   strut_arena_free(&scratch);
   if (!good) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < count; i++)
-    states->cables_pull[i] = scale(model, states->force + i * columns, columns);
+    states->cables_pull[i] = scale_to_unit(model, states->force + i * columns, columns);
   return STRUT_OK;
+}
+
+/* Combinations of states of self-stress that pull all cables or stiffen all mechanisms. */
+
+enum { MOST_ROUNDS = 20000, MOST_FORM_ROUNDS = 2000 };
+
+/* A force or eigenvalue above this share of the largest counts as positive. */
+static const double MARGIN = 1e-7;
+
+typedef struct search {
+  const strut_model *model;
+  const strut_self_stress *states;
+  const strut_stress_wish *wish;
+  size_t states_count, members, motions;
+  double *weight; /* (states) the combination */
+  double *pull;   /* (states) a demand's coefficients: it wants weight . pull > 0 */
+  double *cable;  /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
+  double *form, *value, *vector; /* (motions, motions), (motions), (motions, motions) */
+} search;
+
+/*
+ * force (members) becomes the states' combination by weight (states), scaled to a largest force of
+ * 1.
+ */
+static void combine_states(const strut_self_stress *states, size_t members, const double *weight,
+                           double *force) {
+  double largest = 0.0;
+  memset(force, 0, members * sizeof *force);
+  for (size_t i = 0; i < (size_t)states->count; i++)
+    for (size_t j = 0; j < members; j++) force[j] += weight[i] * states->force[i * members + j];
+  for (size_t j = 0; j < members; j++) largest = fmax(largest, fabs(force[j]));
+  for (size_t j = 0; j < members && largest > 0; j++) force[j] /= largest;
+}
+
+static bool allocate(search *s, strut_arena *scratch) {
+  size_t square = s->motions * s->motions + 1;
+  s->weight = strut_arena_allocate(scratch, s->states_count, sizeof(double));
+  s->pull = strut_arena_allocate(scratch, s->states_count, sizeof(double));
+  s->cable = strut_arena_allocate(scratch, s->members, sizeof(double));
+  s->form = strut_arena_allocate(scratch, square, sizeof(double));
+  s->value = strut_arena_allocate(scratch, s->motions + 1, sizeof(double));
+  s->vector = strut_arena_allocate(scratch, square, sizeof(double));
+  return s->weight && s->pull && s->cable && s->form && s->value && s->vector;
+}
+
+static void measure_cables(search *s) {
+  for (size_t j = 0; j < s->members; j++) {
+    if (!s->wish->cables || s->model->scene->members[j].kind != STRUT_CABLE) continue;
+    for (size_t i = 0; i < s->states_count; i++) {
+      double t = s->states->force[i * s->members + j];
+      s->cable[j] += t * t;
+    }
+    s->cable[j] = sqrt(s->cable[j]);
+  }
+}
+
+static double norm(const double *x, size_t n) {
+  double sum = 0.0;
+  for (size_t i = 0; i < n; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
+/* The demand of the cable that is pressed most, relative to its coefficients; false: none is. */
+static bool demand_of_worst_cable(search *s) {
+  double worst = MARGIN * norm(s->weight, s->states_count);
+  size_t at = s->members;
+  for (size_t j = 0; j < s->members; j++) {
+    if (s->cable[j] == 0.0) continue;
+    double force = 0.0;
+    for (size_t i = 0; i < s->states_count; i++)
+      force += s->weight[i] * s->states->force[i * s->members + j];
+    if (force / s->cable[j] > worst) continue;
+    worst = force / s->cable[j];
+    at = j;
+  }
+  if (at == s->members) return false;
+  for (size_t i = 0; i < s->states_count; i++)
+    s->pull[i] = s->states->force[i * s->members + at] / s->cable[at];
+  return true;
+}
+
+static void set_pull_of_forms(search *s, const double *v) {
+  size_t m = s->motions;
+  for (size_t i = 0; i < s->states_count; i++) {
+    const double *form = s->wish->forms + i * m * m;
+    s->pull[i] = 0.0;
+    for (size_t r = 0; r < m; r++)
+      for (size_t c = 0; c < m; c++) s->pull[i] += v[r] * form[r * m + c] * v[c];
+  }
+  double size = norm(s->pull, s->states_count);
+  for (size_t i = 0; i < s->states_count && size > 0; i++) s->pull[i] /= size;
+}
+
+/* The demand of the softest motion; *failed: it has none, so that nothing helps. */
+static bool demand_of_softest_motion(search *s, bool *failed) {
+  size_t m = s->motions;
+  if (m == 0) return false;
+  memset(s->form, 0, m * m * sizeof *s->form);
+  for (size_t i = 0; i < s->states_count; i++)
+    for (size_t k = 0; k < m * m; k++) s->form[k] += s->weight[i] * s->wish->forms[i * m * m + k];
+  if (!strut_symmetric_eigen(s->form, m, s->value, s->vector)) {
+    *failed = true;
+    return true;
+  }
+  double scale = 0.0;
+  for (size_t i = 0; i < s->states_count; i++) scale += fabs(s->weight[i]) * s->wish->scale[i];
+  if (s->value[0] > MARGIN * scale) return false;
+  set_pull_of_forms(s, s->vector);
+  *failed = norm(s->pull, s->states_count) == 0.0;
+  return true;
+}
+
+static bool find_combination(search *s) {
+  bool failed = false;
+  int most = s->motions > 0 ? MOST_FORM_ROUNDS : MOST_ROUNDS;
+  /* start from the states that pull cables by themselves */
+  for (size_t i = 0; i < s->states_count; i++) s->weight[i] = s->states->cables_pull[i] ? 1 : 0.1;
+  for (int round = 0; round < most && !failed; round++) {
+    if (!demand_of_worst_cable(s) && !demand_of_softest_motion(s, &failed)) return true;
+    for (size_t i = 0; i < s->states_count; i++) s->weight[i] += s->pull[i];
+  }
+  return false;
+}
+
+strut_status strut_self_stress_combine(const strut_model *model, const strut_self_stress *states,
+                                       const strut_stress_wish *wish, double *force, bool *found) {
+  *found = false;
+  if (states->count == 0 || !states->force) return STRUT_OK;
+  strut_arena scratch = {0};
+  search s = {.model = model, .states = states, .wish = wish};
+  s.states_count = (size_t)states->count, s.members = (size_t)model->members.count;
+  s.motions = (size_t)wish->motions;
+  bool good = allocate(&s, &scratch);
+  if (good) {
+    measure_cables(&s);
+    *found = find_combination(&s);
+    if (*found) combine_states(states, s.members, s.weight, force);
+  }
+  strut_arena_free(&scratch);
+  return good ? STRUT_OK : STRUT_NO_MEMORY;
+}
+
+/* Can some self-stress pull every cable? A linear programme answers, either way. */
+
+typedef struct cables {
+  const strut_self_stress *states;
+  size_t members;
+  int32_t count;
+  int32_t *member; /* (count) cables that some state loads */
+} cables;
+
+static double force_of(const cables *c, int32_t state, int32_t member) {
+  return c->states->force[(size_t)state * c->members + (size_t)member];
+}
+
+static bool list_cables(const strut_model *model, cables *c, strut_arena *scratch) {
+  c->member = strut_arena_allocate(scratch, c->members + 1, sizeof *c->member);
+  if (!c->member) return false;
+  for (int32_t j = 0; j < model->members.count; j++) {
+    bool loaded = false;
+    for (int32_t i = 0; i < c->states->count; i++) loaded |= force_of(c, i, j) != 0.0;
+    if (loaded && model->scene->members[j].kind == STRUT_CABLE) c->member[c->count++] = j;
+  }
+  return true;
+}
+
+/* A column for each state, a row for each cable: its force is at least 1. */
+static bool build_program(const cables *c, strut_linear_program *program, strut_arena *scratch) {
+  size_t entries = (size_t)c->count * (size_t)c->states->count;
+  if (!strut_linear_program_create(program, c->count, c->states->count, entries, scratch))
+    return false;
+  for (int32_t i = 0; i < c->states->count; i++) program->low[i] = -HUGE_VAL;
+  for (int32_t r = 0; r < c->count; r++) {
+    program->row_low[r] = 1.0;
+    program->row_high[r] = HUGE_VAL;
+    for (int32_t i = 0; i < c->states->count; i++) {
+      double force = force_of(c, i, c->member[r]);
+      program->cost[i] += force;
+      strut_linear_program_add(program, r, i, force);
+    }
+  }
+  return true;
+}
+
+strut_status strut_self_stress_pull_cables(const strut_model *model,
+                                           const strut_self_stress *states, double *force,
+                                           bool *found) {
+  *found = false;
+  if (states->count == 0 || !states->force) return STRUT_OK;
+  strut_arena scratch = {0};
+  cables c = {.states = states, .members = (size_t)model->members.count};
+  strut_linear_program program = {0};
+  strut_linear_program_end end = STRUT_PROGRAM_FAILED;
+  double sum = 0.0;
+  strut_status status = STRUT_NO_MEMORY;
+  double *weight = strut_arena_allocate(&scratch, (size_t)states->count, sizeof *weight);
+  if (weight && list_cables(model, &c, &scratch)) {
+    status = STRUT_OK;
+    if (c.count > 0)
+      status = build_program(&c, &program, &scratch)
+                   ? strut_linear_program_solve(&program, weight, &sum, &end)
+                   : STRUT_NO_MEMORY;
+    *found = status == STRUT_OK && end == STRUT_PROGRAM_OPTIMAL;
+    if (*found) combine_states(states, c.members, weight, force);
+  }
+  strut_arena_free(&scratch);
+  return status;
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * States of self-stress that people can read: local, scaled, and which of them cables can bear.
- */
+/** States of self-stress in readable form: local and scaled; and which of them cables can bear. */
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_SELF_STRESS_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_SELF_STRESS_H
 
@@ -9,7 +7,8 @@
 
 /**
  * A state is scaled so that its first cable carries 1, of those with a hundredth of the largest
- * force; without cables its first spring, else its first member. Cables pull where one sign does it.
+ * force; without cables its first spring, else its first member. Cables pull where one sign does
+ * it.
  */
 typedef struct strut_self_stress {
   int32_t count;     /* s */
@@ -25,17 +24,17 @@ STRUT_API strut_status strut_self_stress_sort(const strut_model *model,
                                               const strut_null_spaces *spaces, strut_arena *arena,
                                               strut_self_stress *states);
 
-/** What a combination of states is wanted to do. */
+/** Requirements on a combination of states. */
 typedef struct strut_stress_wish {
-  bool cables;         /* pull all cables that any state loads */
-  int32_t motions;     /* and be positive definite on so many motions, 0: not asked */
+  bool cables;         /* all cables that any state loads must pull */
+  int32_t motions;     /* it must be positive definite on this many motions; 0: no requirement */
   const double *forms; /* (count of states, motions, motions) their forms on them */
   const double *scale; /* (count of states) their largest force densities: what forms compare to */
 } strut_stress_wish;
 
 /**
- * Looks for a combination (members) that fulfils the wish, by the perceptron's rule: it finds one
- * wherever there is one with some margin; *found says whether it did. Largest force 1.
+ * Searches for a combination (members) that meets the requirements, by the perceptron rule, which
+ * finds one if one with some margin exists; *found: it did. Scaled to a largest force of 1.
  */
 STRUT_API strut_status strut_self_stress_combine(const strut_model *model,
                                                  const strut_self_stress *states,
@@ -43,9 +42,9 @@ STRUT_API strut_status strut_self_stress_combine(const strut_model *model,
                                                  bool *found);
 
 /**
- * Looks for a combination (members) that pulls all cables that any state loads, by a linear
- * programme: the one with the least sum of cable forces where each has at least 1, then scaled to a largest
- * force of 1. Not *found means that there is none.
+ * Finds a combination (members) that pulls all cables that any state loads, by a linear programme:
+ * the least sum of cable forces with each at least 1, then scaled to a largest force of 1. *found
+ * false: none exists.
  */
 STRUT_API strut_status strut_self_stress_pull_cables(const strut_model *model,
                                                      const strut_self_stress *states, double *force,

@@ -11,7 +11,7 @@ struct strut_sparse_qr {
   cholmod_common common;
   cholmod_sparse *r, *h; /* H: reflections, one per column, in the order of permuted rows */
   cholmod_dense *tau;    /* of the reflections */
-  int64_t *order;        /* (columns) column of A that stands at k in R; NULL: as it was */
+  int64_t *order;        /* (columns) column of A at position k in R; NULL: identity */
   int64_t *place;        /* (rows) where a row of A stands among the permuted ones */
   int32_t rows, columns, rank;
   int32_t *live; /* (rank) column of R with the diagonal of row k */

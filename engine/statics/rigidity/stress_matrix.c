@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/statics/symmetric.h"
+#include "engine/statics/dense_algebra.h"
 
 /* Eigenvalues and sums this small beside the largest are rounding. */
 static const double ROUNDING = 1e-9;

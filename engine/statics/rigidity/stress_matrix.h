@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What member forces do to motions that stretch no member: the stress matrix of force densities.
+ * The stress matrix of force densities: the stiffness that member forces give to motions without
+ * stretch.
  *
  * Omega has the sum of a node's force densities on its diagonal and minus a member's at its two
- * nodes (Connelly and Whiteley 1996). Its form, sum of density * |d2 - d1|^2 over members,
- * is the stiffness that a prestress gives to a mechanism d.
+ * nodes (Connelly and Whiteley 1996). Its form, sum of density * |d2 - d1|^2 over members, is the
+ * stiffness that a prestress gives to a mechanism d.
  */
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_STRESS_MATRIX_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_STRESS_MATRIX_H

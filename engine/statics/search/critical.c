@@ -2,6 +2,7 @@
 /* The search in its order: known shapes, random ones, folds of what was found; then saddles. */
 #include "engine/statics/search/critical.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,14 +11,17 @@
 #include "engine/statics/search/starts.h"
 
 /*
- * All searches of one command together may take so many Hessians apart, each times what it costs;
- * and by what share of that each part of a search must be over.
+ * Work limit of all searches of one command (decomposed Hessians times their cost), and the share
+ * of it at which each phase must end.
  */
 static const double MOST_WORK = 6e9;
 static const double KNOWN_BY = 0.2, RANDOM_BY = 0.4, FOLDS_BY = 0.5, CROSSES_BY = 0.55,
                     CLIMBS_BY = 0.9;
 
-/* Crossings of each pair of minima, the part of the random starts they may number, and shakes. */
+/*
+ * Crossings per pair of minima, their limit as a fraction of the random starts, and shakes per
+ * minimum.
+ */
 enum { CROSSINGS = 2, PART_CROSSED = 8, SHAKES = 6 };
 enum { LEAST_RANDOM = 256, PER_MINIMUM = 32, MODES_CLIMBED = 5, ROUNDS = 4, RANDOM_CLIMBS = 8 };
 
@@ -43,7 +47,7 @@ static bool is_minimum(const strut_critical_point *point) {
   return point->label == STRUT_STABLE || point->label == STRUT_FLOPPY;
 }
 
-static bool keep_hits(search *s) {
+static bool reserve_hits(search *s) {
   if ((int64_t)s->all.count <= s->room) return true;
   int64_t room = 2 * (int64_t)s->all.count + 16;
   int64_t *larger = strut_reallocate(s->hits, (size_t)room, sizeof *larger);
@@ -65,7 +69,7 @@ static strut_status read_result(search *s, const strut_task *task,
   if (result->end != STRUT_DESCENT_REACHED) return STRUT_OK;
   strut_status status = strut_stationary_set_add(&s->all, result->q, &index, &fresh, s->error);
   if (status) return status;
-  if (!keep_hits(s)) return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+  if (!reserve_hits(s)) return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
   if (task->kind == STRUT_TASK_RANDOM) s->hits[index]++;
   if (!down) return STRUT_OK;
   s->all.points[index].found--;
@@ -74,25 +78,26 @@ static strut_status read_result(search *s, const strut_task *task,
   return STRUT_OK;
 }
 
-static strut_status run(search *s) {
+static strut_status run_tasks(search *s) {
   const strut_task_result *result = strut_search_tasks_run(s->batch, s->task, s->tasks);
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < s->tasks && !status; i++) {
-    s->spent += s->cost * (double)result[i].looks;
+    s->spent += s->cost * (double)result[i].hessian_count;
     status = read_result(s, &s->task[i], &result[i]);
   }
   s->tasks = 0;
   return status;
 }
 
-/* Puts a task into the batch, which is worked off when full. */
-static strut_status add(search *s, strut_task task) {
+/* Appends a task to the batch, which runs when full. */
+static strut_status add_task(search *s, strut_task task) {
+  assert(s->tasks < s->batch_size && s->batch_size <= STRUT_BATCH);
   s->task[s->tasks++] = task;
-  return s->tasks == s->batch_size ? run(s) : STRUT_OK;
+  return s->tasks == s->batch_size ? run_tasks(s) : STRUT_OK;
 }
 
-/* Is it time to end a part of the search? Then it is cut short. */
-static bool over(search *s, double share) {
+/* True, and the search cut short, if this share of the budget is spent. */
+static bool is_over_budget(search *s, double share) {
   if (s->spent <= share * s->budget) return false;
   s->set->cut_short = true;
   return true;
@@ -107,28 +112,29 @@ static void set_budget(search *s) {
   s->batch_size = size < 4.0 ? 4 : size > STRUT_BATCH ? STRUT_BATCH : (size_t)size;
 }
 
-/* How many descents or climbs a structure of this size may have: their cost grows with its cube. */
-static int64_t affordable(int32_t n, double budget, int64_t least, int64_t most) {
+/* Number of descents or climbs affordable at this size: their cost grows with n^3. */
+static int64_t affordable_count(int32_t n, double budget, int64_t least, int64_t most) {
   double count = budget / ((double)n * n * n + 1.0);
   return count < (double)least ? least : count > (double)most ? most : (int64_t)count;
 }
 
-/* The model's own shape, its folds, and what the caller knows. */
-static strut_status known_starts(search *s) {
+/* Starts from the model's own shape, its folds, and the caller's shapes. */
+static strut_status search_known_shapes(search *s) {
   const double *own = s->potential->model->start;
-  strut_status status = add(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
+  strut_status status = add_task(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
   for (size_t i = 0; i < s->effort->extra_count && !status; i++)
-    status = add(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = s->effort->extra[i]});
-  int64_t most = affordable(s->potential->n, 4e6, 4, 256), folds = strut_fold_count(s->potential);
+    status = add_task(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = s->effort->extra[i]});
+  int64_t most = affordable_count(s->potential->n, 4e6, 4, 256),
+          folds = strut_fold_count(s->potential);
   if (s->potential->n > STRUT_DENSE_STATICS) folds = 0;
   if (folds > most) folds = most;
-  for (int64_t i = 0; i < folds && !status && !over(s, KNOWN_BY); i++)
-    status = add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
-  return status ? status : run(s);
+  for (int64_t i = 0; i < folds && !status && !is_over_budget(s, KNOWN_BY); i++)
+    status = add_task(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
+  return status ? status : run_tasks(s);
 }
 
-/* Minima that random starts have met just once, and all that they have met. */
-static int64_t met_once(const search *s, int64_t *distinct) {
+/* Counts minima that random starts have found exactly once, and at all. */
+static int64_t count_met_once(const search *s, int64_t *distinct) {
   int64_t once = 0;
   *distinct = 0;
   for (size_t i = 0; i < s->all.count; i++) {
@@ -139,49 +145,50 @@ static int64_t met_once(const search *s, int64_t *distinct) {
   return once;
 }
 
-static bool enough(search *s, int64_t most) {
-  int64_t distinct, once = met_once(s, &distinct), least = PER_MINIMUM * distinct;
+static bool has_enough_starts(search *s, int64_t most) {
+  int64_t distinct, once = count_met_once(s, &distinct), least = PER_MINIMUM * distinct;
   if (least < LEAST_RANDOM) least = LEAST_RANDOM;
   if (s->random >= least && 150 * once <= s->random) return true;
   if (s->random >= most) s->set->cut_short = true;
-  return s->random >= most || over(s, RANDOM_BY);
+  return s->random >= most || is_over_budget(s, RANDOM_BY);
 }
 
-static strut_status random_starts(search *s) {
+static strut_status search_random_shapes(search *s) {
   int32_t n = s->potential->n;
-  int64_t wanted = s->effort->starts, most = affordable(n, 1.5e7, 4, 4000);
+  int64_t wanted = s->effort->starts, most = affordable_count(n, 1.5e7, 4, 4000);
   strut_status status = STRUT_OK;
   if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
   double before = s->spent;
   int64_t size = (int64_t)s->batch_size;
-  while (!status && (wanted > 0 ? s->random < wanted : !enough(s, most))) {
+  while (!status && (wanted > 0 ? s->random < wanted : !has_enough_starts(s, most))) {
     int64_t left = (wanted > 0 ? wanted : most) - s->random;
     for (int64_t i = 0; i < left && i < size && !status; i++)
-      status = add(s, (strut_task){.kind = STRUT_TASK_RANDOM, .number = s->random++});
-    if (!status) status = run(s);
+      status = add_task(s, (strut_task){.kind = STRUT_TASK_RANDOM, .number = s->random++});
+    if (!status) status = run_tasks(s);
   }
-  if (wanted > 0) s->budget += s->spent - before; /* as it was asked for */
+  if (wanted > 0) s->budget += s->spent - before; /* requested starts cost no budget */
   return status;
 }
 
 /* Folds of the minima found: a shape that random starts seldom meet often lies next to one. */
-static strut_status folded_minima(search *s) {
+static strut_status search_folded_minima(search *s) {
   int32_t n = s->potential->n;
   int64_t folds = strut_fold_count(s->potential), left = s->random / 2;
   strut_status status = STRUT_OK;
   if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int64_t fold = 0; fold < folds && left > 0 && !status; fold++)
-    for (size_t i = 0; i < s->all.count && left > 0 && !status && !over(s, FOLDS_BY); i++, left--)
-      status =
-          add(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
-  return status ? status : run(s);
+    for (size_t i = 0; i < s->all.count && left > 0 && !status && !is_over_budget(s, FOLDS_BY);
+         i++, left--)
+      status = add_task(
+          s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
+  return status ? status : run_tasks(s);
 }
 
 /*
  * Part of one minimum and the rest of another, in all pairs: where a structure has several bistable
  * parts, its rare states are made of those that its common ones have.
  */
-static strut_status crossed_minima(search *s) {
+static strut_status search_crossed_minima(search *s) {
   int32_t n = s->potential->n;
   int64_t left = s->random / PART_CROSSED, number = 0;
   strut_status status = STRUT_OK;
@@ -189,15 +196,18 @@ static strut_status crossed_minima(search *s) {
   if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int turn = 0; turn < CROSSINGS; turn++)
     for (size_t i = 1; i < end && !status; i++)
-      for (size_t k = 0; k < i && left > 0 && !status && !over(s, CROSSES_BY); k++, left--)
-        status = add(s, (strut_task){.kind = STRUT_TASK_CROSS,
-                                     .q = s->all.points[i].q,
-                                     .other = s->all.points[k].q,
-                                     .number = number++});
-  return status ? status : run(s);
+      for (size_t k = 0; k < i && left > 0 && !status && !is_over_budget(s, CROSSES_BY);
+           k++, left--)
+        status = add_task(s, (strut_task){.kind = STRUT_TASK_CROSS,
+                                          .q = s->all.points[i].q,
+                                          .other = s->all.points[k].q,
+                                          .number = number++});
+  return status ? status : run_tasks(s);
 }
 
-/* Around minima that random starts have hardly met: where one basin is small, its neighbours may be. */
+/*
+ * Shakes minima that random starts found at most once: neighbours of small basins may be small too.
+ */
 static strut_status shake_rare_minima(search *s) {
   strut_status status = STRUT_OK;
   size_t end = s->all.count;
@@ -205,24 +215,24 @@ static strut_status shake_rare_minima(search *s) {
   for (; s->shaken < end && !status; s->shaken++) {
     const double *q = s->all.points[s->shaken].q;
     if (!is_minimum(&s->all.points[s->shaken]) || s->hits[s->shaken] > 1) continue;
-    for (int64_t k = 0; k < SHAKES && !status && !over(s, CLIMBS_BY); k++)
-      status =
-          add(s, (strut_task){
-                     .kind = STRUT_TASK_SHAKE, .q = q, .number = SHAKES * (int64_t)s->shaken + k});
+    for (int64_t k = 0; k < SHAKES && !status && !is_over_budget(s, CLIMBS_BY); k++)
+      status = add_task(
+          s, (strut_task){
+                 .kind = STRUT_TASK_SHAKE, .q = q, .number = SHAKES * (int64_t)s->shaken + k});
   }
-  return status ? status : run(s);
+  return status ? status : run_tasks(s);
 }
 
-/* Upper 95 % limit of what a count that is Poisson's may be the chance result of (Wilson, Hilferty). */
+/* Upper 95 % confidence limit of a Poisson mean from one count (Wilson, Hilferty). */
 static double upper_limit(int64_t count) {
   double k = (double)count + 1.0;
   return k * pow(1.0 - 1.0 / (9.0 * k) + 1.645 / (3.0 * sqrt(k)), 3.0);
 }
 
-/* What the random starts say about states that they have not met. */
+/* Estimates from the random starts the probability of minima not found. */
 static void estimate_missed(search *s) {
   strut_critical_set *set = s->set;
-  int64_t distinct, once = met_once(s, &distinct);
+  int64_t distinct, once = count_met_once(s, &distinct);
   set->missed = set->missed_below = set->missed_one = 1.0;
   if (s->random == 0) return;
   double starts = (double)s->random;
@@ -238,7 +248,7 @@ static void count_unmet(search *s) {
 
 static strut_status climb_from(search *s, strut_task task) {
   if (s->climbs_left-- <= 0) s->set->cut_short = true;
-  return s->climbs_left >= 0 && !over(s, CLIMBS_BY) ? add(s, task) : STRUT_OK;
+  return s->climbs_left >= 0 && !is_over_budget(s, CLIMBS_BY) ? add_task(s, task) : STRUT_OK;
 }
 
 /* Along the softest modes of every minimum not yet climbed from. */
@@ -256,7 +266,7 @@ static strut_status climb_modes(search *s) {
           (strut_task){
               .kind = STRUT_TASK_CLIMB_MODE, .q = q, .number = k / 2, .side = k % 2 ? -1.0 : 1.0});
   }
-  return status ? status : run(s);
+  return status ? status : run_tasks(s);
 }
 
 /* Between every two minima, in all different placements of the second; copies of one included. */
@@ -278,29 +288,29 @@ static strut_status climb_pairs(search *s) {
       }
     }
   }
-  return status ? status : run(s);
+  return status ? status : run_tasks(s);
 }
 
 /* Down both sides of every saddle with one unstable direction, from point `begin` on. */
-static strut_status go_down(search *s, size_t begin) {
+static strut_status descend_from_saddles(search *s, size_t begin) {
   strut_status status = STRUT_OK;
   size_t end = s->all.count;
-  for (size_t i = begin; i < end && !status && !over(s, 1.0); i++) {
+  for (size_t i = begin; i < end && !status && !is_over_budget(s, 1.0); i++) {
     const strut_critical_point *point = &s->all.points[i];
     const double *q = point->q, *direction = point->softest;
     if (is_minimum(point) || point->negative != 1) continue;
     for (int k = 0; k < 2 && !status; k++)
-      status = add(s, (strut_task){.kind = STRUT_TASK_DOWN,
-                                   .q = q,
-                                   .other = direction,
-                                   .side = k ? -1.0 : 1.0,
-                                   .from = (int32_t)i});
+      status = add_task(s, (strut_task){.kind = STRUT_TASK_DOWN,
+                                        .q = q,
+                                        .other = direction,
+                                        .side = k ? -1.0 : 1.0,
+                                        .from = (int32_t)i});
   }
-  return status ? status : run(s);
+  return status ? status : run_tasks(s);
 }
 
-/* Even numbers start from a minimum shaken, each in its turn, odd ones anywhere. */
-static strut_task random_climb(const search *s, int64_t number) {
+/* Even numbers start from a shaken minimum, each in turn; odd ones from a random shape. */
+static strut_task random_climb_task(const search *s, int64_t number) {
   strut_task task = {.kind = STRUT_TASK_CLIMB_RANDOM, .number = number};
   int64_t minima = 0, wanted;
   for (size_t i = 0; i < s->all.count; i++) minima += is_minimum(&s->all.points[i]);
@@ -315,26 +325,26 @@ static strut_status climb_hints(search *s) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < s->effort->hint_count && !status; i++)
     status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = s->effort->hint[i]});
-  return status ? status : run(s);
+  return status ? status : run_tasks(s);
 }
 
-static int64_t passes(const search *s) {
+static int64_t count_passes(const search *s) {
   int64_t count = 0;
   for (size_t i = 0; i < s->all.count; i++)
     count += !is_minimum(&s->all.points[i]) && s->all.points[i].negative == 1;
   return count;
 }
 
-/* Until a whole batch of them has found no new way from one minimum to another. */
-static strut_status random_climbs(search *s) {
+/* Climbs from random shapes until a whole batch finds no new pass. */
+static strut_status climb_at_random(search *s) {
   strut_status status = STRUT_OK;
   int64_t number = 0;
   for (int turn = 0; turn < RANDOM_CLIMBS && !status; turn++) {
-    int64_t before = passes(s);
+    int64_t before = count_passes(s);
     for (int i = 0; i < STRUT_BATCH && !status; i++, number++)
-      status = climb_from(s, random_climb(s, number));
-    if (!status) status = run(s);
-    if (passes(s) == before) break;
+      status = climb_from(s, random_climb_task(s, number));
+    if (!status) status = run_tasks(s);
+    if (count_passes(s) == before) break;
   }
   return status;
 }
@@ -344,33 +354,33 @@ static strut_status find_saddles(search *s) {
   strut_status status = STRUT_OK;
   size_t gone = 0;
   if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
-  s->climbs_left = affordable(n, 4e6, 4, 2000);
+  s->climbs_left = affordable_count(n, 4e6, 4, 2000);
   for (int turn = 0; turn < ROUNDS && !status; turn++) {
     status = turn == 0 ? climb_hints(s) : shake_rare_minima(s);
     if (!status) status = climb_modes(s);
     if (!status) status = climb_pairs(s);
-    if (!status && turn == 0) status = random_climbs(s);
+    if (!status && turn == 0) status = climb_at_random(s);
     while (!status &&
            gone < s->all.count) { /* what lies below may be new, and a saddle's end too */
       size_t begin = gone;
       gone = s->all.count;
-      status = go_down(s, begin);
+      status = descend_from_saddles(s, begin);
     }
     if (s->climbed == s->all.count) break;
   }
   return status;
 }
 
-static int rank(const strut_critical_point *point) {
+static int kind_rank(const strut_critical_point *point) {
   return is_minimum(point) ? 0 : point->label == STRUT_SADDLE ? 1 : 2;
 }
 
 static bool comes_before(const strut_critical_point *a, const strut_critical_point *b) {
-  return rank(a) != rank(b) ? rank(a) < rank(b) : a->potential < b->potential;
+  return kind_rank(a) != kind_rank(b) ? kind_rank(a) < kind_rank(b) : a->potential < b->potential;
 }
 
-/* Into the set, minima first, by energy; the saddles' ends are numbered anew. */
-static strut_status hand_over(search *s) {
+/* Sorts the points into the set, minima first, by energy, and renumbers the saddles' ends. */
+static strut_status sort_into_set(search *s) {
   size_t count = s->all.count;
   strut_arena scratch = {0};
   int32_t *order = strut_arena_allocate(&scratch, count, sizeof *order);
@@ -405,15 +415,15 @@ strut_status strut_critical_search(const strut_potential *potential,
   set_budget(&s);
   strut_stationary_set_start(&s.all, potential, &set->arena);
   strut_status status = strut_search_tasks_create(potential, effort->seed, climbs, &s.batch, error);
-  if (!status) status = known_starts(&s);
-  if (!status) status = random_starts(&s);
-  if (!status) status = folded_minima(&s);
-  if (!status) status = crossed_minima(&s);
+  if (!status) status = search_known_shapes(&s);
+  if (!status) status = search_random_shapes(&s);
+  if (!status) status = search_folded_minima(&s);
+  if (!status) status = search_crossed_minima(&s);
   if (!status) status = shake_rare_minima(&s);
   if (!status) estimate_missed(&s);
   if (!status) status = find_saddles(&s);
   if (!status) count_unmet(&s);
-  if (!status) status = hand_over(&s);
+  if (!status) status = sort_into_set(&s);
   strut_search_tasks_free(s.batch);
   strut_stationary_set_free(&s.all);
   strut_release(s.hits);

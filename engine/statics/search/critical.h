@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * All stationary points of one potential that many starts find, merged, judged and connected.
+ * All stationary points of one potential: found from many starts, merged, classified and connected.
  */
 #ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 #define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
@@ -53,9 +53,9 @@ typedef struct strut_critical_set {
 typedef struct strut_critical_effort {
   int64_t starts; /* random starts for minima; 0: until `missed` is small, within reason */
   uint64_t seed;
-  int32_t searches;   /* how many searches share one search's work, on supports in turn; 0: 1 */
-  bool saddles;       /* look for saddles too, and where they lead down to */
-  size_t extra_count; /* starts that the caller knows of, tried first */
+  int32_t searches;           /* searches that share the work limit, one per support set; 0: 1 */
+  bool saddles;               /* look for saddles too, and where they lead down to */
+  size_t extra_count;         /* starts that the caller knows of, tried first */
   const double *const *extra; /* (extra_count) each (length) */
   size_t hint_count;          /* shapes close to a saddle with one negative eigenvalue */
   const double *const *hint;  /* (hint_count) each (length) */
@@ -63,14 +63,13 @@ typedef struct strut_critical_effort {
 
 /**
  * Starts: the model's own, mirror images member by member, `extra`, then random ones, each from a
- * generator of its own, so that threads change no bit; then what the minima found lead to, folded or
- * with the nodes of two put together, and both sides of every saddle, by steps short enough for the
- * smallest wells. Merged are points that a rigid motion of the
- * whole, mirrored or not, carries onto each other, if scene and supports fix at most three
- * coordinates (then only placements differ); else only equal points. Above STRUT_DENSE_STATICS
- * coordinates only the model's own start and `extra` are tried unless `starts` says otherwise. Below,
- * the work is bounded, counted in Hessians taken apart, to some ten seconds of one core in all: what
- * ends early for that is cut_short.
+ * generator of its own, so that threads change no bit; then what the minima found lead to, folded
+ * or with the nodes of two put together, and both sides of every saddle, by steps short enough for
+ * the smallest wells. Merged are points that a rigid motion of the whole, mirrored or not, carries
+ * onto each other, if scene and supports fix at most three coordinates (then only placements
+ * differ); else only equal points. Above STRUT_DENSE_STATICS coordinates only the model's own start
+ * and `extra` are tried unless `starts` says otherwise. Below, the work is bounded, counted in
+ * decomposed Hessians, to some ten seconds of one core in all; cut_short reports an early end.
  */
 STRUT_API strut_status strut_critical_search(const strut_potential *potential,
                                              const strut_critical_effort *effort,
@@ -78,7 +77,8 @@ STRUT_API strut_status strut_critical_search(const strut_potential *potential,
 STRUT_API void strut_critical_free(strut_critical_set *set);
 
 /**
- * Judges one stationary point q: label, eigenvalues, zero modes. Point's arrays in the arena.
+ * Classifies one stationary point q: label, eigenvalues, zero modes. The point's arrays are in the
+ * arena.
  */
 STRUT_API strut_status strut_critical_judge(const strut_potential *potential, const double *q,
                                             strut_arena *arena, strut_critical_point *point,
@@ -86,7 +86,7 @@ STRUT_API strut_status strut_critical_judge(const strut_potential *potential, co
 
 /**
  * Largest distance between corresponding nodes after the best rigid motion carries b onto a, mirror
- * images allowed if `mirror`; *mirrored says whether one was used (may be NULL) [m].
+ * images allowed if `mirror`; *mirrored: one was used (may be NULL) [m].
  */
 STRUT_API double strut_shape_distance(const strut_model *model, const double *a, const double *b,
                                       bool mirror, bool *mirrored);

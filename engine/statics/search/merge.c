@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/merge.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
-/* Rounding may set copies of one point apart by so many times what separates points elsewhere. */
+#include "engine/statics/search/critical.h"
+
+/* Largest factor by which a soft direction may enlarge the distance within which points are one. */
 static const double MOST_BLUR = 1000.0;
 
 struct strut_congruent_copy {
@@ -12,8 +15,8 @@ struct strut_congruent_copy {
   strut_congruent_copy *next;
 };
 
-/* What rigid motions of the whole change nothing: no support, no load, no ground is in their way. */
-static void see_motions(strut_stationary_set *g) {
+/* Finds the rigid motions that no support, load or ground forbids. */
+static void find_free_motions(strut_stationary_set *g) {
   const strut_potential *p = g->potential;
   const strut_model *model = p->model;
   int32_t fixed[2] = {0, 0}, first = -1;
@@ -42,7 +45,7 @@ void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *
     stiffest = fmax(stiffest, model->members.stiffness[j]);
   g->near = 1e-6 * size;
   g->flat = 1e-15 * stiffest * size * size + 1e-12 * potential->force_scale * size;
-  see_motions(g);
+  find_free_motions(g);
 }
 
 void strut_stationary_set_free(strut_stationary_set *g) {
@@ -51,7 +54,7 @@ void strut_stationary_set_free(strut_stationary_set *g) {
   g->points = NULL, g->placement = NULL, g->count = g->room = 0;
 }
 
-/* The largest distance between two placements, motions apart that change nothing. */
+/* Largest distance between two placements, up to the free rigid motions. */
 static double place_distance(const strut_stationary_set *g, const double *a, const double *b) {
   const strut_model *model = g->potential->model;
   double mean[2] = {0.0, 0.0}, largest = 0.0;
@@ -77,7 +80,7 @@ static bool same_point(const strut_stationary_set *g, const double *q, const dou
  * Close to a fork the softest direction is so soft that a point is known there only to the rounding
  * of the forces over that stiffness: each of two copies to no more than strut_minimise allows.
  */
-static double blur(const strut_stationary_set *g, const strut_critical_point *point) {
+static double position_blur(const strut_stationary_set *g, const strut_critical_point *point) {
   const strut_potential *p = g->potential;
   double soft = 0.0, last = 0.0;
   for (int32_t skip = 0; skip <= point->zero; skip++) { /* the next larger one, in magnitude */
@@ -92,26 +95,26 @@ static double blur(const strut_stationary_set *g, const strut_critical_point *po
   return fmin(far, MOST_BLUR * g->near);
 }
 
-static int32_t find(const strut_stationary_set *g, const double *q, double energy) {
+static int32_t find_point(const strut_stationary_set *g, const double *q, double energy) {
   for (size_t i = 0; i < g->count; i++)
     if (same_energy(g, energy, g->points[i].potential) && same_point(g, q, g->points[i].q, g->near))
       return (int32_t)i;
   for (size_t i = 0; i < g->count; i++) {
     const strut_critical_point *known = &g->points[i];
     if (fabs(energy - known->potential) > g->flat + 1e-12 * fabs(energy)) continue;
-    double near = blur(g, known);
+    double near = position_blur(g, known);
     if (near > g->near && same_point(g, q, known->q, near)) return (int32_t)i;
   }
   return -1;
 }
 
 int32_t strut_stationary_set_find(const strut_stationary_set *g, const double *q) {
-  return find(g, q, strut_potential_value(g->potential, q));
+  return find_point(g, q, strut_potential_value(g->potential, q));
 }
 
 static bool remember_placement(strut_stationary_set *g, int32_t index, const double *q) {
   strut_congruent_copy **end = &g->placement[index];
-  double near = fmax(g->near, blur(g, &g->points[index]));
+  double near = fmax(g->near, position_blur(g, &g->points[index]));
   for (; *end; end = &(*end)->next)
     if (place_distance(g, q, (*end)->q) <= near) return true;
   size_t length = (size_t)g->potential->model->length;
@@ -126,7 +129,7 @@ static bool remember_placement(strut_stationary_set *g, int32_t index, const dou
   return true;
 }
 
-static bool make_room(strut_stationary_set *g) {
+static bool reserve_points(strut_stationary_set *g) {
   if (g->count < g->room) return true;
   size_t room = g->room ? 2 * g->room : 16;
   strut_critical_point *points = strut_reallocate(g->points, room, sizeof *points);
@@ -162,7 +165,7 @@ static int32_t count_placements(const strut_stationary_set *g, int32_t index) {
   return count;
 }
 
-/* An end of a continuum was found first: a point amid it says more. */
+/* Replaces the end of a continuum by a point inside it, which represents it better. */
 static void make_degenerate(strut_critical_point *known, const strut_critical_point *point) {
   if (is_degenerate(known)) return;
   strut_critical_point before = *known;
@@ -184,7 +187,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
     if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
   }
   if (*fresh) {
-    if (!make_room(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!reserve_points(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
     *index = (int32_t)g->count++;
     g->placement[*index] = NULL;
     g->points[*index] = point;
@@ -200,6 +203,8 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
 
 const double *strut_stationary_set_placement(const strut_stationary_set *g, int32_t index,
                                              int32_t k) {
+  assert(index >= 0 && (size_t)index < g->count);
+  assert(k >= 0);
   const strut_congruent_copy *at = g->placement[index];
   while (at && k-- > 0) at = at->next;
   return at ? at->q : NULL;
@@ -217,4 +222,42 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
         points[i].shape = points[k].shape;
     if (points[i].shape < 0) points[i].shape = next++;
   }
+}
+
+/* How far two shapes are from each other after the best rigid motion (Procrustes in the plane). */
+
+static void centre_of(const strut_model *model, const double *q, double centre[2]) {
+  centre[0] = centre[1] = 0.0;
+  for (int32_t at = 0; at < 2 * model->node_count; at++) centre[at % 2] += q[at];
+  for (int c = 0; c < 2; c++) centre[c] /= model->node_count;
+}
+
+/* b, mirrored in x where `side` is -1, turned and shifted onto a by least squares. */
+static double aligned_distance(const strut_model *model, const double *a, const double *b,
+                               double side) {
+  double p[2], r[2], along = 0.0, across = 0.0, largest = 0.0;
+  centre_of(model, a, p);
+  centre_of(model, b, r);
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double ax = a[2 * i] - p[0], ay = a[2 * i + 1] - p[1];
+    double bx = side * (b[2 * i] - r[0]), by = b[2 * i + 1] - r[1];
+    along += ax * bx + ay * by;
+    across += ay * bx - ax * by;
+  }
+  double size = sqrt(along * along + across * across);
+  double c = size > 0 ? along / size : 1.0, s = size > 0 ? across / size : 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double ax = a[2 * i] - p[0], ay = a[2 * i + 1] - p[1];
+    double bx = side * (b[2 * i] - r[0]), by = b[2 * i + 1] - r[1];
+    largest = fmax(largest, hypot(ax - (c * bx - s * by), ay - (s * bx + c * by)));
+  }
+  return largest;
+}
+
+double strut_shape_distance(const strut_model *model, const double *a, const double *b, bool mirror,
+                            bool *mirrored) {
+  double plain = aligned_distance(model, a, b, 1.0);
+  double other = mirror ? aligned_distance(model, a, b, -1.0) : HUGE_VAL;
+  if (mirrored) *mirrored = other < plain;
+  return fmin(plain, other);
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Stationary points put together: which are one and the same, which are copies of one shape.
- */
+/** A set of stationary points without duplicates, with copies of one shape merged. */
 #ifndef STRUT_ENGINE_STATICS_SEARCH_MERGE_H
 #define STRUT_ENGINE_STATICS_SEARCH_MERGE_H
 
@@ -21,17 +19,17 @@ typedef struct strut_stationary_set {
   strut_congruent_copy **placement; /* (count) their different placements; of strut_allocate */
 } strut_stationary_set;
 
-void strut_stationary_set_start(strut_stationary_set *gathering, const strut_potential *potential,
+void strut_stationary_set_start(strut_stationary_set *set, const strut_potential *potential,
                                 strut_arena *arena);
-void strut_stationary_set_free(strut_stationary_set *gathering);
+void strut_stationary_set_free(strut_stationary_set *set);
 
 /** Which point q is, or -1. */
-int32_t strut_stationary_set_find(const strut_stationary_set *gathering, const double *q);
+int32_t strut_stationary_set_find(const strut_stationary_set *set, const double *q);
 /** Finds or judges and adds q; *index is its point, whose `found` has grown by one. */
-strut_status strut_stationary_set_add(strut_stationary_set *gathering, const double *q,
-                                      int32_t *index, bool *fresh, strut_error *error);
+strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,
+                                      bool *fresh, strut_error *error);
 /** The k-th different placement of a point (length), or NULL. */
-const double *strut_stationary_set_placement(const strut_stationary_set *gathering, int32_t index,
+const double *strut_stationary_set_placement(const strut_stationary_set *set, int32_t index,
                                              int32_t k);
 
 /** Numbers the shapes: points of one number are mirror images of each other. */

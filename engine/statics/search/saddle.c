@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/saddle.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
+#include "engine/statics/curvature.h"
 #include "engine/statics/spectrum.h"
-#include "engine/statics/trust_step.h"
 
 enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 
@@ -17,7 +18,7 @@ struct strut_climber {
   strut_spectrum_workspace *spectra;
   strut_spectrum now;
   double size;
-  int64_t looks;
+  int64_t hessian_count;
   double *g, *part, *value, *x; /* (n) */
   double *step, *follow;        /* (n) */
   double *straight, *g_trial;   /* (n) the step before it was bent, and the gradient at its end */
@@ -53,10 +54,10 @@ void strut_climber_free(strut_climber *c) {
   strut_release(c);
 }
 
-int64_t strut_climber_hessian_count(const strut_climber *c) { return c->looks; }
+int64_t strut_climber_hessian_count(const strut_climber *c) { return c->hessian_count; }
 
 /* Shares of the gradient, and which modes have neither stiffness nor force. */
-static void look(strut_climber *c, double still) {
+static void split_gradient(strut_climber *c, double still) {
   int32_t n = c->now.n;
   for (int32_t i = 0; i < n; i++) {
     c->part[i] = strut_dot(c->now.vector + (size_t)i * (size_t)n, c->g, n);
@@ -66,7 +67,7 @@ static void look(strut_climber *c, double still) {
 }
 
 /* The mode that leans most on the direction followed so far becomes that direction. */
-static int32_t mode_to_follow(strut_climber *c) {
+static int32_t find_followed_mode(strut_climber *c) {
   int32_t n = c->now.n, best = -1;
   double largest = 0.0;
   for (int32_t i = 0; i < n; i++) {
@@ -78,10 +79,10 @@ static int32_t mode_to_follow(strut_climber *c) {
   return best;
 }
 
-/* Upside down along the modes that are followed; false where there are too few. */
-static bool turn_over(strut_climber *c, int32_t index, bool following) {
+/* Negates the quadratic along the followed modes; false if there are too few. */
+static bool build_image_function(strut_climber *c, int32_t index, bool following) {
   if (following) {
-    int32_t mode = mode_to_follow(c);
+    int32_t mode = find_followed_mode(c);
     if (mode < 0) return false;
     c->value[mode] = -c->value[mode], c->part[mode] = -c->part[mode];
     return true;
@@ -96,7 +97,7 @@ static bool turn_over(strut_climber *c, int32_t index, bool following) {
 }
 
 /* The step from its shares, and the energy that the true quadratic changes by. */
-static double assemble(strut_climber *c, double *length) {
+static double assemble_step(strut_climber *c, double *length) {
   int32_t n = c->now.n;
   double change = 0.0, square = 0.0;
   memset(c->step, 0, (size_t)n * sizeof *c->step);
@@ -111,19 +112,19 @@ static double assemble(strut_climber *c, double *length) {
   return change;
 }
 
-static bool take_apart(strut_climber *c, const double *q, bool careful) {
-  c->looks++;
+static bool decompose_hessian(strut_climber *c, const double *q, bool careful) {
+  c->hessian_count++;
   return strut_spectrum_compute(c->spectra, q, 0.0, careful, &c->now);
 }
 
-static void move(strut_climber *c, const double *q) {
+static void set_trial(strut_climber *c, const double *q) {
   const strut_potential *p = c->potential;
   memcpy(c->trial, q, (size_t)p->model->length * sizeof *q);
   for (int32_t i = 0; i < p->n; i++) c->trial[p->coordinate[i]] += c->step[i];
 }
 
-/* Brings modes much stiffer than mu, the followed ones apart, into balance at the step's end. */
-static bool straighten(strut_climber *c, double mu, double scale) {
+/* Balances modes much stiffer than mu, except followed ones, at the step's end. */
+static bool rebalance_stiff_modes(strut_climber *c, double mu, double scale) {
   int32_t n = c->now.n;
   double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
   bool any = false;
@@ -139,23 +140,24 @@ static bool straighten(strut_climber *c, double mu, double scale) {
 }
 
 /*
- * The way bends with every stiff bar that turns: as in a descent, without which a climb beside very
- * stiff bars gets nowhere. Lowers `there` as long as that makes the quadratic truer.
+ * Corrects the step in the stiff modes, as a descent does: turning stiff bars stretch to second
+ * order, and without the correction a climb beside them stalls. Stops when the energy `there` no
+ * longer falls.
  */
-static double bend(strut_climber *c, const double *q, double mu, double scale, double there,
-                   double wanted) {
+static double bend_step(strut_climber *c, const double *q, double mu, double scale, double there,
+                        double wanted) {
   size_t bytes = (size_t)c->now.n * sizeof *c->step;
   for (int i = 0; i < MOST_BENDS && !(there < wanted); i++) {
     memcpy(c->straight, c->step, bytes);
-    if (!straighten(c, mu, scale)) break;
-    move(c, q);
+    if (!rebalance_stiff_modes(c, mu, scale)) break;
+    set_trial(c, q);
     double lower = strut_potential_value(c->potential, c->trial);
     if (lower < there) {
       there = lower;
       continue;
     }
     memcpy(c->step, c->straight, bytes);
-    move(c, q);
+    set_trial(c, q);
     break;
   }
   return there;
@@ -170,11 +172,11 @@ static bool climb_once(strut_climber *c, double *q, double *radius) {
   for (int tries = 0; tries < 30; tries++) {
     double length, ratio = 1.0;
     double mu = strut_trust_step(&image, *radius, c->x);
-    double change = assemble(c, &length);
+    double change = assemble_step(c, &length);
     if (!(length > 0)) return false;
-    move(c, q);
+    set_trial(c, q);
     double there = strut_potential_value(p, c->trial);
-    there = bend(c, q, mu, image.scale, there, here + change + 0.3 * fabs(change));
+    there = bend_step(c, q, mu, image.scale, there, here + change + 0.3 * fabs(change));
     if (fabs(change) > 1e-9 * (fabs(here) + fabs(there))) ratio = (there - here) / change;
     bool good = ratio > 0.0 && ratio < 2.0;
     if (good && fabs(ratio - 1.0) < 0.3 && length > 0.99 * *radius)
@@ -188,7 +190,7 @@ static bool climb_once(strut_climber *c, double *q, double *radius) {
   return false;
 }
 
-static double look_at(strut_climber *c, const double *q) {
+static double evaluate_gradient(strut_climber *c, const double *q) {
   double largest = 0.0;
   strut_potential_gradient(c->potential, q, c->g);
   for (int32_t i = 0; i < c->potential->n; i++) largest = fmax(largest, fabs(c->g[i]));
@@ -196,16 +198,16 @@ static double look_at(strut_climber *c, const double *q) {
 }
 
 /* Newton steps as long as they become shorter. */
-static void polish(strut_climber *c, double *q) {
+static void polish_saddle(strut_climber *c, double *q) {
   double earlier = HUGE_VAL, length;
   for (int i = 0; i < MOST_POLISH; i++) {
-    look_at(c, q);
-    if (!take_apart(c, q, false)) return;
-    look(c, HUGE_VAL);
+    evaluate_gradient(c, q);
+    if (!decompose_hessian(c, q, false)) return;
+    split_gradient(c, HUGE_VAL);
     for (int32_t k = 0; k < c->now.n; k++) c->x[k] = c->idle[k] ? 0.0 : -c->part[k] / c->value[k];
-    assemble(c, &length);
+    assemble_step(c, &length);
     if (!(length < 0.9 * earlier) || length > 1e-3 * c->size) return;
-    move(c, q);
+    set_trial(c, q);
     memcpy(q, c->trial, (size_t)c->potential->model->length * sizeof *q);
     if (length <= 4.0 * DBL_EPSILON * c->size) return;
     earlier = length;
@@ -223,8 +225,8 @@ static bool has_collapsed(const strut_climber *c, const double *q) {
   return false;
 }
 
-/* Upwards there is often no end: bars that only stretch, bodies that only rise. */
-static bool has_left(const strut_climber *c, const double *q) {
+/* True if the climb has no end: bars that only stretch, bodies that only rise. */
+static bool has_escaped(const strut_climber *c, const double *q) {
   const strut_potential *p = c->potential;
   for (int32_t i = 0; i < p->n; i++)
     if (!(fabs(q[p->coordinate[i]] - c->begin[p->coordinate[i]]) < 3.0 * c->size)) return true;
@@ -232,19 +234,22 @@ static bool has_left(const strut_climber *c, const double *q) {
 }
 
 bool strut_climb(strut_climber *c, int32_t index, const double *direction, double *q) {
+  assert(index >= 1 && index <= c->potential->n);
   const strut_potential *p = c->potential;
   double radius = 0.03 * c->size, root = sqrt((double)p->n);
   memcpy(c->begin, q, (size_t)p->model->length * sizeof *q);
   if (direction) memcpy(c->follow, direction, (size_t)p->n * sizeof *direction);
   for (int i = 0; i < MOST_STEPS; i++) {
-    double residual = look_at(c, q), allowed = 8.0 * strut_potential_rounding(p, q);
+    double residual = evaluate_gradient(c, q), allowed = 8.0 * strut_potential_rounding(p, q);
     if (residual <= allowed) {
-      polish(c, q);
-      return look_at(c, q) <= 8.0 * strut_potential_rounding(p, q) && !has_collapsed(c, q);
+      polish_saddle(c, q);
+      return evaluate_gradient(c, q) <= 8.0 * strut_potential_rounding(p, q) &&
+             !has_collapsed(c, q);
     }
-    if (!take_apart(c, q, false)) return false;
-    look(c, root * allowed);
-    if (has_left(c, q) || !turn_over(c, index, direction != NULL) || !climb_once(c, q, &radius))
+    if (!decompose_hessian(c, q, false)) return false;
+    split_gradient(c, root * allowed);
+    if (has_escaped(c, q) || !build_image_function(c, index, direction != NULL) ||
+        !climb_once(c, q, &radius))
       return false;
   }
   return false;
@@ -252,15 +257,15 @@ bool strut_climb(strut_climber *c, int32_t index, const double *direction, doubl
 
 bool strut_climb_away(strut_climber *c, int32_t mode, double far, double *q, double *direction) {
   int32_t n = c->potential->n, left = mode;
-  look_at(c, q);
-  if (!take_apart(c, q, true)) return false;
-  look(c, HUGE_VAL);
+  evaluate_gradient(c, q);
+  if (!decompose_hessian(c, q, true)) return false;
+  split_gradient(c, HUGE_VAL);
   for (int32_t i = 0; i < n; i++) {
     if (c->idle[i] || left-- > 0) continue;
     for (int32_t k = 0; k < n; k++)
       direction[k] = (far < 0 ? -1.0 : 1.0) * c->now.vector[(size_t)i * (size_t)n + (size_t)k];
     for (int32_t k = 0; k < n; k++) c->step[k] = fabs(far) * direction[k];
-    move(c, q);
+    set_trial(c, q);
     memcpy(q, c->trial, (size_t)c->potential->model->length * sizeof *q);
     return true;
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * From a shape to a stationary point with a wanted number of unstable directions.
+ * Climbs from a shape to a stationary point with a given number of unstable directions.
  *
  * The potential is turned upside down along the modes that are followed (image function), so that a
  * trust-region descent ends on a saddle: along the softest modes, or along the one that leans most
@@ -14,7 +14,7 @@
 typedef struct strut_climber strut_climber;
 /** For one thread at a time. NULL: out of memory. */
 strut_climber *strut_climber_create(const strut_potential *potential);
-/** How many Hessians it has taken apart so far: a measure of its work. */
+/** Hessians decomposed so far: a measure of the work done. */
 int64_t strut_climber_hessian_count(const strut_climber *climber);
 void strut_climber_free(strut_climber *climber);
 

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/search_batch.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
 
-#include "engine/statics/descent_parts.h"
+#include "engine/statics/curvature.h"
 #include "engine/statics/search/saddle.h"
 #include "engine/statics/search/starts.h"
 
@@ -29,7 +30,7 @@ struct strut_search_tasks {
   strut_arena arena;
 };
 
-static int threads(void) {
+static int thread_count(void) {
 #ifdef _OPENMP
   int most = omp_in_parallel() ? 1 : omp_get_max_threads();
   return most < STRUT_BATCH ? most : STRUT_BATCH;
@@ -53,7 +54,7 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
   if (!b) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   b->potential = potential;
   b->seed = seed;
-  b->worker_count = threads();
+  b->worker_count = thread_count();
   b->workers = strut_arena_allocate(&b->arena, (size_t)b->worker_count, sizeof *b->workers);
   bool good = b->workers != NULL;
   for (int i = 0; i < STRUT_BATCH && good; i++)
@@ -80,8 +81,8 @@ void strut_search_tasks_free(strut_search_tasks *batch) {
   strut_release(batch);
 }
 
-/* How far b may be slid along x, where nothing holds that, to lie over a. */
-static double slide_over(const strut_potential *p, const double *a, const double *b) {
+/* Shift along x that brings b over a; 0 if something holds the structure along x. */
+static double slide_onto(const strut_potential *p, const double *a, const double *b) {
   double sum = 0.0;
   int32_t nodes = p->model->node_count;
   for (int32_t i = 0; i < nodes; i++) {
@@ -92,10 +93,10 @@ static double slide_over(const strut_potential *p, const double *a, const double
   return nodes ? sum / nodes : 0.0;
 }
 
-/* The highest of seven places on the straight way from a to b. */
+/* The highest of seven points on the straight line from a to b. */
 static void highest_between(const strut_potential *p, const double *a, const double *b, double *q) {
   size_t length = (size_t)p->model->length;
-  double highest = -HUGE_VAL, best = 0.5, slide = slide_over(p, a, b);
+  double highest = -HUGE_VAL, best = 0.5, slide = slide_onto(p, a, b);
   for (int k = 1; k <= 8; k++) { /* the eighth time for good */
     double t = k < 8 ? k / 8.0 : best;
     for (size_t i = 0; i < length; i++) q[i] = a[i] + t * (b[i] + (i % 2 ? 0.0 : slide) - a[i]);
@@ -104,7 +105,8 @@ static void highest_between(const strut_potential *p, const double *a, const dou
   }
 }
 
-static bool climb(const strut_search_tasks *b, worker *w, const strut_task *task, double *q) {
+static bool climb_task(const strut_search_tasks *b, worker *w, const strut_task *task, double *q) {
+  assert(w->climber);
   const strut_potential *p = b->potential;
   double far = 0.02 * (p->model->size > 0 ? p->model->size : 1.0);
   size_t bytes = (size_t)p->model->length * sizeof *q;
@@ -128,8 +130,8 @@ static bool climb(const strut_search_tasks *b, worker *w, const strut_task *task
   return index <= p->n && strut_climb(w->climber, index, NULL, q);
 }
 
-static strut_descent_end descend(const strut_search_tasks *b, worker *w, const strut_task *task,
-                                 double *q) {
+static strut_descent_end descend_task(const strut_search_tasks *b, worker *w,
+                                      const strut_task *task, double *q) {
   const strut_potential *p = b->potential;
   if (task->kind == STRUT_TASK_RANDOM)
     strut_random_shape(p, b->seed, (uint64_t)task->number, q);
@@ -149,28 +151,30 @@ static strut_descent_end descend(const strut_search_tasks *b, worker *w, const s
                                                                        : STRUT_DESCENT_EXHAUSTED;
 }
 
-static int64_t looks_of(const worker *w) {
+static int64_t hessians_of(const worker *w) {
   return strut_minimiser_hessian_count(w->minimiser) +
          (w->climber ? strut_climber_hessian_count(w->climber) : 0);
 }
 
-static void work(strut_search_tasks *b, const strut_task *task, strut_task_result *result) {
+static void run_task(strut_search_tasks *b, const strut_task *task, strut_task_result *result) {
   worker *w = &b->workers[this_thread()];
   bool up = task->kind >= STRUT_TASK_CLIMB_MODE && task->kind <= STRUT_TASK_CLIMB_RANDOM;
-  int64_t before = looks_of(w);
+  int64_t before = hessians_of(w);
   if (up)
-    result->end = climb(b, w, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
+    result->end =
+        climb_task(b, w, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
   else
-    result->end = descend(b, w, task, result->q);
-  result->looks = looks_of(w) - before;
+    result->end = descend_task(b, w, task, result->q);
+  result->hessian_count = hessians_of(w) - before;
 }
 
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
                                                 size_t count) {
+  assert(count <= STRUT_BATCH);
   int tasks = (int)count;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(batch->worker_count)
 #endif
-  for (int i = 0; i < tasks; i++) work(batch, &task[i], &batch->result[i]);
+  for (int i = 0; i < tasks; i++) run_task(batch, &task[i], &batch->result[i]);
   return batch->result;
 }

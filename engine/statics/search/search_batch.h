@@ -9,7 +9,7 @@
 
 #include "engine/statics/minimise.h"
 
-/** Tasks are worked off, and their results read, in groups of this many. */
+/** Tasks run, and their results are read, in groups of this size. */
 enum { STRUT_BATCH = 64 };
 
 typedef enum strut_task_kind {
@@ -20,7 +20,7 @@ typedef enum strut_task_kind {
   STRUT_TASK_RANDOM,       /* down from random shape `number` */
   STRUT_TASK_CLIMB_MODE,   /* up from the minimum q along mode `number`, `side` +-1 */
   STRUT_TASK_CLIMB_SHAPE,  /* up from q itself, which is close to a saddle */
-  STRUT_TASK_CLIMB_PAIR,   /* up from the highest place on the straight way from q to other */
+  STRUT_TASK_CLIMB_PAIR,   /* up from the highest point on the straight line from q to other */
   STRUT_TASK_CLIMB_RANDOM, /* up from random shape `number`, or from q shaken if not NULL */
   STRUT_TASK_DOWN          /* down from the saddle q along `other`, `side` +-1 */
 } strut_task_kind;
@@ -30,13 +30,13 @@ typedef struct strut_task {
   int64_t number;
   double side;
   const double *q, *other; /* (length) */
-  int32_t from;            /* the point it belongs to, for whoever reads the result */
+  int32_t from;            /* index of the point that the task belongs to */
 } strut_task;
 
 typedef struct strut_task_result {
   strut_descent_end end;
-  double *q;     /* (length) where it ended */
-  int64_t looks; /* Hessians taken apart on the way */
+  double *q;             /* (length) where it ended */
+  int64_t hessian_count; /* Hessians decomposed */
 } strut_task_result;
 
 typedef struct strut_search_tasks strut_search_tasks;
@@ -45,7 +45,7 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
                                        strut_search_tasks **batch, strut_error *error);
 void strut_search_tasks_free(strut_search_tasks *batch);
 
-/** Works off up to STRUT_BATCH tasks; the results are valid until the next call. */
+/** Runs up to STRUT_BATCH tasks; the results are valid until the next call. */
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
                                                 size_t count);
 

@@ -16,7 +16,9 @@ void strut_fold(const strut_potential *potential, int64_t fold, double *q);
 /** Random shape number `index` of `seed`: positions at random, or a shaken or folded start. */
 void strut_random_shape(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
 
-/** Every node of q goes, or not, to where it is in `other`, by the bits of number `index` of `seed`. */
+/**
+ * Every node of q goes, or not, to where it is in `other`, by the bits of number `index` of `seed`.
+ */
 void strut_cross(const strut_potential *potential, uint64_t seed, uint64_t index,
                  const double *other, double *q);
 

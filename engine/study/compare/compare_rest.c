@@ -8,7 +8,7 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/rigid_motions.h"
-#include "engine/statics/rigidity/linear_matrices.h"
+#include "engine/statics/rigidity/equilibrium_matrix.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare_parts.h"
 
@@ -91,7 +91,7 @@ static strut_status keep_states(strut_compare_work *work, const strut_equilibria
   for (size_t i = 0; i < all->count; i++) {
     names[i] = strut_arena_format(work->arena, "%s", all->list[i].name);
     if (!names[i]) return STRUT_NO_MEMORY;
-    if (all->list[i].fate == STRUT_OUTCOME_STANDS)
+    if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
       c->states[c->state_count++] = (strut_compare_state){names[i], rest_energy(&all->list[i])};
   }
   for (size_t i = 0; i < all->barrier_count; i++)
@@ -110,7 +110,7 @@ static const char *start_name(const strut_compare_work *work, const strut_model 
     const strut_equilibrium *e = &all->list[i];
     const double *p = e->rest ? e->rest : e->point.q;
     double shift = p[0] - q[0], apart = 0.0; /* along the ground it may lie anywhere */
-    if (e->fate != STRUT_OUTCOME_STANDS) continue;
+    if (e->outcome != STRUT_OUTCOME_STANDS) continue;
     for (int32_t k = 0; k < 2 * model->node_count; k++)
       apart = fmax(apart, fabs(p[k] - q[k] - (k % 2 || !model->contacts.count ? 0.0 : shift)));
     if (apart <= 1e-3 * model->size) return e->name;

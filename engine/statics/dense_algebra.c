@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/eigen.h"
+#include "engine/statics/dense_algebra.h"
 
+#include <assert.h>
 #include <float.h>
+#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -136,6 +138,7 @@ static bool diagonalise(double *z, size_t n, double *d, double *e) {
 }
 
 bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
+  assert(rows >= 0);
   size_t n = (size_t)rows;
   double largest = 0.0;
   int power = 0;
@@ -150,4 +153,56 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   if (!diagonalise(matrix, n, value, work)) return false;
   for (size_t i = 0; i < n && scaled; i++) value[i] = ldexp(value[i], power);
   return true;
+}
+
+/* Fixes the sign of a vector, so that results do not depend on how it was computed. */
+static void turn(double *vector, size_t n) {
+  size_t largest = 0;
+  for (size_t i = 1; i < n; i++)
+    if (fabs(vector[i]) > 1.000001 * fabs(vector[largest])) largest = i;
+  if (vector[largest] >= 0) return;
+  for (size_t i = 0; i < n; i++) vector[i] = -vector[i];
+}
+
+bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector) {
+  if (n == 0) return true;
+  gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
+  if (!work) return false;
+  gsl_matrix_view a = gsl_matrix_view_array(matrix, n, n);
+  gsl_matrix_view v = gsl_matrix_view_array(vector, n, n);
+  gsl_vector_view d = gsl_vector_view_array(value, n);
+  bool good = gsl_eigen_symmv(&a.matrix, &d.vector, &v.matrix, work) == 0 &&
+              gsl_eigen_symmv_sort(&d.vector, &v.matrix, GSL_EIGEN_SORT_VAL_ASC) == 0 &&
+              gsl_matrix_transpose(&v.matrix) == 0;
+  gsl_eigen_symmv_free(work);
+  for (size_t i = 0; good && i < n; i++) turn(vector + i * n, n);
+  return good;
+}
+
+/* The row from j on with the largest entry in column j. */
+static size_t find_pivot(const gsl_matrix *a, size_t j) {
+  size_t pivot = j;
+  for (size_t i = j + 1; i < a->size1; i++)
+    if (fabs(gsl_matrix_get(a, i, j)) > fabs(gsl_matrix_get(a, pivot, j))) pivot = i;
+  return pivot;
+}
+
+void strut_lu_factor(gsl_matrix *a, gsl_permutation *order) {
+  assert(a->size1 == a->size2 && order->size == a->size1);
+  gsl_permutation_init(order);
+  for (size_t j = 0; j < a->size1; j++) {
+    size_t pivot = find_pivot(a, j);
+    if (pivot != j) {
+      gsl_matrix_swap_rows(a, j, pivot);
+      gsl_permutation_swap(order, j, pivot);
+    }
+    double diagonal = gsl_matrix_get(a, j, j);
+    if (diagonal == 0.0) continue;
+    for (size_t i = j + 1; i < a->size1; i++) {
+      double factor = gsl_matrix_get(a, i, j) / diagonal;
+      gsl_matrix_set(a, i, j, factor);
+      for (size_t k = j + 1; k < a->size1 && factor != 0.0; k++)
+        *gsl_matrix_ptr(a, i, k) -= factor * gsl_matrix_get(a, j, k);
+    }
+  }
 }

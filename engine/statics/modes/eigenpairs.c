@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All modes of a small structure, by GSL's dense eigensolvers. */
+#include "engine/statics/modes/parts.h"
+
 #include <float.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/modes/parts.h"
+#include "engine/base/vec.h"
+#include "engine/statics/modes/lanczos.h"
+
+/* All modes of a small structure, by GSL's dense eigensolvers. */
 
 /*
- * Two ways, each right where the other is not: K x = z M x has errors of the last bit of the
- * largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of them
- * is small the first will do; where some coordinates have no mass there is only the second, which
- * condenses them.
+ * Two formulations, each accurate where the other is not: K x = z M x has errors of the last bit of
+ * the largest eigenvalue, its inverse those of the last bit of the smallest. Where the range of
+ * them is small the first will do; where some coordinates have no mass there is only the second,
+ * which condenses them.
  */
 typedef struct dense {
   strut_modes_work *work;
@@ -22,7 +26,7 @@ typedef struct dense {
   gsl_vector *value;
 } dense;
 
-static void fill(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
+static void fill_matrices(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
   const strut_sparse *a = v->shape->pattern;
   for (int32_t j = 0; j < v->n; j++)
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
@@ -35,7 +39,7 @@ static void fill(const strut_vibration *v, gsl_matrix *k, gsl_matrix *m) {
 }
 
 /* Vectors of unit length to such of x'Mx = 1, into the set. */
-static void take(dense *d) {
+static void store_eigenpairs(dense *d) {
   strut_eigen_set *set = &d->work->set;
   double *product = (double *)d->work->v->work;
   for (size_t i = 0; i < d->n; i++) {
@@ -53,21 +57,22 @@ static bool solve_directly(dense *d) {
   if (!w) return false;
   gsl_matrix_set_zero(d->a);
   gsl_matrix_set_zero(d->b);
-  fill(d->work->v, d->a, d->b);
+  fill_matrices(d->work->v, d->a, d->b);
   bool good = gsl_eigen_gensymmv(d->a, d->b, d->value, d->vector, w) == 0 &&
               gsl_eigen_gensymmv_sort(d->value, d->vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
-  if (good) take(d);
+  if (good) store_eigenpairs(d);
   gsl_eigen_gensymmv_free(w);
   return good;
 }
 
+/* Eigenvalues below z, by the signs of the factor of K - z M. */
 static int32_t count_below(strut_modes_work *work, double z) {
   strut_modes_factorise(&work->solver, -z);
   return work->solver.negative;
 }
 
 /* A shift well below the smallest eigenvalue, by size, that is above 1e-20 of the largest. */
-static double find_soft(strut_modes_work *work) {
+static double find_soft_shift(strut_modes_work *work) {
   double z = 1e-20 * work->v->largest;
   int32_t inside = count_below(work, z) - count_below(work, -z);
   while (z < 1e-3 * work->v->largest &&
@@ -95,7 +100,7 @@ static bool split_mass(dense *d) {
 }
 
 /* x (n, massive) = (K + soft M)^-1 L in d->vector, and L' x in d->a. */
-static void invert(dense *d) {
+static void compute_inverse(dense *d) {
   strut_dd *y = d->work->v->work;
   for (size_t c = 0; c < d->massive; c++) {
     for (size_t r = 0; r < d->n; r++) y[r] = dd_of(0.0);
@@ -113,7 +118,7 @@ static void invert(dense *d) {
 }
 
 /* The i-th of the inverse's eigenpairs, t = 1 / (z + soft), into the set. */
-static void take_inverse(dense *d, const gsl_matrix *small, size_t from, size_t i) {
+static void store_inverse_pair(dense *d, const gsl_matrix *small, size_t from, size_t i) {
   double t = gsl_vector_get(d->value, from);
   double *x = d->work->set.vector + i * d->n;
   d->work->set.value[i] = 1.0 / t - d->work->soft;
@@ -144,9 +149,9 @@ static void sort_inverse(const dense *d, double top, size_t *order) {
 }
 
 /*
- * Where the direct way begins to be the better one: its errors, relative, are those of the largest
- * over the eigenvalue, the inverse's the other way round. Equal eigenvalues are not torn apart, for
- * the two ways choose different vectors among theirs.
+ * First eigenvalue for which the direct solution is more accurate: its relative error grows as the
+ * largest eigenvalue over this one, that of the inverse as this one over the smallest. Equal
+ * eigenvalues are kept together, because the two solutions choose different vectors among theirs.
  */
 static size_t find_cut(const dense *d, double top, const size_t *order) {
   const double *value = d->work->set.value;
@@ -158,12 +163,12 @@ static size_t find_cut(const dense *d, double top, const size_t *order) {
   return d->massive;
 }
 
-static void merge(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
+static void merge_eigenpairs(dense *d, const gsl_matrix *small, size_t *order, bool alone) {
   double top = 0.0;
   for (size_t k = 0; k < d->massive; k++) top = fmax(top, fabs(gsl_vector_get(d->value, k)));
   sort_inverse(d, top, order);
   size_t cut = alone ? d->massive : find_cut(d, top, order);
-  for (size_t i = 0; i < cut; i++) take_inverse(d, small, order[i], i);
+  for (size_t i = 0; i < cut; i++) store_inverse_pair(d, small, order[i], i);
 }
 
 static bool solve_inverse(dense *d, bool alone) {
@@ -173,18 +178,18 @@ static bool solve_inverse(dense *d, bool alone) {
   bool good = w && small && order && split_mass(d);
   if (good) {
     strut_modes_factorise(&d->work->solver, d->work->soft);
-    invert(d);
+    compute_inverse(d);
     gsl_matrix_view a = gsl_matrix_submatrix(d->a, 0, 0, d->massive, d->massive);
     gsl_vector_view value = gsl_vector_subvector(d->value, 0, d->massive);
     good = gsl_eigen_symmv(&a.matrix, &value.vector, small, w) == 0;
-    if (good) merge(d, small, order, alone);
+    if (good) merge_eigenpairs(d, small, order, alone);
   }
   gsl_eigen_symmv_free(w);
   gsl_matrix_free(small);
   return good;
 }
 
-static bool allocate(dense *d) {
+static bool allocate_dense(dense *d) {
   strut_eigen_set *set = &d->work->set;
   const strut_vibration *v = d->work->v;
   d->n = (size_t)v->n, d->massive = (size_t)v->massive;
@@ -205,10 +210,10 @@ static bool allocate(dense *d) {
 
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
   dense d = {.work = work};
-  bool good = allocate(&d);
+  bool good = allocate_dense(&d);
   if (good) {
     bool all = d.massive == d.n;
-    work->soft = find_soft(work);
+    work->soft = find_soft_shift(work);
     if (all) good = solve_directly(&d);
     if (good && (!all || work->soft < 1e-10 * work->v->largest)) good = solve_inverse(&d, !all);
   }
@@ -217,4 +222,62 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
   gsl_matrix_free(d.vector);
   gsl_vector_free(d.value);
   return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory for all modes");
+}
+
+/* The lowest modes of a large structure: bracketed by counting, found by Lanczos's method. */
+
+enum { MOST_FACTORS = 80 };
+
+/* Some z > 0 with at least `count` and a few more eigenvalues below; *below gets how many. */
+static double find_bound(strut_modes_work *work, int32_t count, int32_t *below) {
+  double low = 0.0, high = 0.0, z = 1e-7 * work->v->largest;
+  int32_t least = count + 2, most = 2 * count + 10;
+  for (int i = 0; i < MOST_FACTORS; i++) {
+    int32_t found = count_below(work, z);
+    if (found < least)
+      low = z;
+    else
+      high = z, *below = found;
+    if (found >= least && found <= most) break;
+    if (low > 0 && high > 0 && high < 1.0001 * low) break; /* many at one place */
+    z = low > 0 && high > 0 ? sqrt(low * high) : low > 0 ? 30.0 * low : 0.01 * high;
+  }
+  return high;
+}
+
+static void apply_inverse(void *context, double *x) {
+  strut_modes_work *work = context;
+  strut_dd *y = work->v->work;
+  for (int32_t i = 0; i < work->v->n; i++) y[i] = dd_of(x[i]);
+  strut_modes_solve(&work->solver, y);
+  for (int32_t i = 0; i < work->v->n; i++) x[i] = dd_double(y[i]);
+}
+
+static void apply_mass(void *context, const double *x, double *y) {
+  strut_modes_work *work = context;
+  strut_vibration_multiply(work->v, work->v->m, x, y);
+}
+
+strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error) {
+  strut_vibration *v = work->v;
+  int32_t below = 0;
+  if (count > v->massive - 3) count = v->massive - 3; /* Lanczos's method wants a few to spare */
+  double bound = find_bound(work, count, &below), shift = -1e-3 * bound;
+  if (below >= v->massive) below = v->massive - 1;
+  size_t room = (size_t)below;
+  strut_eigen_set *set = &work->set;
+  set->n = v->n;
+  set->count = below;
+  set->value = strut_arena_allocate(work->arena, room, sizeof *set->value);
+  set->vector = strut_arena_allocate(work->arena, room * (size_t)v->n, sizeof *set->vector);
+  if (!set->value || !set->vector) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
+  strut_lanczos_problem problem = {v->n, shift, work, apply_inverse, apply_mass};
+  strut_status status = strut_lanczos(&problem, below, set->value, set->vector, error);
+  /* All that the signs have counted must be there. */
+  if (status == STRUT_OK && !(set->value[below - 1] < 1.001 * bound))
+    status = strut_fail(error, STRUT_SINGULAR,
+                        "Lanczos's method missed some of the %d modes below %.4g Hz", (int)below,
+                        sqrt(bound) / STRUT_TAU);
+  return status;
 }

@@ -1,0 +1,368 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/curvature.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/statics/spectrum.h"
+
+/* |x| for the multiplier mu, and d|x|/dmu; mu lies above minus the lowest value. */
+static double step_length_at(const strut_quadratic *r, double mu, double *slope) {
+  double square = 0.0, cube = 0.0;
+  for (int32_t i = 0; i < r->n; i++) {
+    if (r->idle[i] || r->part[i] == 0.0) continue;
+    double x = r->part[i] / (r->value[i] + mu);
+    square += x * x;
+    cube += x * x / (r->value[i] + mu);
+  }
+  double length = sqrt(square);
+  *slope = length > 0 ? -cube / length : 0.0;
+  return length;
+}
+
+/* The multiplier at which |x| is the radius, between low (too long a step there) and high. */
+static double solve_secular(const strut_quadratic *r, double low, double high, double radius) {
+  double mu = low > 0 ? low * (1.0 + 1e-12) : low;
+  for (int i = 0; i < 80 && high - low > 1e-14 * high; i++) {
+    if (!(mu > low && mu < high)) mu = low > 0 ? 0.5 * (low + high) : 1e-3 * high;
+    double slope, length = step_length_at(r, mu, &slope);
+    if (fabs(length - radius) <= 1e-6 * radius) return mu;
+    if (length > radius)
+      low = mu;
+    else
+      high = mu;
+    mu += (length / radius - 1.0) * (slope < 0 ? -length / slope : 0.0); /* Newton on 1/|x| */
+  }
+  return isfinite(mu) && mu >= low && mu <= high ? mu : high;
+}
+
+/* x at the multiplier mu; returns mu. */
+static double shares_at(const strut_quadratic *r, double mu, double *x) {
+  for (int32_t i = 0; i < r->n; i++)
+    x[i] = r->idle[i] || r->part[i] == 0.0 ? 0.0 : -r->part[i] / (r->value[i] + mu);
+  return mu;
+}
+
+double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
+  assert(radius > 0.0);
+  double size = 0.0, slope;
+  int32_t low = -1;
+  for (int32_t i = 0; i < r->n; i++) {
+    if (r->idle[i]) continue;
+    if (low < 0 || r->value[i] < r->value[low]) low = i;
+    size += r->part[i] * r->part[i];
+  }
+  size = sqrt(size);
+  if (low < 0) return shares_at(r, 0.0, x); /* no mode has a force */
+  double lowest = r->value[low];
+  double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * r->scale + 1e-300 : 0.0);
+  double length = step_length_at(r, floor, &slope);
+  if (length > radius)
+    return shares_at(r, solve_secular(r, floor, floor + size / radius, radius), x);
+  shares_at(r, floor, x);
+  if (lowest > -r->noise) return floor;
+  double rest = sqrt(fmax(radius * radius - length * length, 0.0)); /* the hard case */
+  x[low] += r->part[low] > 0 ? -rest : rest;
+  return floor;
+}
+
+/* Steps by all eigenvectors of the Hessian: exact trust-region steps. */
+
+typedef struct dense_curvature {
+  strut_spectrum_workspace *spectra;
+  strut_spectrum now;
+  double *part, *x;  /* (n) the gradient's and the step's share of each mode */
+  uint8_t *idle;     /* (n) modes to leave alone */
+  double scale;      /* largest |eigenvalue| */
+  double multiplier; /* of the step that descend gave last */
+} dense_curvature;
+
+static void dense_free(void *memory) {
+  dense_curvature *r = memory;
+  if (!r) return;
+  strut_spectrum_free(r->spectra);
+  strut_release(r->part);
+  strut_release(r->x);
+  strut_release(r->idle);
+  strut_release(r);
+}
+
+void *strut_curvature_dense_create(const strut_potential *potential) {
+  dense_curvature *r = strut_allocate(1, sizeof *r);
+  if (!r) return NULL;
+  r->spectra = strut_spectrum_create(potential);
+  r->part = strut_allocate((size_t)potential->n, sizeof *r->part);
+  r->x = strut_allocate((size_t)potential->n, sizeof *r->x);
+  r->idle = strut_allocate((size_t)potential->n, sizeof *r->idle);
+  if (r->spectra && r->part && r->x && r->idle) return r;
+  dense_free(r);
+  return NULL;
+}
+
+static bool dense_decompose(void *memory, const double *q) {
+  dense_curvature *r = memory;
+  if (!strut_spectrum_compute(r->spectra, q, 0.0, false, &r->now)) return false;
+  const double *value = r->now.value;
+  r->scale = r->now.n ? fmax(fabs(value[0]), fabs(value[r->now.n - 1])) : 0.0;
+  return true;
+}
+
+/* Shares of the gradient; a mode without stiffness and without force beyond `still` is idle. */
+static void split_gradient(dense_curvature *r, const double *g, double still) {
+  size_t n = (size_t)r->now.n;
+  for (size_t i = 0; i < n; i++) {
+    const double *mode = r->now.vector + i * n;
+    double sum = 0.0;
+    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
+    r->part[i] = sum;
+    r->idle[i] = fabs(r->now.value[i]) <= 4.0 * r->now.noise[i] && fabs(sum) <= still;
+  }
+}
+
+/* s from its shares; its length and what the model gains by it. */
+static strut_model_step assemble_step(const dense_curvature *r, double *s) {
+  size_t n = (size_t)r->now.n;
+  strut_model_step step = {0};
+  memset(s, 0, n * sizeof *s);
+  for (size_t i = 0; i < n; i++) {
+    double x = r->x[i];
+    if (x == 0.0) continue;
+    step.length += x * x;
+    step.reduction -= x * (r->part[i] + 0.5 * r->now.value[i] * x);
+    for (size_t k = 0; k < n; k++) s[k] += x * r->now.vector[i * n + k];
+  }
+  step.length = sqrt(step.length);
+  return step;
+}
+
+static strut_model_step dense_trust_step(void *memory, const double *g, double radius, double still,
+                                         double *s) {
+  dense_curvature *r = memory;
+  split_gradient(r, g, still);
+  strut_quadratic model = {r->now.n, r->now.value, r->part, r->idle, r->scale, 0.0};
+  if (r->now.n > 0) model.noise = 4.0 * r->now.noise[0];
+  r->multiplier = strut_trust_step(&model, radius, r->x);
+  return assemble_step(r, s);
+}
+
+static bool dense_rebalance(void *memory, const double *g, double *s) {
+  dense_curvature *r = memory;
+  size_t n = (size_t)r->now.n;
+  double stiff = r->multiplier > 0 ? 10.0 * r->multiplier : 1e-3 * r->scale;
+  bool any = false;
+  for (size_t i = 0; i < n; i++) {
+    const double *mode = r->now.vector + i * n;
+    double sum = 0.0;
+    if (!(r->now.value[i] > stiff)) continue;
+    for (size_t k = 0; k < n; k++) sum += mode[k] * g[k];
+    for (size_t k = 0; k < n; k++) s[k] -= sum / r->now.value[i] * mode[k];
+    any = true;
+  }
+  return any;
+}
+
+static double dense_newton_step(void *memory, const double *g, double *s) {
+  dense_curvature *r = memory;
+  split_gradient(r, g, HUGE_VAL);
+  for (int32_t i = 0; i < r->now.n; i++) r->x[i] = r->idle[i] ? 0.0 : -r->part[i] / r->now.value[i];
+  return assemble_step(r, s).length;
+}
+
+static bool dense_unstable_direction(void *memory, double *s) {
+  dense_curvature *r = memory;
+  if (r->now.n == 0 || !(r->now.value[0] < -4.0 * r->now.noise[0])) return false;
+  memcpy(s, r->now.vector, (size_t)r->now.n * sizeof *s);
+  return true;
+}
+
+const strut_curvature strut_curvature_dense = {dense_decompose,          dense_trust_step,
+                                               dense_rebalance,          dense_newton_step,
+                                               dense_unstable_direction, dense_free};
+
+/* Steps by a sparse L D L' factor of the Hessian, shifted until it is positive definite. */
+
+typedef struct sparse_curvature {
+  const strut_potential *potential;
+  strut_sparse *hessian;
+  strut_ldl *ldl;
+  strut_inertia inertia;
+  double shift;           /* of the factor at hand; NAN: there is none */
+  double scale;           /* largest diagonal entry */
+  double *work, *scratch; /* (n) */
+  strut_arena arena;
+} sparse_curvature;
+
+static void sparse_free(void *memory) {
+  sparse_curvature *r = memory;
+  if (!r) return;
+  strut_ldl_free(r->ldl);
+  strut_arena_free(&r->arena);
+  strut_release(r);
+}
+
+void *strut_curvature_sparse_create(const strut_potential *potential) {
+  sparse_curvature *r = strut_allocate(1, sizeof *r);
+  if (!r) return NULL;
+  r->potential = potential;
+  r->hessian = strut_potential_matrix(potential, &r->arena);
+  r->work = strut_arena_allocate(&r->arena, (size_t)potential->n, sizeof *r->work);
+  r->scratch = strut_arena_allocate(&r->arena, (size_t)potential->n, sizeof *r->scratch);
+  if (r->hessian && r->work && r->scratch &&
+      strut_ldl_create(potential->pattern, &r->ldl, NULL) == STRUT_OK)
+    return r;
+  sparse_free(r);
+  return NULL;
+}
+
+/* Pivots of this share of their diagonal are rounding: neither their size nor their sign counts. */
+static const double NOISE = 32 * DBL_EPSILON;
+
+/* Factorises H + shift; true where it is positive definite beyond rounding. */
+static bool factorise(sparse_curvature *r, double shift) {
+  bool good = strut_ldl_factorise(r->ldl, r->hessian, shift, &r->inertia) == STRUT_OK;
+  r->shift = good ? shift : (double)NAN;
+  return good && r->inertia.negative == 0 && r->inertia.smallest > NOISE;
+}
+
+static bool sparse_decompose(void *memory, const double *q) {
+  sparse_curvature *r = memory;
+  const strut_sparse *h = r->hessian;
+  strut_potential_hessian(r->potential, q, r->hessian);
+  r->scale = 0.0;
+  for (int32_t k = 0; k < h->start[h->n]; k++)
+    if (!isfinite(h->value[k])) return false;
+  for (int32_t j = 0; j < h->n; j++) r->scale = fmax(r->scale, fabs(h->value[h->start[j]]));
+  r->shift = (double)NAN;
+  return true;
+}
+
+/* s = -(H + shift)^-1 g; its length. */
+static double solve_shifted(sparse_curvature *r, const double *g, double *s) {
+  int32_t n = r->hessian->n;
+  for (int32_t i = 0; i < n; i++) s[i] = -g[i];
+  strut_ldl_solve(r->ldl, s);
+  return sqrt(strut_dot(s, s, n));
+}
+
+static strut_model_step evaluate_step(sparse_curvature *r, const double *g, const double *s) {
+  int32_t n = r->hessian->n;
+  strut_sparse_multiply(r->hessian, s, r->work);
+  return (strut_model_step){sqrt(strut_dot(s, s, n)),
+                            -strut_dot(g, s, n) - 0.5 * strut_dot(s, r->work, n)};
+}
+
+/* The smallest of the shifts tried at which H + shift is positive definite; false: none is. */
+static bool find_shift(sparse_curvature *r, double *low, double *shift) {
+  *low = 0.0;
+  if (factorise(r, 0.0)) {
+    *shift = 0.0;
+    return true;
+  }
+  double next = 1e-14 * r->scale + 1e-300;
+  for (int i = 0; i < 40; i++, next *= 10.0) {
+    if (factorise(r, next)) {
+      *shift = next;
+      return true;
+    }
+    if (!isnan(r->shift)) *low = next;
+  }
+  return false;
+}
+
+/* From a shift that is larger than need be towards `low`, which is too small: a longer step. */
+static double lengthen_step(sparse_curvature *r, const double *g, double radius, double low,
+                            double shift, double length, double *s) {
+  for (int i = 0; i < 3 && low > 0 && length < 0.7 * radius; i++) {
+    double between = sqrt(low * shift);
+    bool good = factorise(r, between);
+    double longer = good ? solve_shifted(r, g, s) : HUGE_VAL;
+    if (longer <= radius) {
+      shift = between, length = longer;
+      continue;
+    }
+    low = between;
+    factorise(r, shift);
+    length = solve_shifted(r, g, s);
+  }
+  return length;
+}
+
+/*
+ * From a shift whose step is too long upwards: Newton's method on 1/|s|, each trial a new factor.
+ */
+static void shorten_step(sparse_curvature *r, const double *g, double radius, double low,
+                         double length, double *s) {
+  int32_t n = r->hessian->n;
+  double high = HUGE_VAL, shift = low;
+  for (int i = 0; i < 30 && !(length <= radius && length > 0.7 * radius); i++) {
+    memcpy(r->scratch, s, (size_t)n * sizeof *s);
+    strut_ldl_solve(r->ldl, r->scratch);
+    double slope = strut_dot(s, r->scratch, n); /* -|s| d|s|/dshift */
+    double next = shift + length * length * (length / (0.85 * radius) - 1.0) / slope;
+    if (!(next > low && next < high))
+      next = high == HUGE_VAL ? fmax(10.0 * low, 1e-14 * r->scale) : 0.5 * (low + high);
+    if (high - low <= 1e-3 * high && length <= radius) break;
+    if (!factorise(r, next)) break;
+    shift = next;
+    length = solve_shifted(r, g, s);
+    *(length > radius ? &low : &high) = shift;
+  }
+  if (length <= radius) return;
+  for (int32_t i = 0; i < n; i++) s[i] *= radius / length;
+}
+
+/* A step of 0.7 to 1 radius is good enough, or a shorter one where Newton's is. */
+static strut_model_step sparse_trust_step(void *memory, const double *g, double radius,
+                                          double still, double *s) {
+  sparse_curvature *r = memory;
+  double low, shift;
+  (void)still;
+  if (!find_shift(r, &low, &shift)) return (strut_model_step){0};
+  double length = solve_shifted(r, g, s);
+  if (length > radius)
+    shorten_step(r, g, radius, shift, length, s);
+  else if (shift > 0)
+    lengthen_step(r, g, radius, low, shift, length, s);
+  return evaluate_step(r, g, s);
+}
+
+/* A factor does not know its stiff modes. */
+static bool sparse_rebalance(void *memory, const double *g, double *s) {
+  (void)memory, (void)g, (void)s;
+  return false;
+}
+
+static double sparse_newton_step(void *memory, const double *g, double *s) {
+  sparse_curvature *r = memory;
+  factorise(r, 0.0);
+  if (isnan(r->shift) || r->inertia.smallest <= NOISE) factorise(r, 1e-13 * r->scale);
+  return isnan(r->shift) ? HUGE_VAL : solve_shifted(r, g, s);
+}
+
+/*
+ * Inverse iteration from a start that leans on no motion, shifted to just below the lowest value.
+ */
+static bool sparse_unstable_direction(void *memory, double *s) {
+  sparse_curvature *r = memory;
+  int32_t n = r->hessian->n;
+  double low, shift, quotient = 0.0;
+  if (!find_shift(r, &low, &shift)) return false;
+  if (shift <= 1e-13 * r->scale) return false;
+  for (int32_t i = 0; i < n; i++) s[i] = sin(1.0 + 12.9898 * i);
+  for (int turn = 0; turn < 20; turn++) {
+    strut_ldl_solve(r->ldl, s);
+    double length = sqrt(strut_dot(s, s, n));
+    for (int32_t i = 0; i < n; i++) s[i] /= length;
+    strut_sparse_multiply(r->hessian, s, r->work);
+    quotient = strut_dot(s, r->work, n);
+    if (turn > 3 && quotient < 0) break;
+  }
+  return quotient < -1e-13 * r->scale;
+}
+
+const strut_curvature strut_curvature_sparse = {sparse_decompose,          sparse_trust_step,
+                                                sparse_rebalance,          sparse_newton_step,
+                                                sparse_unstable_direction, sparse_free};
