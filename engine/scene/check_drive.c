@@ -248,7 +248,7 @@ static bool check_length(strut_checker *checker) {
   if (e->periods == 0.0) return e->duration > 0.0;
   if (!exists(e->period_signal, checker->scene->signal_count)) {
     strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
-                         "a run in periods needs the signal that has the period");
+                         "a run in periods needs a signal to define the period");
     return false;
   }
   if (checker->wild[e->period_signal]) return false; /* reported there */

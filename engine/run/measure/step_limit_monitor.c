@@ -89,12 +89,12 @@ static void iterate_power(const strut_model *model, const strut_state *state,
  * stop a run.
  */
 static double find_limit(const strut_model *model, const strut_step_limit_monitor *g,
-                         const double *q, const double *rest, bool watched) {
+                         const double *q, const double *rest, bool of_this_shape) {
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
   if (strut_step_limit_at_shape(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
   double bound = limit.of[g->method->region], seen = HUGE_VAL;
-  if (!limit.bound || !watched) return bound;
+  if (!limit.bound || !of_this_shape) return bound;
   for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->set[i].strength);
   return fmax(bound, seen);
 }
