@@ -147,10 +147,15 @@ wait_for 60 begun 2 || give_up "shard 2 does not begin"
 scancel --signal=USR1 --batch "${shards}_2" # what Slurm sends before the time is over
 requeued() { [ "$(scontrol show job "${shards}_2" | grep -c 'Restarts=1')" -eq 1 ]; }
 wait_for 20 requeued || give_up "shard 2 does not go back to the queue"
-scontrol update job="${shards}_2" StartTime=now 2>/dev/null # Slurm would let it wait for minutes,
-wait_for 300 over "$shards" || give_up "the shards do not end" # as it does where it takes no update yet
+# Slurm would let it wait for minutes. It is hurried only when nothing of its first run is left.
+waits() { [ "$(squeue --noheader --jobs="${shards}_2" -o %t)" = PD ]; }
+wait_for 60 waits || give_up "shard 2 does not wait in the queue"
+sleep 2
+scontrol update job="${shards}_2" StartTime=now 2>/dev/null
+wait_for 300 over "$shards" || give_up "the shards do not end"
 wait_for 30 over "$table" || give_up "the merge does not end"
-[ "$(state "${shards}_2")" = "FAILED 3:0 " ] || fail "shard 2: $(state "${shards}_2")"
+[ "$(state "${shards}_2")" = "FAILED 3:0 " ] ||
+  fail "shard 2: $(state "${shards}_2"); $(tail -n 5 "out/slurm-$shards-2.log")"
 grep -q 'interrupted after' "out/slurm-$shards-2.log" || fail "shard 2 was not interrupted"
 [ "$(state "${shards}_1")" = "FAILED 137:0 " ] || fail "shard 1: $(state "${shards}_1")"
 cp "out/slurm-$table-merge.log" "$work/out"
