@@ -210,6 +210,11 @@ about "$(field .measured.peak.value)" 181.64199963918244 0.001
 expect 0 run "$work/catch.yaml"
 out_has "known within"
 
+# Runs that agree by chance are not believed.
+expect 0 run "$here/chance.yaml" --accuracy 1% --json
+jq -e '.accuracy.kept and (.velocity / 0.036670 - 1 | fabs) < 0.01' out >/dev/null ||
+  fail "agreement by chance is believed: $(jq -c '[.velocity, .accuracy]' out)"
+
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4
 err_has "give either --accuracy, or --integrator and --step"
