@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/model/pose.h"
 
@@ -15,7 +16,11 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     if (!(*all[i] = strut_arena_allocate(&state->arena, slots, sizeof(double)))) return false;
   memcpy(step->rest0, model->members.rest, slots * sizeof(double));
-  return true;
+  size_t elements = (size_t)model->elements.count;
+  step->middle = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+  step->strain0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
+  step->energy0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
+  return step->middle && step->strain0 && step->energy0;
 }
 
 void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
@@ -30,6 +35,12 @@ void strut_discrete_gradient_begin(const strut_model *model, strut_state *state,
     strut_drive_apply(model, state, begin + h);
   }
   for (int32_t j = 0; j < t->count; j++) step->length0[j] = strut_member_length(t, j, q);
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    strut_element_pose pose;
+    strut_element_evaluate(model, i, step->rest0, q, state->element_turn[i], &pose);
+    step->strain0[i] = state->element_turn[i] = pose.strain;
+    step->energy0[i] = pose.energy;
+  }
 }
 
 /* Tension of a member on average, its elastic part, and what the first changes by with the end. */
@@ -103,6 +114,58 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
   }
 }
 
+/* The energy's change over the stretch's; where that is rounding, the force half-way. */
+static double average_force(const strut_element *e, const strut_element_pose *end, double stretch0,
+                            double energy0) {
+  double stretch1 = end->strain - end->natural, change = stretch1 - stretch0;
+  double scale = fmax(fabs(stretch0), fabs(stretch1)) + 1e-300;
+  if (fabs(change) > 1e-6 * scale) return (end->energy - energy0) / change;
+  double middle = end->natural + 0.5 * (stretch0 + stretch1);
+  if (e->carries && !(e->carries * (middle - end->natural) > 0.0)) return 0.0;
+  return strut_law_respond(e->law, &e->numbers, middle, end->natural, -1).force;
+}
+
+/*
+ * Gonzalez's discrete gradient of a strain: that half-way, corrected along the displacement so that its
+ * work is the change of the strain.
+ */
+static void add_element(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
+                        int32_t i, const double *restrict q0, const double *restrict q1) {
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  strut_element_pose end, middle;
+  strut_element_evaluate(model, i, state->rest, q1, step->strain0[i], &end);
+  strut_element_evaluate(model, i, state->rest, step->middle, step->strain0[i], &middle);
+  double natural0 = e->slot >= 0 ? step->rest0[e->slot] : e->natural, square = 0.0, work = 0.0;
+  double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
+  double change = end.strain - step->strain0[i], rate = change / step->h - rest_rate;
+  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+    uint32_t c = at[k / 2] + (uint32_t)(k % 2);
+    double d = q1[c] - q0[c];
+    square += d * d, work += middle.b[k] * d;
+  }
+  double more = square > 0.0 ? (change - work) / square : 0.0;
+  double elastic = average_force(e, &end, step->strain0[i] - natural0, step->energy0[i]);
+  double force = elastic + e->damping * rate;
+  if (e->carries && (elastic == 0.0 || e->carries * force <= 0.0)) force = elastic = 0.0;
+  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+    uint32_t c = at[k / 2] + (uint32_t)(k % 2);
+    state->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
+  }
+  if (!state->ledger) return;
+  const average now = {.tension = force, .elastic = elastic};
+  const stretching m = {.rate = rate, .h = step->h};
+  add_powers(state, &now, &m, end.natural - natural0, rest_rate);
+}
+
+static void add_elements(const strut_model *model, strut_state *state,
+                         strut_discrete_gradient *step, const double *restrict q0,
+                         const double *restrict q1) {
+  if (!model->elements.count) return;
+  for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (q0[i] + q1[i]);
+  for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
+}
+
 void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,
                                     strut_discrete_gradient *step, const double *q1,
                                     const double *u) {
@@ -116,6 +179,7 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
   if (model->plan & STRUT_TERM_LOADS)
     strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
+  add_elements(model, state, step, state->q, q1);
 }
 
 void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,

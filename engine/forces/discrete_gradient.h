@@ -26,6 +26,8 @@ typedef struct strut_discrete_gradient {
   double *lengths;   /* lengths at both ends, added [m] */
   double *tension;   /* on average [N] */
   double *slope;     /* d tension / d length at the end [N/m] */
+  double *middle; /* (length) positions half-way, where the gradients of elements are taken [m] */
+  double *strain0, *energy0; /* (elements) strains and energies [J] at the begin */
 } strut_discrete_gradient;
 
 /** Arrays in the state's arena. False: out of memory. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/energy.h"
 
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/model/pose.h"
 
@@ -30,6 +31,8 @@ static double elastic(const strut_model *model, const strut_state *state) {
     strut_member_pose pose = strut_member_pose_at(t, state->rest, j, state->q);
     sum += strut_member_elastic_energy(t, j, &pose);
   }
+  if (model->elements.count)
+    sum += strut_elements_energy(model, state->rest, state->element_turn, state->q);
   return sum;
 }
 

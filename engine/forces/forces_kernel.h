@@ -8,6 +8,7 @@
 #ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 #define STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
@@ -53,6 +54,7 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
+  if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,

@@ -8,7 +8,8 @@
 
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
-  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_LAWS))) return false;
+  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_LAWS | STRUT_TERM_ELEMENTS)))
+    return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;
 }
 

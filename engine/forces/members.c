@@ -1,9 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lengths and forces of members for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/rigid.h"
 #include "engine/model/pose.h"
+
+/* Adds the forces of a member's elements; a running cable's length is theirs, too. */
+static void measure_elements(const strut_model *model, const strut_state *state,
+                             const strut_element *e, strut_member_values *values) {
+  strut_element_pose pose;
+  for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL) {
+    int32_t i = (int32_t)(e - model->elements.element);
+    values->force += strut_element_measure(model, state, i, &pose);
+    values->length = pose.strain;
+    values->rate = strut_element_rate(model, i, &pose, state->v);
+  }
+}
 
 /* Without what the multiplier of a rigid bar adds. */
 static strut_member_values measure(const strut_model *model, const strut_state *state, int32_t j) {
@@ -12,7 +25,10 @@ static strut_member_values measure(const strut_model *model, const strut_state *
   double rate = strut_member_rate(t, j, &pose, state->v);
   double force = t->stiffness[j] * pose.stretch + t->damping[j] * (rate - state->rest_rate[j]);
   bool pulls = pose.taut && force > t->slack[j];
-  return (strut_member_values){pose.length, rate, pulls ? force : t->slack[j]};
+  strut_member_values values = {pose.length, rate, pulls ? force : t->slack[j]};
+  const strut_element *element = strut_element_of_member(&model->elements, j);
+  if (element) measure_elements(model, state, element, &values);
+  return values;
 }
 
 strut_member_values strut_member_measure(const strut_model *model, const strut_state *state,

@@ -13,6 +13,34 @@ void strut_block_add(const strut_stiffness_block *b, int count, const int32_t *r
   }
 }
 
+void strut_element_add(const strut_model *model, int32_t element, const double *k,
+                       const int32_t *row_of, strut_triplets *sum) {
+  const strut_element *e = &model->elements.element[element];
+  const uint32_t *at = model->elements.at + e->first;
+  int32_t n = 2 * e->nodes;
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c <= r; c++) {
+      int32_t row = row_of[at[r / 2] + (uint32_t)(r % 2)];
+      int32_t column = row_of[at[c / 2] + (uint32_t)(c % 2)];
+      if (row < 0 || column < 0) continue;
+      /* a cable that comes back to a node meets the diagonal from both sides */
+      strut_triplets_add(sum, row, column, (row == column && r != c ? 2.0 : 1.0) * k[r * n + c]);
+    }
+}
+
+void strut_element_scatter(const strut_model *model, int32_t element, const double *k,
+                           const int32_t *place, double *value) {
+  const strut_element *e = &model->elements.element[element];
+  const uint32_t *at = model->elements.at + e->first;
+  int32_t n = 2 * e->nodes;
+  place += e->place;
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c <= r; c++, place++) {
+      bool both = r != c && at[r / 2] == at[c / 2] && r % 2 == c % 2;
+      if (*place >= 0) value[*place] += (both ? 2.0 : 1.0) * k[r * n + c];
+    }
+}
+
 int32_t strut_number_free(const strut_model *model, const uint8_t *held, int32_t *row_of,
                           int32_t *coordinate) {
   int32_t n = 0;
@@ -32,6 +60,9 @@ void strut_tangent_add_pattern(const strut_model *model, const int32_t *row_of, 
     strut_member_rows(model, row_of, j, row);
     strut_block_add(&zero, STRUT_MEMBER_ENTRIES, row, sum);
   }
+  const double none[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
+  for (int32_t i = 0; i < model->elements.count; i++)
+    strut_element_add(model, i, none, row_of, sum);
   for (int32_t i = 0; i < model->contacts.count && contacts; i++)
     strut_block_add(&zero, STRUT_CONTACT_ENTRIES, row_of + model->contacts.at[i], sum);
 }
@@ -50,11 +81,15 @@ static int32_t find_place(const strut_sparse *pattern, int32_t row, int32_t colu
   return low;
 }
 
+static int32_t place_of(const strut_sparse *pattern, int32_t a, int32_t b) {
+  return a < 0 || b < 0 ? -1 : a > b ? find_place(pattern, a, b) : find_place(pattern, b, a);
+}
+
 static int32_t *find_places(const strut_sparse *pattern, int count, const int32_t *row,
                             int32_t *place) {
   for (int k = 0; k < count; k++) {
-    int32_t a = row[strut_block_entries[k].row], b = row[strut_block_entries[k].column];
-    *place++ = a < 0 || b < 0 ? -1 : a > b ? find_place(pattern, a, b) : find_place(pattern, b, a);
+    *place++ =
+        place_of(pattern, row[strut_block_entries[k].row], row[strut_block_entries[k].column]);
   }
   return place;
 }
@@ -65,6 +100,14 @@ void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, 
     int32_t row[4];
     strut_member_rows(model, row_of, j, row);
     place = find_places(pattern, STRUT_MEMBER_ENTRIES, row, place);
+  }
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + e->first;
+    for (int32_t r = 0; r < 2 * e->nodes; r++)
+      for (int32_t c = 0; c <= r; c++)
+        *place++ = place_of(pattern, row_of[at[r / 2] + (uint32_t)(r % 2)],
+                            row_of[at[c / 2] + (uint32_t)(c % 2)]);
   }
   for (int32_t i = 0; i < model->contacts.count && contacts; i++)
     place = find_places(pattern, STRUT_CONTACT_ENTRIES, row_of + model->contacts.at[i], place);
@@ -81,6 +124,7 @@ static double resting_force(const strut_model *model) {
 
 typedef struct assembly {
   const strut_model *model;
+  const double *q;
   const int32_t *row_of;
   strut_triplets stiffness, damping;
   double weight; /* on each contact [N] */
@@ -96,6 +140,19 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
   strut_member_rows(a->model, a->row_of, j, row);
   strut_block_add(&stiffness, STRUT_MEMBER_ENTRIES, row, &a->stiffness);
   if (k > 0) strut_block_add(&damper, STRUT_MEMBER_ENTRIES, row, &a->damping);
+}
+
+static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+  assembly *a = context;
+  const strut_element *e = &a->model->elements.element[i];
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  int32_t n = 2 * e->nodes;
+  strut_element_stiffness(a->model, i, pose, a->q, k);
+  strut_element_add(a->model, i, k, a->row_of, &a->stiffness);
+  if (!(e->damping > 0.0)) return;
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c < n; c++) k[r * n + c] = e->damping * pose->b[r] * pose->b[c];
+  strut_element_add(a->model, i, k, a->row_of, &a->damping);
 }
 
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
@@ -122,10 +179,10 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   strut_arena scratch = {0};
   bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   size_t both = (size_t)model->length;
-  size_t most = STRUT_MEMBER_ENTRIES * (size_t)model->members.count +
-                STRUT_CONTACT_ENTRIES * (size_t)model->contacts.count;
+  size_t most = strut_tangent_entries(model, true);
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
-  assembly a = {.model = model, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
+  assembly a = {
+      .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
   if (resting && (model->plan & STRUT_TERM_LAWS)) a.weight = resting_force(model);
   tangent->coordinate = strut_arena_allocate(arena, both, sizeof *tangent->coordinate);
   tangent->rigid = NULL;
@@ -133,7 +190,8 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   if (row_of && tangent->coordinate && strut_triplets_reserve(&a.stiffness, most, &scratch) &&
       strut_triplets_reserve(&a.damping, most, &scratch)) {
     tangent->n = strut_number_free(model, NULL, row_of, tangent->coordinate);
-    strut_tangent_visit(model, q, rest, -HUGE_VAL, closed, &a, add_member, add_contact);
+    strut_tangent_visit(model, q, rest, -HUGE_VAL, closed, &a, add_member, add_element,
+                        add_contact);
     tangent->stiffness = strut_sparse_build(tangent->n, &a.stiffness, arena);
     tangent->damping = strut_sparse_build(tangent->n, &a.damping, arena);
     if (tangent->stiffness && tangent->damping) status = STRUT_OK;

@@ -9,6 +9,7 @@
 #ifndef STRUT_ENGINE_FORCES_TANGENT_H
 #define STRUT_ENGINE_FORCES_TANGENT_H
 
+#include "engine/forces/elements.h"
 #include "engine/model/hot.h"
 #include "engine/model/pose.h"
 #include "engine/model/sparse.h"
@@ -64,6 +65,27 @@ STRUT_INLINE void strut_member_rows(const strut_model *model, const int32_t *row
   row[0] = a[0], row[1] = a[1], row[2] = b[0], row[3] = b[1];
 }
 
+/** Adds the lower triangle of an element's matrix k (2 nodes, 2 nodes) to the triplets. */
+void strut_element_add(const strut_model *model, int32_t element, const double *k,
+                       const int32_t *row_of, strut_triplets *sum);
+/** The same to values at the element's places, of which `place` holds those of all elements. */
+void strut_element_scatter(const strut_model *model, int32_t element, const double *k,
+                           const int32_t *place, double *value);
+
+/** Most entries that members, elements and, if wanted, contacts may add to a matrix. */
+static inline size_t strut_tangent_entries(const strut_model *model, bool contacts) {
+  return STRUT_MEMBER_ENTRIES * (size_t)model->members.count + (size_t)model->elements.entries +
+         (contacts ? STRUT_CONTACT_ENTRIES * (size_t)model->contacts.count : 0);
+}
+
+/** Index of the first of the places of elements, and of contacts. */
+static inline size_t strut_places_of_elements(const strut_model *model) {
+  return STRUT_MEMBER_ENTRIES * (size_t)model->members.count;
+}
+static inline size_t strut_places_of_contacts(const strut_model *model) {
+  return strut_tangent_entries(model, false);
+}
+
 /**
  * Numbers the free coordinates, those neither supported nor, where `held` (length) is not NULL, held:
  * row_of (length), -1 of the others, and coordinate (n), index into coordinate arrays. Returns n.
@@ -71,10 +93,10 @@ STRUT_INLINE void strut_member_rows(const strut_model *model, const int32_t *row
 int32_t strut_number_free(const strut_model *model, const uint8_t *held, int32_t *row_of,
                           int32_t *coordinate);
 
-/** Adds zeros where members and, if wanted, contacts may add to a matrix. */
+/** Adds zeros where members, elements and, if wanted, contacts may add to a matrix. */
 void strut_tangent_add_pattern(const strut_model *model, const int32_t *row_of, bool contacts,
                                strut_triplets *sum);
-/** Positions of those entries in the pattern's values, one member after another, then contacts. */
+/** Positions of those entries in the pattern's values: members, then elements, then contacts. */
 void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, bool contacts,
                                const strut_sparse *pattern, int32_t *place);
 
@@ -82,7 +104,7 @@ void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, 
 typedef enum strut_closed {
   STRUT_CLOSED_NONE,
   STRUT_CLOSED_TOUCHING, /* those below the ground in q */
-  STRUT_CLOSED_ALL,      /* every node that may touch: the stiffest case */
+  STRUT_CLOSED_ALL,      /* every node that may touch, and every stop: the stiffest case */
   STRUT_CLOSED_UNDAMPED  /* the same without the ground's dampers, but with smooth friction */
 } strut_closed;
 
@@ -103,12 +125,14 @@ typedef void strut_visit_contact(void *context, int32_t contact,
 
 /**
  * Calls `member` of every member that carries a force in q with rest lengths `rest` (slots), in the
- * scene's order, then `contact` of every closed contact. Cables and contacts whose force is at most
- * `least` [N] are left out. Inlined, and so are static functions passed to it.
+ * scene's order, then `element` of every element that acts, then `contact` of every closed contact.
+ * Those that carry one sign of force only, and contacts, are left out if their force is at most `least`
+ * [N]. Inlined, and so are static functions passed to it.
  */
 STRUT_INLINE void strut_tangent_visit(const strut_model *model, const double *q, const double *rest,
                                       double least, strut_closed closed, void *context,
-                                      strut_visit_member *member, strut_visit_contact *contact) {
+                                      strut_visit_member *member, strut_visit_element *element,
+                                      strut_visit_contact *contact) {
   const strut_member_table *t = &model->members;
   const strut_contact_table *c = &model->contacts;
   for (int32_t j = 0; j < t->count; j++) {
@@ -118,6 +142,10 @@ STRUT_INLINE void strut_tangent_visit(const strut_model *model, const double *q,
     m.across = strut_member_across_stiffness(t, rest, j, &m.pose);
     member(context, j, &m);
   }
+  if (model->elements.count)
+    strut_elements_visit(model, rest, q, least,
+                         closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED, context,
+                         element);
   for (int32_t i = 0; i < c->count && closed != STRUT_CLOSED_NONE; i++) {
     strut_closed_contact n = {strut_contact_gap(c, i, q), c->entry[i].stiffness};
     if (closed == STRUT_CLOSED_TOUCHING && (!(n.gap < 0.0) || -n.stiffness * n.gap <= least))

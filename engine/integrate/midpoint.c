@@ -123,9 +123,11 @@ static double rounding_of(const strut_model *model, const strut_state *state,
   return ROUNDING * (speed + reach * fmin(1.0 / h, h * w->stiffest));
 }
 
-static bool renew(const strut_model *model, midpoint_workspace *w, bool stiff) {
+static bool renew(const strut_model *model, const strut_state *state, midpoint_workspace *w,
+                  bool stiff) {
   w->factor_step = w->step.h;
-  return strut_midpoint_matrix_update(model, &w->step, w->held, stiff, &w->matrix);
+  return strut_midpoint_matrix_update(model, &w->step, state->rest, w->q1, w->held, stiff,
+                                      &w->matrix);
 }
 
 /*
@@ -142,12 +144,12 @@ static bool iterate(const strut_model *model, strut_state *state, midpoint_works
     memcpy(w->residual, w->x, bytes);
     bool missing = w->factor_step != w->step.h || (turn == 0 && stiff);
     bool fresh = missing || strut_midpoint_matrix_stale(model, &w->step, &w->matrix);
-    if (fresh && !renew(model, w, stiff)) return false;
+    if (fresh && !renew(model, state, w, stiff)) return false;
     strut_refactor_solve(w->matrix.factor, w->x);
     double size = size_of(&w->matrix, w->x), close = rounding_of(model, state, w);
     if (turn > 0 && size > SLOW * before && size > CLOSE * close) {
       if (size <= STALLED * close && size > 0.5 * before) return true;
-      if (!fresh && !renew(model, w, stiff)) return false;
+      if (!fresh && !renew(model, state, w, stiff)) return false;
       memcpy(w->x, w->residual, bytes);
       strut_refactor_solve(w->matrix.factor, w->x);
       size = size_of(&w->matrix, w->x);

@@ -25,7 +25,7 @@ static bool make_pattern(const strut_model *model, const int32_t *row_of, strut_
                          strut_midpoint_matrix *m) {
   strut_arena scratch = {0};
   strut_triplets sum = {0};
-  size_t most = STRUT_MEMBER_ENTRIES * (size_t)model->members.count + mass_entries(model);
+  size_t most = strut_tangent_entries(model, false) + mass_entries(model);
   bool good = strut_triplets_reserve(&sum, most, &scratch);
   if (good) {
     add_masses(model, row_of, &sum);
@@ -53,10 +53,10 @@ static bool make_members(const strut_model *model, strut_arena *arena, strut_mid
 
 bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
                                   strut_midpoint_matrix *m) {
-  size_t both = (size_t)model->length, members = (size_t)model->members.count;
+  size_t both = (size_t)model->length, entries_most = strut_tangent_entries(model, false);
   int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
   m->coordinate = strut_arena_allocate(arena, both, sizeof *m->coordinate);
-  m->place = strut_arena_allocate(arena, STRUT_MEMBER_ENTRIES * members, sizeof *m->place);
+  m->place = strut_arena_allocate(arena, entries_most, sizeof *m->place);
   if (!row_of || !m->coordinate || !m->place) return false;
   m->n = strut_number_free(model, NULL, row_of, m->coordinate);
   if (m->n == 0) return true;
@@ -91,12 +91,31 @@ static void add_member(const strut_discrete_gradient *step, int32_t j, double te
                       m->matrix->value);
 }
 
+/* The tangent stiffness at the end of the step, half of which the average force changes by. */
+static void add_element(const strut_model *model, const strut_discrete_gradient *step, int32_t i,
+                        const double *rest, const double *q, bool clip, strut_midpoint_matrix *m) {
+  const strut_element *e = &model->elements.element[i];
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  int32_t n = 2 * e->nodes;
+  strut_element_pose pose;
+  strut_element_evaluate(model, i, rest, q, step->strain0[i], &pose);
+  double slope = 0.5 * pose.slope + (pose.acts ? e->damping / step->h : 0.0);
+  double half = 0.5 * step->h * step->h;
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c < n; c++) k[r * n + c] = half * fmax(slope, 0.0) * pose.b[r] * pose.b[c];
+  if (!clip) strut_element_bend(model, i, q, 0.5 * half * pose.force, k);
+  strut_element_scatter(model, i, k, m->place + strut_places_of_elements(model), m->matrix->value);
+}
+
 bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
-                                  const double *tension, bool stiff, strut_midpoint_matrix *m) {
+                                  const double *rest, const double *q, const double *tension,
+                                  bool stiff, strut_midpoint_matrix *m) {
   for (bool clip = stiff;; clip = true) {
     memcpy(m->matrix->value, m->mass, (size_t)m->matrix->start[m->n] * sizeof *m->mass);
     for (int32_t j = 0; j < model->members.count; j++)
       add_member(step, j, clip ? fmax(tension[j], 0.0) : tension[j], m);
+    for (int32_t i = 0; i < model->elements.count; i++)
+      add_element(model, step, i, rest, q, clip, m);
     if (strut_refactor_apply(m->factor, m->matrix) < 0) return true;
     if (clip) return false;
   }

@@ -27,12 +27,14 @@ typedef struct strut_midpoint_matrix {
 bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
                                   strut_midpoint_matrix *m);
 /**
- * Builds and factorises it for the step as it was evaluated last. `tension` (members): what turns
+ * Builds and factorises it for the step as it was evaluated last, to positions q (length) with rest
+ * lengths `rest` (slots). `tension` (members): what turns
  * with a member; where that leaves no positive definite matrix, or with `stiff`, compression is left
  * out, which makes it one. False: not even then.
  */
 bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete_gradient *step,
-                                  const double *tension, bool stiff, strut_midpoint_matrix *m);
+                                  const double *rest, const double *q, const double *tension,
+                                  bool stiff, strut_midpoint_matrix *m);
 /**
  * Would the factor mislead? A stiff member that has turned by an angle a since, whose force it takes
  * for one along the old direction, moves its ends aside so far that its length changes by

@@ -53,10 +53,12 @@ static void compile_nodes(strut_model *model, bool *failed) {
 static void compile_members(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   strut_member_table *t = &model->members;
-  size_t slots = (scene->member_count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  size_t members = (scene->member_count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  size_t slots =
+      members + (strut_element_slots(scene) + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
   t->count = (int32_t)scene->member_count;
   t->slots = (int32_t)slots;
-  t->blocks = (t->slots + STRUT_BLOCK - 1) / STRUT_BLOCK;
+  t->blocks = ((int32_t)members + STRUT_BLOCK - 1) / STRUT_BLOCK;
   uint32_t *from = strut_arena_allocate(&model->arena, slots, sizeof *from);
   uint32_t *to = strut_arena_allocate(&model->arena, slots, sizeof *to);
   double *stiffness = doubles(model, slots, failed), *damping = doubles(model, slots, failed);
@@ -93,12 +95,16 @@ static void compile_members(strut_model *model, bool *failed) {
   t->slack = slack, t->mass = mass, t->block_terms = terms;
 }
 
+static void compile_elements(strut_model *model, bool *failed) {
+  if (!strut_elements_compile(model)) *failed = true;
+}
+
 static void compile_drives(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->actuator_count;
   int32_t *member = indices(model, count, failed), *signal = indices(model, count, failed);
   uint8_t *first = strut_arena_allocate(&model->arena, count, sizeof *first);
-  uint8_t *driven = strut_allocate(scene->member_count, sizeof *driven);
+  uint8_t *driven = strut_allocate((size_t)model->members.slots, sizeof *driven);
   if (!first || !driven) *failed = true;
   if (*failed) {
     strut_release(driven);
@@ -106,11 +112,11 @@ static void compile_drives(strut_model *model, bool *failed) {
   }
   uint16_t *terms = (uint16_t *)model->members.block_terms;
   for (size_t i = 0; i < count; i++) {
-    member[i] = scene->actuators[i].member;
+    member[i] = strut_actuator_slot(model, i);
     signal[i] = scene->actuators[i].signal;
     first[i] = !driven[member[i]];
     driven[member[i]] = 1;
-    terms[member[i] / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
+    if (member[i] < model->members.count) terms[member[i] / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
     model->plan |= STRUT_TERM_DRIVE;
   }
   strut_release(driven);
@@ -201,9 +207,9 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   if (!model) return strut_memory_fail_model(scene, error);
   model->scene = scene;
   bool failed = false;
-  void (*const passes[])(strut_model *, bool *) = {compile_nodes,  compile_members,
-                                                   compile_drives, compile_weights,
-                                                   compile_loads,  compile_contacts};
+  void (*const passes[])(strut_model *, bool *) = {
+      compile_nodes,   compile_members, compile_elements, compile_drives,
+      compile_weights, compile_loads,   compile_contacts};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

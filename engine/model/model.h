@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "engine/model/elements.h"
 #include "engine/model/mass.h"
 #include "engine/scene/scene.h"
 
@@ -33,12 +34,15 @@ typedef enum strut_term {
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
   STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
   STRUT_TERM_LAWS = 1 << 10, /* some contact has another law of damping or friction than (8), (9) */
-  STRUT_TERM_RIGID = 1 << 11 /* bars keep their lengths */
+  STRUT_TERM_RIGID = 1 << 11,   /* bars keep their lengths */
+  STRUT_TERM_ELEMENTS = 1 << 12 /* elements other than plain members */
 } strut_term;
 
 /**
  * Member tables in scene order; (slots) entries each. Padding slots have no length, and pull with no
- * force on the node of padding that every coordinate array ends with.
+ * force on the node of padding that every coordinate array ends with. So does the slot of a member whose
+ * force is that of an element (elements.h), which has its rest length there; slots after the members
+ * hold the natural strains of elements that are no members.
  */
 typedef struct strut_member_table {
   int32_t count, slots, blocks;
@@ -93,6 +97,7 @@ typedef struct strut_model {
   const uint8_t *fixed; /* (length) 1 where supported */
   const double *point_mass; /* (node_count) [kg] */
   strut_member_table members;
+  strut_element_table elements;
   strut_contact_table contacts;
   strut_drive_table drives;
   strut_load_table loads;

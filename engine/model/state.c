@@ -12,7 +12,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   *result = state;
   if (!state) return strut_memory_fail_model(model->scene, error);
   size_t both = (size_t)model->length, slots = (size_t)model->members.slots;
-  size_t contacts = (size_t)model->contacts.count;
+  size_t contacts = (size_t)model->contacts.count, elements = (size_t)model->elements.count;
   strut_arena *arena = &state->arena;
   state->q = strut_arena_allocate(arena, both, sizeof(double));
   state->v = strut_arena_allocate(arena, both, sizeof(double));
@@ -20,13 +20,16 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->rest_rate = strut_arena_allocate(arena, slots, sizeof(double));
   state->slack_length_threshold = strut_arena_allocate(arena, slots, sizeof(double));
   state->slack_force_threshold = strut_arena_allocate(arena, slots, sizeof(double));
+  state->element_acts = strut_arena_allocate(arena, elements, sizeof *state->element_acts);
+  state->element_piece = strut_arena_allocate(arena, elements, sizeof *state->element_piece);
+  state->element_turn = strut_arena_allocate(arena, elements, sizeof *state->element_turn);
   state->force = strut_arena_allocate(arena, both, sizeof(double));
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
-  if (!state->q || !state->v || !state->rest || !state->slack_length_threshold ||
-      !state->slack_force_threshold || !state->rest_rate || !state->force || !state->normal ||
-      !state->friction || !state->scratch) {
+  if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
+      !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
+      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -52,6 +55,11 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   memcpy(state->slack_length_threshold, model->members.slack, slots);
   memcpy(state->slack_force_threshold, model->members.slack, slots);
   memset(state->rest_rate, 0, slots);
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    state->element_acts[i] = 0;
+    state->element_piece[i] = -1;
+    state->element_turn[i] = strut_element_start(model, i);
+  }
   memset(state->work, 0, sizeof state->work);
   memset(state->power, 0, sizeof state->power);
 }

@@ -58,8 +58,13 @@ typedef struct strut_state {
   double *slack_length_threshold,
       *slack_force_threshold; /* (slots) a member acts where both are exceeded [m], [N]:
                         0 for cables, -INFINITY otherwise; methods with events freeze cables here */
-  double drive_time;          /* the time these two are for [s]; NAN before the first evaluation */
-  double time_offset; /* drives and loads stand where they do so much later than n * dt [s] */
+  /* (elements) modes that methods with events freeze: 1 acts, -1 does not, 0 by strain and force; the
+     law's smooth piece, -1 by the strain */
+  int8_t *element_acts;
+  int16_t *element_piece;
+  double *element_turn; /* (elements) strain when last evaluated, near which an angle is taken */
+  double drive_time;    /* the time these two are for [s]; NAN before the first evaluation */
+  double time_offset;   /* drives and loads stand where they do so much later than n * dt [s] */
 
   /* position, velocity and time dependent: strut_forces */
   double *force;    /* net force on each node [N] */

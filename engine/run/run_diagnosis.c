@@ -154,11 +154,13 @@ static jump find_jump(const strut_run *r, double from, double to) {
   double worst = JUMP;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
-    double when = 0.0, length = r->model->members.rest[a->member];
+    bool hinge = a->member < 0;
+    double when = 0.0, length = hinge ? 1.0 : r->model->members.rest[a->member];
     double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
     if (!(change > worst * length)) continue;
     worst = change / length;
-    found = (jump){scene->members[a->member].name, change, when};
+    found =
+        (jump){hinge ? scene->hinges[a->hinge].name : scene->members[a->member].name, change, when};
   }
   return found;
 }

@@ -92,11 +92,13 @@ static void check_name(strut_checker *checker, strut_name_map *map, strut_subjec
 void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
-                 configurations = {0};
+                 configurations = {0}, hinges = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
     check_name(checker, &members, STRUT_ON_MEMBER, "member", s->members[i].name, i);
+  for (size_t i = 0; i < s->hinge_count; i++)
+    check_name(checker, &hinges, STRUT_ON_HINGE, "hinge", s->hinges[i].name, i);
   for (size_t i = 0; i < s->actuator_count; i++)
     check_name(checker, &actuators, STRUT_ON_ACTUATOR, "actuator", s->actuators[i].name, i);
   for (size_t i = 0; i < s->load_count; i++)
@@ -111,6 +113,7 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map_free(&members);
   strut_name_map_free(&actuators);
   strut_name_map_free(&loads);
+  strut_name_map_free(&hinges);
   strut_name_map_free(&signals);
   strut_name_map_free(&configurations);
 }
@@ -147,18 +150,24 @@ static const char *rest_key(strut_rest_kind kind) {
   return (unsigned)kind < 4 ? keys[kind] : NULL;
 }
 
-/* Does the member join two different nodes that exist? */
+/* Does the member join nodes that exist, each to a different one? */
 static bool check_ends(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
-  for (size_t e = 0; e < 2; e++)
-    if (m->node[e] < 0 || (size_t)m->node[e] >= checker->scene->node_count) {
+  for (size_t k = 0; k < m->guide_count + 2; k++) {
+    int32_t node = strut_member_node(m, k), before = k ? strut_member_node(m, k - 1) : -1;
+    if (node < 0 || (size_t)node >= checker->scene->node_count) {
       strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
                            "%s joins a node that does not exist", owner);
       return false;
     }
-  if (m->node[0] != m->node[1]) return true;
-  strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins node '%s' to itself",
-                       owner, checker->scene->nodes[m->node[0]].name);
+    if (node != before) continue;
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes", "%s joins node '%s' to itself",
+                         owner, checker->scene->nodes[node].name);
+    return false;
+  }
+  if (!m->guide_count || m->kind == STRUT_CABLE) return true;
+  strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
+                       "%s runs over guides, which only a cable can", owner);
   return false;
 }
 
@@ -193,13 +202,18 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
   const char *key = rest_key(m->rest_kind);
   bool force = m->rest_kind == STRUT_REST_PRETENSION || m->rest_kind == STRUT_REST_FORCE_DENSITY;
-  bool elastic = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
+  bool given = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
+  bool elastic = given || strut_law_at(m->law.kind)->own, linear = m->law.kind == STRUT_LAW_LINEAR;
+  if (!strut_check_member_law(checker, index, owner)) return false;
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
                          "%s has both a stiffness and an axial_stiffness; give one", owner);
   else if (!elastic && m->damping == 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
                          "%s has neither stiffness nor damping, so it does nothing", owner);
+  else if (force && !linear)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "the %s of %s needs a linear law; give its rest_length", key, owner);
   else if (force && !elastic && m->rest_value != 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, key, "the %s of %s needs a stiffness",
                          key, owner);
@@ -217,13 +231,17 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
 static void check_shape(strut_checker *checker, size_t index, const char *owner) {
   const strut_scene *scene = checker->scene;
   const strut_member *m = &scene->members[index];
-  const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
-  double drawn = strut_distance(a->position, b->position),
-         start = strut_distance(a->start, b->start);
+  const strut_node *a, *b;
+  double drawn, start, least = HUGE_VAL;
+  for (size_t k = 0; k <= m->guide_count && least > 0.0; k++) {
+    a = &scene->nodes[strut_member_node(m, k)], b = &scene->nodes[strut_member_node(m, k + 1)];
+    drawn = strut_distance(a->position, b->position), start = strut_distance(a->start, b->start);
+    least = fmin(drawn, start);
+    if (isnan(drawn) || isnan(start)) return; /* reported at the node */
+  }
   const char *key = rest_key(m->rest_kind);
   bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
   strut_rest rest;
-  if (isnan(drawn) || isnan(start)) return; /* reported at the node */
   if (drawn == 0.0 && !free_length)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "nodes",
                          "nodes '%s' and '%s' are drawn in one place, so %s has no direction",
@@ -265,8 +283,8 @@ void strut_check_use(strut_checker *checker) {
     return;
   }
   for (size_t i = 0; i < scene->member_count; i++)
-    for (size_t e = 0; e < 2; e++) {
-      int32_t n = scene->members[i].node[e];
+    for (size_t e = 0; e < scene->members[i].guide_count + 2; e++) {
+      int32_t n = strut_member_node(&scene->members[i], e);
       if (n < 0 || (size_t)n >= scene->node_count) continue;
       state[n] = (unsigned char)(state[n] | USED | (scene->members[i].mass > 0.0 ? HEAVY : 0));
     }
@@ -294,9 +312,9 @@ void strut_check_use(strut_checker *checker) {
 strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
-      strut_check_names,  strut_check_nodes,   strut_check_members,
-      strut_check_use,    strut_check_signals, strut_check_ground,
-      strut_check_drives, strut_check_shapes,  strut_check_experiment};
+      strut_check_names,  strut_check_nodes,     strut_check_members, strut_check_hinges,
+      strut_check_use,    strut_check_signals,   strut_check_ground,  strut_check_drives,
+      strut_check_shapes, strut_check_experiment};
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;

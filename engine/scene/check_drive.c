@@ -207,10 +207,12 @@ void strut_check_drives(strut_checker *checker) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
     strut_format_name(owner, "actuator", a->name, i);
-    if (!exists(a->member, scene->member_count))
+    bool hinge = a->member < 0 && exists(a->hinge, scene->hinge_count);
+    if (!hinge && !exists(a->member, scene->member_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
                            "%s drives a member that does not exist", owner);
-    else if (scene->bar_model == STRUT_BARS_RIGID && scene->members[a->member].kind == STRUT_BAR)
+    else if (!hinge && scene->bar_model == STRUT_BARS_RIGID &&
+             scene->members[a->member].kind == STRUT_BAR)
       strut_report_finding(
           checker, STRUT_ON_ACTUATOR, i, "member",
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);

@@ -21,7 +21,12 @@ strut_member strut_member_default(void) {
                         .node = {-1, -1},
                         .kind = STRUT_BAR,
                         .rest_kind = STRUT_REST_RATIO,
-                        .rest_value = 1};
+                        .rest_value = 1,
+                        .longest = (double)INFINITY};
+}
+
+strut_hinge strut_hinge_default(void) {
+  return (strut_hinge){.name = "", .node = {-1, -1, -1}, .rest_angle = (double)NAN};
 }
 
 strut_contact strut_contact_default(void) { return (strut_contact){.node = -1}; }
@@ -32,9 +37,24 @@ void strut_scene_free(strut_scene *scene) {
 }
 
 static double drawn_length(const strut_scene *scene, const strut_member *member) {
-  const double *a = scene->nodes[member->node[0]].position;
-  const double *b = scene->nodes[member->node[1]].position;
-  return strut_distance(a, b);
+  double sum = 0.0;
+  for (size_t k = 0; k <= member->guide_count; k++)
+    sum += strut_distance(scene->nodes[strut_member_node(member, k)].position,
+                          scene->nodes[strut_member_node(member, k + 1)].position);
+  return sum;
+}
+
+double strut_hinge_drawn(const strut_scene *scene, size_t index) {
+  const strut_hinge *hinge = &scene->hinges[index];
+  const double *o = scene->nodes[hinge->node[1]].position;
+  strut_vec2 u = strut_vec2_between(o, scene->nodes[hinge->node[0]].position);
+  strut_vec2 v = strut_vec2_between(o, scene->nodes[hinge->node[2]].position);
+  return atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y);
+}
+
+double strut_hinge_rest(const strut_scene *scene, size_t index) {
+  double rest = scene->hinges[index].rest_angle;
+  return isnan(rest) ? strut_hinge_drawn(scene, index) : rest;
 }
 
 /* Rest length that gives `force` in the drawn shape; NAN where there is none. */

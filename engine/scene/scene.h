@@ -17,6 +17,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/scene/friction.h"
+#include "engine/scene/law.h"
 #include "engine/scene/signal.h"
 
 enum { STRUT_LANGUAGE_VERSION = 1 };
@@ -44,17 +45,36 @@ typedef enum strut_rest_kind {
   STRUT_REST_FORCE_DENSITY /* that force / drawn length [N/m] */
 } strut_rest_kind;
 
+/** Most nodes of a running cable or of a cell. */
+enum { STRUT_MOST_ELEMENT_NODES = 32 };
+
 typedef struct strut_member {
   const char *name;
-  int32_t node[2]; /* i1, i2 of the paper */
+  int32_t node[2]; /* i1, i2 of the paper; of a running cable its ends */
+  int32_t *guides; /* (guide_count) of a running cable: the nodes that it passes in between */
+  size_t guide_count;
   strut_member_kind kind;
   double stiffness;       /* c [N/m], >= 0; 0 when axial_stiffness is given */
   double axial_stiffness; /* EA [N], >= 0; then c = EA / rest length */
   double damping;         /* k [N s/m], >= 0 */
   double mass;            /* of the whole member [kg], >= 0 */
   strut_rest_kind rest_kind;
-  double rest_value; /* in the unit of rest_kind */
+  double rest_value;        /* in the unit of rest_kind */
+  strut_law law;            /* linear by default; a cable carries tension whatever the law says */
+  double shortest, longest; /* lengths at which stops act [m]; 0 and INFINITY: none */
+  double stop_stiffness;    /* [N/m]; 0: 100 times the member's */
+  double stop_damping;      /* [N s/m] of a stop while it acts */
 } strut_member;
+
+/** A spring of the angle at the second of three nodes, from the first to the third. */
+typedef struct strut_hinge {
+  const char *name;
+  int32_t node[3];
+  double stiffness;  /* [N m/rad] */
+  double damping;    /* [N m s/rad] */
+  double rest_angle; /* [rad]; NAN: as drawn, within half a turn */
+  strut_law law;     /* of the angle and the moment */
+} strut_hinge;
 
 /** How the ground damps; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
@@ -80,10 +100,11 @@ typedef struct strut_contact {
   strut_friction friction;
 } strut_contact;
 
-/** Drives a member's rest length: rest length + signal(t). */
+/** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
 typedef struct strut_actuator {
   const char *name;
-  int32_t member, signal;
+  int32_t member, hinge; /* one of them is -1 */
+  int32_t signal;
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */
@@ -128,10 +149,11 @@ typedef struct strut_scene {
   strut_mass_model mass_model;
   strut_bar_model bar_model;
   double gravity[2]; /* [m/s^2]; default 0, 0 */
-  size_t node_count, member_count, contact_count, actuator_count, load_count, signal_count,
-      parameter_count, configuration_count;
+  size_t node_count, member_count, hinge_count, contact_count, actuator_count, load_count,
+      signal_count, parameter_count, configuration_count;
   strut_node *nodes;
   strut_member *members;
+  strut_hinge *hinges;
   strut_ground ground;
   strut_contact *contacts; /* in the order of their nodes, one per node at most */
   strut_actuator *actuators;
@@ -148,6 +170,7 @@ typedef struct strut_scene {
 STRUT_API void strut_scene_init(strut_scene *scene);
 STRUT_API strut_node strut_node_default(void);
 STRUT_API strut_member strut_member_default(void);
+STRUT_API strut_hinge strut_hinge_default(void);
 STRUT_API strut_contact strut_contact_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
@@ -171,5 +194,23 @@ typedef struct strut_rest {
  * >= 0).
  */
 STRUT_API bool strut_member_rest(const strut_scene *scene, size_t member, strut_rest *rest);
+
+/** Node k of a member's way: its first node, its guides, its second node; k < guide_count + 2. */
+static inline int32_t strut_member_node(const strut_member *member, size_t k) {
+  return k == 0                    ? member->node[0]
+         : k > member->guide_count ? member->node[1]
+                                   : member->guides[k - 1];
+}
+
+/** True for a member whose force is not that of a plain spring or cable between two nodes. */
+static inline bool strut_member_is_special(const strut_member *member) {
+  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR ||
+         member->law.carries == STRUT_CARRIES_COMPRESSION;
+}
+
+/** Angle of a hinge as drawn, in (-pi, pi] [rad]. */
+STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);
+/** Rest angle of a hinge [rad]. */
+STRUT_API double strut_hinge_rest(const strut_scene *scene, size_t hinge);
 
 #endif

@@ -80,6 +80,7 @@ static void warn_of_rest_lengths(strut_checker *checker) {
   double last = strut_experiment_span(checker->experiment, scene).duration;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     size_t member = (size_t)scene->actuators[i].member, earlier = 0;
+    if (scene->actuators[i].member < 0) continue;
     while ((size_t)scene->actuators[earlier].member != member) earlier++;
     strut_rest rest;
     double t = 0.0;

@@ -22,8 +22,7 @@ static void sum_forces(strut_potential *p) {
 
 static bool make_pattern(strut_potential *p) {
   const strut_model *model = p->model;
-  size_t most = STRUT_MEMBER_ENTRIES * (size_t)model->members.count +
-                STRUT_CONTACT_ENTRIES * (size_t)model->contacts.count;
+  size_t most = strut_tangent_entries(model, true);
   strut_arena scratch = {0};
   strut_triplets sum = {0};
   p->place = strut_arena_allocate(&p->arena, most, sizeof *p->place);
@@ -70,6 +69,7 @@ static double elastic_energy(const strut_potential *p, const double *q) {
     strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
     sum += strut_member_elastic_energy(t, j, &m);
   }
+  if (p->model->elements.count) sum += strut_elements_energy(p->model, t->rest, NULL, q);
   return sum;
 }
 
@@ -92,6 +92,27 @@ double strut_potential_energy(const strut_potential *p, const double *q) {
   return elastic_energy(p, q) - sum;
 }
 
+/* Forces of elements: added to (length) forces, or taken from a gradient over the free rows. */
+typedef struct element_sum {
+  const strut_potential *potential;
+  double *sum;
+  bool gradient;
+} element_sum;
+
+static void add_element_force(void *context, int32_t element, const strut_element_pose *pose) {
+  const element_sum *s = context;
+  const strut_element_table *t = &s->potential->model->elements;
+  const strut_element *e = &t->element[element];
+  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+    uint32_t at = t->at[e->first + k / 2] + (uint32_t)(k % 2);
+    int32_t row = s->potential->row_of[at];
+    if (!s->gradient)
+      s->sum[at] -= pose->force * pose->b[k];
+    else if (row >= 0)
+      s->sum[row] += pose->force * pose->b[k];
+  }
+}
+
 void strut_potential_force(const strut_potential *p, const double *q, double *force) {
   const strut_member_table *t = &p->model->members;
   const strut_contact_table *c = &p->model->contacts;
@@ -103,6 +124,8 @@ void strut_potential_force(const strut_potential *p, const double *q, double *fo
     double *a = force + t->from[j], *b = force + t->to[j];
     a[0] += fx, a[1] += fy, b[0] -= fx, b[1] -= fy;
   }
+  element_sum elements = {p, force, false};
+  strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_force);
   for (int32_t i = 0; i < c->count && p->ground; i++) {
     double gap = strut_contact_gap(c, i, q), *f = force + c->at[i];
     if (!(gap < 0.0)) continue;
@@ -127,6 +150,8 @@ void strut_potential_gradient(const strut_potential *p, const double *q, double 
     if (b[0] >= 0) g[b[0]] += fx;
     if (b[1] >= 0) g[b[1]] += fy;
   }
+  element_sum elements = {p, g, true};
+  strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_force);
   for (int32_t i = 0; i < c->count && p->ground; i++) {
     double gap = strut_contact_gap(c, i, q);
     const int32_t *a = row + c->at[i];
@@ -135,6 +160,28 @@ void strut_potential_gradient(const strut_potential *p, const double *q, double 
     if (a[0] >= 0) g[a[0]] -= push * c->normal[0];
     if (a[1] >= 0) g[a[1]] -= push * c->normal[1];
   }
+}
+
+typedef struct rounding_sum {
+  const strut_potential *potential;
+  const double *q;
+  double largest;
+} rounding_sum;
+
+/* The last bits of the coordinates, through the gradient to the strain, and back to a force. */
+static void add_element_rounding(void *context, int32_t element, const strut_element_pose *pose) {
+  rounding_sum *s = context;
+  const strut_element_table *t = &s->potential->model->elements;
+  const strut_element *e = &t->element[element];
+  double bits = fabs(pose->strain) * DBL_EPSILON, steepest = 0.0;
+  for (int32_t k = 0; k < e->nodes; k++) {
+    const double *at = s->q + t->at[e->first + k];
+    double slope = fmax(fabs(pose->b[2 * k]), fabs(pose->b[2 * k + 1]));
+    bits = fmax(bits, slope * strut_coordinate_rounding(at, at));
+    steepest = fmax(steepest, slope);
+  }
+  double force = fabs(pose->slope) * bits + fabs(pose->force) * DBL_EPSILON;
+  s->largest = fmax(s->largest, steepest * force);
 }
 
 double strut_potential_rounding(const strut_potential *p, const double *q) {
@@ -150,6 +197,9 @@ double strut_potential_rounding(const strut_potential *p, const double *q) {
     double bit = strut_coordinate_rounding(q + t->from[j], q + t->to[j]);
     largest = fmax(largest, t->stiffness[j] * (bit + fabs(m.stretch) * DBL_EPSILON));
   }
+  rounding_sum elements = {p, q, largest};
+  strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_rounding);
+  largest = elements.largest;
   for (int32_t i = 0; i < c->count && p->ground; i++) {
     const double *at = q + c->at[i];
     double gap = strut_contact_gap(c, i, q);
@@ -174,6 +224,7 @@ void strut_potential_hessian(const strut_potential *p, const double *q, strut_sp
 
 typedef struct hessian_sum {
   const strut_potential *potential;
+  const double *q;
   double *value;
 } hessian_sum;
 
@@ -184,22 +235,30 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
   strut_block_scatter(&block, STRUT_MEMBER_ENTRIES, place, sum->value);
 }
 
+static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+  const hessian_sum *sum = context;
+  const strut_model *model = sum->potential->model;
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  strut_element_stiffness(model, i, pose, sum->q, k);
+  strut_element_scatter(model, i, k, sum->potential->place + strut_places_of_elements(model),
+                        sum->value);
+}
+
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
   const hessian_sum *sum = context;
   const strut_model *model = sum->potential->model;
   const strut_stiffness_block block =
       strut_block_of_contact(contact->stiffness, model->contacts.normal);
-  const int32_t *place = sum->potential->place + STRUT_MEMBER_ENTRIES * model->members.count;
+  const int32_t *place = sum->potential->place + strut_places_of_contacts(model);
   strut_block_scatter(&block, STRUT_CONTACT_ENTRIES, place + STRUT_CONTACT_ENTRIES * i, sum->value);
 }
 
 void strut_potential_hessian_above(const strut_potential *p, const double *q, double least,
                                    strut_sparse *hessian) {
   assert(hessian->n == p->n);
-  hessian_sum sum = {p, hessian->value};
-  assert(hessian->n == p->n);
+  hessian_sum sum = {p, q, hessian->value};
   memset(sum.value, 0, (size_t)hessian->start[hessian->n] * sizeof *sum.value);
   strut_tangent_visit(p->model, q, p->model->members.rest, least,
                       p->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE, &sum, add_member,
-                      add_contact);
+                      add_element, add_contact);
 }

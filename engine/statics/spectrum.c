@@ -139,6 +139,43 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
   add_form(room, sum->count, m->along, m->across, length > 0.0 ? m->along * bit / length : 0.0);
 }
 
+/* Along its gradient like a member; what its force adds by bending the strain directly. */
+static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+  const form_sum *sum = context;
+  strut_spectrum_workspace *room = sum->room;
+  const strut_model *model = room->potential->model;
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  int32_t n = 2 * e->nodes;
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, own[STRUT_MOST_GRADIENT];
+  strut_element_bend(model, i, sum->q, pose->force, bend);
+  for (int32_t k = 0; k < sum->count; k++) {
+    const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
+    room->along[k] = room->across[k] = 0.0;
+    for (int32_t r = 0; r < n; r++)
+      room->along[k] += pose->b[r] * moved(room, mode, at[r / 2] + (uint32_t)(r % 2));
+  }
+  add_form(room, sum->count, pose->slope, 0.0, 0.0);
+  for (int32_t k = 0; k < sum->count; k++) {
+    const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
+    for (int32_t r = 0; r < n; r++) {
+      own[r] = 0.0;
+      for (int32_t c = 0; c < n; c++)
+        own[r] += bend[r * n + c] * moved(room, mode, at[c / 2] + (uint32_t)(c % 2));
+    }
+    for (int32_t l = 0; l <= k; l++) {
+      const double *other = room->vector + (size_t)l * (size_t)room->potential->n;
+      double form = 0.0, size = 0.0;
+      for (int32_t r = 0; r < n; r++) {
+        double x = own[r] * moved(room, other, at[r / 2] + (uint32_t)(r % 2));
+        form += x, size += fabs(x);
+      }
+      room->soft[k * sum->count + l] += form;
+      if (l == k) room->form_noise[k] += 16.0 * DBL_EPSILON * size;
+    }
+  }
+}
+
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
   const form_sum *sum = context;
   strut_spectrum_workspace *room = sum->room;
@@ -160,7 +197,7 @@ static bool refine(strut_spectrum_workspace *room, const double *q, int32_t coun
   form_sum sum = {room, q, count};
   strut_tangent_visit(room->potential->model, q, room->potential->model->members.rest, room->least,
                       room->potential->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE, &sum,
-                      add_member, add_contact);
+                      add_member, add_element, add_contact);
   for (size_t i = 0; i < m; i++)
     for (size_t k = 0; k < i; k++) room->soft[k * m + i] = room->soft[i * m + k];
   if (!strut_eigen(room->soft, count, room->raw, room->work)) return false;

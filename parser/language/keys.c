@@ -34,6 +34,8 @@ static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_NODE_POSITION,
                             STRUT_KEY_MEMBER_GROUP,
+                            STRUT_KEY_HINGE_NODES,
+                            STRUT_KEY_LAW_KIND,
                             STRUT_KEY_GROUND_HEIGHT,
                             STRUT_KEY_FRICTION_LAW,
                             STRUT_KEY_CONTACT_GROUP,
@@ -62,10 +64,11 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",   "node",   "member",     "ground",    "friction", "contact", "actuator",
-    "load",    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration",
-    "initial", "settle", "equilibria", "solver",    "run",      "measure", "quantity",
-    "steady",  "output", "study",      "range",     "variant",  "check",   "figure"};
+    "scene",      "node",    "member",   "hinge",         "law",      "ground",
+    "friction",   "contact", "actuator", "load",          "signal",   "sine",
+    "half_sine",  "square",  "ramp",     "configuration", "initial",  "settle",
+    "equilibria", "solver",  "run",      "measure",       "quantity", "steady",
+    "output",     "study",   "range",    "variant",       "check",    "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -171,6 +174,8 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_STIFFNESS: return STRUT_DIM_STIFFNESS;
     case STRUT_MEASURE_DAMPING: return STRUT_DIM_DAMPING;
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
+    case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
+    case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
     default: return STRUT_DIM_NONE;
   }
 }
@@ -232,7 +237,12 @@ static const char *expected_shape(strut_key_type type) {
     case STRUT_TYPE_VERSION: return "the language version 1";
     case STRUT_TYPE_TEXT: return "a text";
     case STRUT_TYPE_NAME: return "a name";
-    case STRUT_TYPE_NODE_PAIR: return "two nodes such as [n1, n2]";
+    case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
+    case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
+    case STRUT_TYPE_NUMBERS: return "a list of numbers";
+    case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
+    case STRUT_TYPE_LAW:
+      return "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}";
     case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";
     case STRUT_TYPE_NODE_SETS: return "nodes such as [n1, n2], or a list of such lists";
     case STRUT_TYPE_GROUPS: return "a group, or a list of groups";

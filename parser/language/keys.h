@@ -20,6 +20,8 @@ typedef enum strut_section {
   STRUT_SECTION_SCENE,
   STRUT_SECTION_NODE,
   STRUT_SECTION_MEMBER,
+  STRUT_SECTION_HINGE,
+  STRUT_SECTION_LAW,
   STRUT_SECTION_GROUND,
   STRUT_SECTION_FRICTION,
   STRUT_SECTION_CONTACT,
@@ -57,7 +59,11 @@ typedef enum strut_key_type {
   STRUT_TYPE_WORDS,         /* a list of them */
   STRUT_TYPE_FIXED,         /* none, x, y, both, or a list of x and y */
   STRUT_TYPE_NAME,          /* the name of a thing */
-  STRUT_TYPE_NODE_PAIR,     /* the names of two nodes */
+  STRUT_TYPE_NODE_PATH,     /* the names of two nodes or more */
+  STRUT_TYPE_NODE_TRIPLE,   /* the names of three nodes */
+  STRUT_TYPE_NUMBERS,       /* a list of numbers */
+  STRUT_TYPE_POINTS,        /* a list of [x, y] */
+  STRUT_TYPE_LAW,           /* the name of a law, or the keys of law */
   STRUT_TYPE_CONTACT_NODES, /* all, or a list of nodes */
   STRUT_TYPE_NODE_SETS,     /* a list of nodes, or a list of such lists */
   STRUT_TYPE_GROUPS,        /* the name of a group, or a list of them */
@@ -88,7 +94,9 @@ typedef enum strut_measure {
   STRUT_MEASURE_FORCE,
   STRUT_MEASURE_STIFFNESS,
   STRUT_MEASURE_DAMPING,
-  STRUT_MEASURE_DISSIPATION
+  STRUT_MEASURE_DISSIPATION,
+  STRUT_MEASURE_ANGULAR_STIFFNESS,
+  STRUT_MEASURE_ANGULAR_DAMPING
 } strut_measure;
 
 typedef enum strut_key_range {

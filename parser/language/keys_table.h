@@ -23,6 +23,7 @@
   X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "Keys that several members, nodes or contacts share. A thing's own keys take precedence.") \
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", REQUIRED, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
+  X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, "consistent", WRITTEN, 0, "consistent|lumped", FIELD(strut_scene, mass_model), "How a member's mass acts: `consistent` as that of a uniform rod (the paper's model), `lumped` as half of it at each end.") \
   X(SCENE, BARS, "bars", WORD, NONE, ANY, "elastic", OPTIONAL, 0, "elastic|rigid", FIELD(strut_scene, bar_model), "`rigid` bars keep, during a run, the length they have at its start; their stiffness and damping then count only while the structure settles.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, "[0, 0]", WRITTEN, 0, "", FIELD(strut_scene, gravity), "Gravitational acceleration.") \
@@ -41,7 +42,7 @@
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
   X(NODE, FIXED, "fixed", FIXED, NONE, ANY, "none", OPTIONAL, 0, "none|x|y|both", FIELD(strut_node, fixed), "Supported directions; also as a list, `[x, y]`.") \
   X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
-  X(MEMBER, NODES, "nodes", NODE_PAIR, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The two nodes that the member joins.") \
+  X(MEMBER, NODES, "nodes", NODE_PATH, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The two nodes that the member joins. A cable may run over further nodes, its guides, without friction: `[a, p, q, b]`; it then has one tension along its whole length, and its mass is lumped.") \
   X(MEMBER, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "bar|spring|cable", FIELD(strut_member, kind), "Bars and springs carry tension and compression; a cable carries tension only and no force while slack. `strut` is another word for `bar`, `string` for `cable`.") \
   X(MEMBER, STIFFNESS, "stiffness", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 1, "", FIELD(strut_member, stiffness), "Force per elongation.") \
   X(MEMBER, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, NOT_NEGATIVE, "", OPTIONAL, 1, "", FIELD(strut_member, axial_stiffness), "EA; the stiffness is EA / rest length.") \
@@ -51,6 +52,25 @@
   X(MEMBER, REST_LENGTH_RATIO, "rest_length_ratio", NUMBER, NONE, NOT_NEGATIVE, "1", OPTIONAL, 2, "", BY_HAND, "Rest length / drawn length.") \
   X(MEMBER, PRETENSION, "pretension", NUMBER, FORCE, ANY, "", OPTIONAL, 2, "", BY_HAND, "Force in the drawn shape; tension is positive.") \
   X(MEMBER, FORCE_DENSITY, "force_density", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 2, "", BY_HAND, "Force in the drawn shape / drawn length.") \
+  X(MEMBER, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the force over the elongation, length - rest length. A cable carries tension only under every law.") \
+  X(MEMBER, SHORTEST, "shortest", NUMBER, LENGTH, NOT_NEGATIVE, "none", OPTIONAL, 0, "", FIELD(strut_member, shortest), "Length below which a stop pushes the ends apart.") \
+  X(MEMBER, LONGEST, "longest", NUMBER, LENGTH, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_member, longest), "Length beyond which a stop pulls the ends together.") \
+  X(MEMBER, STOP_STIFFNESS, "stop_stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "100 times the stiffness", OPTIONAL, 0, "", FIELD(strut_member, stop_stiffness), "Stiffness of the stops.") \
+  X(MEMBER, STOP_DAMPING, "stop_damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_member, stop_damping), "Damping of a stop while it acts; a stop never holds its member back.") \
+  X(HINGE, NODES, "nodes", NODE_TRIPLE, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Three nodes `[a, b, c]`: the hinge is at b, and its angle is that from the arm b-a to the arm b-c, counter-clockwise.") \
+  X(HINGE, STIFFNESS, "stiffness", NUMBER, ANGULAR_STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_hinge, stiffness), "Moment per angle.") \
+  X(HINGE, DAMPING, "damping", NUMBER, ANGULAR_DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_hinge, damping), "Moment per angular velocity.") \
+  X(HINGE, REST_ANGLE, "rest_angle", NUMBER, ANGLE, ANY, "as drawn", OPTIONAL, 0, "", FIELD(strut_hinge, rest_angle), "Angle at which the hinge has no moment. The angle is continuous over whole turns; at the start it is within half a turn of this one.") \
+  X(HINGE, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the moment over angle - rest angle.") \
+  X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to |x| = knee, then with the slope `second_stiffness`. `play`, no force up to |x| = gap, then k (|x| - gap). `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
+  X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
+  X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
+  X(LAW, SECOND_STIFFNESS, "second_stiffness", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", FIELD(strut_law, second_stiffness), "Slope of a bilinear law beyond its knee.") \
+  X(LAW, GAP, "gap", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, gap), "Free play to either side of the rest length.") \
+  X(LAW, SCALE, "scale", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, scale), "Elongation over which the slope of an exponential law grows by the factor e.") \
+  X(LAW, COEFFICIENTS, "coefficients", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Coefficients of x, x^2, ... of a polynomial, such as `[10 N/m, 0, 1e5 N/m^3]`.") \
+  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x; beyond the ends it continues straight.") \
+  X(LAW, SMOOTH, "smooth", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, smooth), "A table by a monotone spline through its points (Steffen) instead of straight lines.") \
   X(GROUND, HEIGHT, "height", NUMBER, LENGTH, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.height), "Height of the line at x = 0.") \
   X(GROUND, SLOPE, "slope", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.slope), "Angle of the line, between -90 deg and 90 deg; positive where it rises towards +x.") \
   X(GROUND, BELT_SPEED, "belt_speed", NUMBER, VELOCITY, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.belt_speed), "Speed of the surface along itself, positive towards +x.") \
@@ -72,8 +92,9 @@
   X(CONTACT, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "the ground's", OPTIONAL, 0, "", FIELD(strut_contact, damping), "Replaces the value of the ground.") \
   X(CONTACT, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, "the ground's", OPTIONAL, 0, "", FIELD(strut_contact, dissipation), "Replaces the value of the ground.") \
   X(CONTACT, FRICTION, "friction", MAP, NONE, ANY, "the ground's", OPTIONAL, 0, "", BY_HAND, "Replaces single keys of the ground's friction.") \
-  X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The member whose rest length it changes.") \
-  X(ACTUATOR, SIGNAL, "signal", SIGNAL, LENGTH, ANY, "", REQUIRED, 0, "", BY_HAND, "Added to the rest length of the member.") \
+  X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The member whose rest length it changes.") \
+  X(ACTUATOR, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The hinge whose rest angle it changes.") \
+  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Added to the rest length of the member, or to the rest angle of the hinge.") \
   X(LOAD, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The node on which the force acts.") \
   X(LOAD, FORCE, "force", PAIR, FORCE, ANY, "", REQUIRED, 0, "", FIELD(strut_load, force), "The force; with a signal, the force while the signal is 1.") \
   X(LOAD, SIGNAL, "signal", SIGNAL, NONE, ANY, "constant 1", OPTIONAL, 0, "", BY_HAND, "Factor on the force.") \

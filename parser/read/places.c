@@ -79,6 +79,7 @@ static bool signal_place(strut_reader *reader, const strut_finding *finding, str
 static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *sources[] = {[STRUT_ON_NODE] = reader->node_source,
                                    [STRUT_ON_MEMBER] = reader->member_source,
+                                   [STRUT_ON_HINGE] = reader->hinge_source,
                                    [STRUT_ON_CONTACT] = reader->contact_source,
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
                                    [STRUT_ON_LOAD] = reader->load_source,
@@ -140,8 +141,9 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     const strut_finding *finding = &findings->items[i];
     strut_place place;
     bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
-                finding->subject == STRUT_ON_CONTACT || finding->subject == STRUT_ON_ACTUATOR ||
-                finding->subject == STRUT_ON_LOAD || finding->subject == STRUT_ON_CONFIGURATION;
+                finding->subject == STRUT_ON_HINGE || finding->subject == STRUT_ON_CONTACT ||
+                finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
+                finding->subject == STRUT_ON_CONFIGURATION;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);

@@ -181,10 +181,14 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_TIMES:
     case STRUT_TYPE_TABLE:
     case STRUT_TYPE_NODE_SETS: return value->kind == STRUT_TREE_LIST;
-    case STRUT_TYPE_NODE_PAIR: return value->kind == STRUT_TREE_LIST && value->count == 2;
+    case STRUT_TYPE_NODE_PATH: return value->kind == STRUT_TREE_LIST && value->count >= 2;
+    case STRUT_TYPE_NODE_TRIPLE: return value->kind == STRUT_TREE_LIST && value->count == 3;
+    case STRUT_TYPE_NUMBERS:
+    case STRUT_TYPE_POINTS: return value->kind == STRUT_TREE_LIST;
     case STRUT_TYPE_MAP:
     case STRUT_TYPE_THINGS: return value->kind == STRUT_TREE_MAP;
     case STRUT_TYPE_SIGNAL:
+    case STRUT_TYPE_LAW:
     case STRUT_TYPE_SETTLE:
     case STRUT_TYPE_STEADY: return scalar || value->kind == STRUT_TREE_MAP;
     case STRUT_TYPE_GROUPS:

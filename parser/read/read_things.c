@@ -57,16 +57,38 @@ void strut_read_nodes(strut_reader *reader) {
   }
 }
 
-/* The two nodes of `nodes: [a, b]`; -1 for what is unknown. */
-static bool read_ends(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                      int32_t node[2]) {
+int32_t strut_read_node(strut_reader *reader, const strut_tree *item, strut_owner owner) {
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state != STRUT_GIVEN) return -1;
+  return strut_read_reference(reader, item, "nodes", owner, "node", &reader->node_names,
+                              strut_node_name, reader->scene->node_count);
+}
+
+/* The nodes of `nodes: [a, b]` or `[a, p, q, b]`; -1 for what is unknown. */
+static bool read_path(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                      strut_member *member) {
   if (slot->state != STRUT_GIVEN) return false;
+  size_t count = slot->value->count;
+  bool known = true;
+  if (count > STRUT_MOST_ELEMENT_NODES) {
+    strut_report_error(reader, slot->value->place,
+                       "%s runs over %zu nodes, at most %d are possible",
+                       strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
+    return false;
+  }
+  if (count > 2)
+    member->guides =
+        strut_reader_allocate(reader, &reader->scene->arena, count - 2, sizeof(int32_t));
+  if (count > 2 && !member->guides) return false;
   const strut_tree *item = slot->value->first;
-  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
-  for (int e = 0; e < 2 && known; e++, item = item->next)
-    node[e] = strut_read_reference(reader, item, "nodes", owner, "node", &reader->node_names,
-                                   strut_node_name, reader->scene->node_count);
-  return node[0] >= 0 && node[1] >= 0;
+  for (size_t k = 0; k < count; k++, item = item->next) {
+    int32_t node = strut_read_node(reader, item, owner);
+    known = known && node >= 0;
+    if (k == 0 || k + 1 == count)
+      member->node[k ? 1 : 0] = node;
+    else
+      member->guides[member->guide_count++] = node;
+  }
+  return known;
 }
 
 /* Four keys, of which a member has one at most, say the rest length in different ways. */
@@ -86,7 +108,7 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   strut_read_fields(reader, STRUT_SECTION_MEMBER, key->next, owner, &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_MEMBER_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
-  if (!read_ends(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member->node)) {
+  if (!read_path(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member)) {
     reader->ends_unknown = true;
     fine = false;
   }
@@ -94,6 +116,9 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   if (strut_slot_of(&fields, STRUT_KEY_MEMBER_MASS)->state == STRUT_BROKEN)
     reader->masses_unknown = true;
   store_rest_length(&fields, member);
+  if (!strut_read_law(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_LAW), owner, STRUT_DIM_LENGTH,
+                      STRUT_DIM_FORCE, &member->law))
+    fine = false;
   return fine && !fields.broken;
 }
 
@@ -139,21 +164,35 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
 
 static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_actuator *actuator) {
   strut_owner owner = {"actuator", actuator->name};
-  strut_dimension length = STRUT_DIM_LENGTH;
   bool fine = strut_read_name(reader, key, "actuator");
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_ACTUATOR, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
   const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_SIGNAL);
+  const strut_slot *hinge = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_HINGE);
+  strut_dimension driven = hinge->key ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
+  if (member->state == STRUT_ABSENT && hinge->state == STRUT_ABSENT && !fields.broken) {
+    strut_report_error(reader, key->place,
+                       "%s lacks 'member', expected the name of a member, or "
+                       "'hinge' with the name of a hinge",
+                       strut_owner_text(reader, owner));
+    fine = false;
+  }
+  if (hinge->state == STRUT_GIVEN &&
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->state != STRUT_BROKEN)
+    actuator->hinge =
+        strut_read_reference(reader, hinge->value, "hinge", owner, "hinge", &reader->hinge_names,
+                             strut_hinge_name, reader->scene->hinge_count);
   if (member->state == STRUT_GIVEN && known)
     actuator->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
                              &reader->member_names, strut_member_name, reader->scene->member_count);
   if (signal->state == STRUT_GIVEN)
-    actuator->signal = strut_read_signal(reader, signal->value, "signal", owner, &length);
-  return fine && !fields.broken && actuator->member >= 0 && actuator->signal >= 0;
+    actuator->signal = strut_read_signal(reader, signal->value, "signal", owner, &driven);
+  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0) &&
+         actuator->signal >= 0;
 }
 
 static void read_actuators(strut_reader *reader) {
@@ -167,7 +206,7 @@ static void read_actuators(strut_reader *reader) {
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = strut_next_entry(reader, &scene->actuator_count);
-    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1};
+    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1, -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
     reader->actuator_source[i] = (strut_source){key, key->next, !fine};

@@ -18,6 +18,15 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "for the rest length, the member's own replaces that of its group; the same holds for the "
         "two "
         "keys for the stiffness.",
+    [STRUT_SECTION_HINGE] =
+        "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a "
+        "law that brings its own stiffness.",
+    [STRUT_SECTION_LAW] =
+        "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
+        "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
+        "hinge "
+        "read angle for length and moment for force. `polynomial` and `table` bring their own "
+        "stiffness, so that the member must not give one.",
     [STRUT_SECTION_GROUND] = "`ground: {...}`: the line that nodes may touch.",
     [STRUT_SECTION_FRICTION] =
         "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "
@@ -29,7 +38,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
-        "unit of its values follows from its use: a length for an actuator, a number without unit "
+        "unit of its values follows from its use: a length or an angle for an actuator, a number "
+        "without unit "
         "for a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
     [STRUT_SECTION_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
@@ -103,7 +113,11 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_PAIR] = "two numbers",
       [STRUT_TYPE_WORDS] = "list of ",
       [STRUT_TYPE_NAME] = "name",
-      [STRUT_TYPE_NODE_PAIR] = "names of two nodes",
+      [STRUT_TYPE_NODE_PATH] = "names of two nodes or more",
+      [STRUT_TYPE_NODE_TRIPLE] = "names of three nodes",
+      [STRUT_TYPE_NUMBERS] = "list of numbers",
+      [STRUT_TYPE_POINTS] = "list of `[x, force]`",
+      [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",
       [STRUT_TYPE_CONTACT_NODES] = "`all`, or list of nodes",
       [STRUT_TYPE_NODE_SETS] = "list of nodes, or list of such lists",
       [STRUT_TYPE_GROUPS] = "group, or list of groups",

@@ -103,8 +103,10 @@ static void put_actuators(strut_writer *writer) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     strut_put(writer, "  ");
     strut_put_name(writer, scene->actuators[i].name);
-    strut_put(writer, ": {member: ");
-    strut_put_name(writer, scene->members[scene->actuators[i].member].name);
+    const strut_actuator *a = &scene->actuators[i];
+    strut_put(writer, a->member >= 0 ? ": {member: " : ": {hinge: ");
+    strut_put_name(writer,
+                   a->member >= 0 ? scene->members[a->member].name : scene->hinges[a->hinge].name);
     strut_put(writer, ", signal: ");
     put_reference(writer, scene->actuators[i].signal);
     strut_put(writer, "}\n");

@@ -71,18 +71,56 @@ static void put_nodes(strut_writer *writer) {
   }
 }
 
-/* The two nodes, and the rest length in the way in which it was given. */
+static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                            const void *object) {
+  const strut_law *law = object;
+  int parameter = 0;
+  while (parameter < STRUT_LAW_PARAMETER_COUNT &&
+         strcmp(strut_law_key(parameter), strut_key_at(key)->name) != 0)
+    parameter++;
+  if (!(strut_law_at(law->kind)->needs >> parameter & 1u)) return;
+  strut_put_key_name(writer, mapping, key);
+  switch (key) {
+    case STRUT_KEY_LAW_KNEE: strut_put_number(writer, law->knee); return;
+    case STRUT_KEY_LAW_SECOND_STIFFNESS: strut_put_number(writer, law->second_stiffness); return;
+    case STRUT_KEY_LAW_GAP: strut_put_number(writer, law->gap); return;
+    case STRUT_KEY_LAW_SCALE: strut_put_number(writer, law->scale); return;
+    default: break;
+  }
+  for (size_t i = 0; i < law->count; i++) {
+    strut_put(writer, i ? ", " : "[");
+    if (key == STRUT_KEY_LAW_POINTS)
+      strut_put_pair(writer, (const double[2]){law->x[i], law->force[i]});
+    else
+      strut_put_number(writer, law->force[i]);
+  }
+  strut_put(writer, "]");
+}
+
+static void put_law(strut_writer *writer, strut_mapping *mapping, int key, const strut_law *law) {
+  const strut_law usual = {.kind = STRUT_LAW_LINEAR};
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put(writer, "{");
+  strut_put_fields(writer, &inner, STRUT_SECTION_LAW, law, &usual, put_law_by_hand);
+  strut_put(writer, "}");
+}
+
+/* The nodes, the law, and the rest length in the way in which it was given. */
 static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
   const strut_node *nodes = writer->scene->nodes;
   const strut_member *m = object;
   if (key == STRUT_KEY_MEMBER_NODES) {
     strut_put_key_name(writer, mapping, key);
-    strut_put(writer, "[");
-    strut_put_name(writer, nodes[m->node[0]].name);
-    strut_put(writer, ", ");
-    strut_put_name(writer, nodes[m->node[1]].name);
+    for (size_t k = 0; k < m->guide_count + 2; k++) {
+      strut_put(writer, k ? ", " : "[");
+      strut_put_name(writer, nodes[strut_member_node(m, k)].name);
+    }
     strut_put(writer, "]");
+  } else if (key == STRUT_KEY_MEMBER_LAW) {
+    put_law(writer, mapping, key, &m->law);
   } else if (key == strut_rest_key(m->rest_kind)) {
     strut_put_key_name(writer, mapping, key);
     strut_put_number(writer, m->rest_value);
@@ -100,6 +138,36 @@ static void put_members(strut_writer *writer) {
     strut_put(writer, ": {");
     strut_put_fields(writer, &mapping, STRUT_SECTION_MEMBER, &scene->members[i], &usual,
                      put_member_by_hand);
+    strut_put(writer, "}\n");
+  }
+}
+
+static void put_hinge_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                              const void *object) {
+  const strut_hinge *h = object;
+  if (key == STRUT_KEY_HINGE_LAW) {
+    put_law(writer, mapping, key, &h->law);
+    return;
+  }
+  strut_put_key_name(writer, mapping, key);
+  for (int k = 0; k < 3; k++) {
+    strut_put(writer, k ? ", " : "[");
+    strut_put_name(writer, writer->scene->nodes[h->node[k]].name);
+  }
+  strut_put(writer, "]");
+}
+
+static void put_hinges(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  const strut_hinge usual = strut_hinge_default();
+  if (scene->hinge_count) strut_put(writer, "hinges:\n");
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_put(writer, "  ");
+    strut_put_name(writer, scene->hinges[i].name);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_HINGE, &scene->hinges[i], &usual,
+                     put_hinge_by_hand);
     strut_put(writer, "}\n");
   }
 }
@@ -207,6 +275,7 @@ char *strut_setup_write(const strut_setup *setup) {
   put_head(&writer);
   put_nodes(&writer);
   put_members(&writer);
+  put_hinges(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
   strut_put_shapes(&writer);

@@ -260,6 +260,21 @@ static void digest(uint64_t key[2], const void *data, size_t bytes) {
 
 static void digest_number(uint64_t key[2], double x) { digest(key, &x, sizeof x); }
 
+static void digest_elements(const strut_element_table *t, uint64_t key[2]) {
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    const strut_law_numbers *n = &e->numbers;
+    const double numbers[] = {e->strain,  e->law,       e->slot,  e->natural, e->carries,
+                              e->damping, n->stiffness, n->first, n->second};
+    digest(key, numbers, sizeof numbers);
+    digest(key, n->coefficient, n->count * sizeof(double));
+    for (int32_t k = 0; k < e->nodes; k++) digest_number(key, t->at[e->first + k]);
+    if (!n->curve) continue;
+    digest(key, n->curve->x, n->curve->count * sizeof(double));
+    digest(key, n->curve->piece, (n->curve->count - 1) * sizeof n->curve->piece[0]);
+  }
+}
+
 /* All that an estimate reads of a model. */
 static void digest_model(const strut_model *m, uint64_t key[2]) {
   const strut_member_table *t = &m->members;
@@ -276,6 +291,7 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   const double *const of_members[] = {t->stiffness, t->damping, t->rest, t->slack, t->mass};
   for (size_t i = 0; i < sizeof of_members / sizeof of_members[0]; i++)
     digest(key, of_members[i], slots);
+  digest_elements(&m->elements, key);
   digest(key, m->start, both);
   digest(key, m->point_mass, (size_t)m->node_count * sizeof(double));
   for (int32_t i = 0; i < m->length; i++) digest_number(key, m->fixed[i]);

@@ -15,7 +15,7 @@ static const double LOST_MOTION = 16.0;
 /* image = (h^2 stiff K + h damp D) motion, on free coordinates. */
 typedef struct product {
   const strut_model *model;
-  const double *motion;
+  const double *q, *motion;
   double *image, stiff, damp; /* factors of K and D */
 } product;
 
@@ -30,6 +30,23 @@ static void apply_member(void *context, int32_t j, const strut_member_tangent *m
   double *a = p->image + t->from[j], *b = p->image + t->to[j];
   a[0] -= fx, a[1] -= fy;
   b[0] += fx, b[1] += fy;
+}
+
+static void apply_element(void *context, int32_t i, const strut_element_pose *pose) {
+  const product *p = context;
+  const strut_element_table *t = &p->model->elements;
+  const strut_element *e = &t->element[i];
+  const uint32_t *at = t->at + e->first;
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
+  int32_t n = 2 * e->nodes;
+  double along = strut_element_rate(p->model, i, pose, p->motion);
+  strut_element_bend(p->model, i, p->q, p->stiff * pose->force, bend);
+  for (int32_t r = 0; r < n; r++) {
+    double push = (p->stiff * pose->slope + p->damp * e->damping) * along * pose->b[r];
+    for (int32_t c = 0; c < n; c++)
+      push += bend[r * n + c] * p->motion[at[c / 2] + (uint32_t)(c % 2)];
+    p->image[at[r / 2] + (uint32_t)(r % 2)] += push;
+  }
 }
 
 static void apply_contact(void *context, int32_t i, const strut_closed_contact *contact) {
@@ -60,11 +77,12 @@ static void iterate_power(const strut_model *model, const strut_state *state,
   int32_t n = 2 * model->node_count;
   double work = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
   memset(g->image, 0, (size_t)model->length * sizeof *g->image);
-  product p = {model, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
+  product p = {
+      model, state->q, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
   /* implicit ground dampers: steps are refined while the ground is touched */
   strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_tangent_visit(model, state->q, state->rest, -HUGE_VAL, closed, &p, apply_member,
-                      apply_contact);
+                      apply_element, apply_contact);
   for (int32_t i = 0; i < n; i++)
     if (model->fixed[i]) g->image[i] = 0.0;
   strut_mass_solve(model, g->image, g->divided, g->scratch);

@@ -43,11 +43,51 @@ static void add_member(strut_vibration *v, int32_t j) {
   strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place - STRUT_MEMBER_ENTRIES, v->d);
 }
 
+/* Of elements in single precision of a double: their rounding is that of their stiffness. */
+typedef struct element_sum {
+  strut_vibration *vibration;
+  strut_dd *force; /* NULL: stiffness and damping */
+} element_sum;
+
+static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+  strut_vibration *v = ((const element_sum *)context)->vibration;
+  const strut_element *e = &v->model->elements.element[i];
+  const int32_t *place = v->shape->place + strut_places_of_elements(v->model);
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  int32_t n = 2 * e->nodes;
+  strut_element_stiffness(v->model, i, pose, v->rounded, k);
+  strut_element_scatter(v->model, i, k, place, v->sum);
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c < n; c++) k[r * n + c] = e->damping * pose->b[r] * pose->b[c];
+  strut_element_scatter(v->model, i, k, place, v->d);
+}
+
+static void add_element_force(void *context, int32_t i, const strut_element_pose *pose) {
+  const element_sum *s = context;
+  const strut_element_table *t = &s->vibration->model->elements;
+  const strut_element *e = &t->element[i];
+  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+    int32_t row = s->vibration->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
+    if (row >= 0) s->force[row] = dd_add(s->force[row], dd_product(-pose->force, pose->b[k]));
+  }
+}
+
+static void add_elements(strut_vibration *v) {
+  element_sum sum = {v, NULL};
+  size_t entries = (size_t)v->shape->pattern->start[v->n];
+  if (!v->model->elements.count) return;
+  for (int32_t i = 0; i < v->model->length; i++) v->rounded[i] = dd_double(v->q[i]);
+  memset(v->sum, 0, entries * sizeof *v->sum);
+  strut_elements_visit(v->model, v->model->members.rest, v->rounded, -HUGE_VAL, false, &sum,
+                       add_element);
+  for (size_t i = 0; i < entries; i++) v->k[i] = dd_add(v->k[i], dd_of(v->sum[i]));
+}
+
 static void add_contact(strut_vibration *v, int32_t i) {
   const strut_contact_table *c = &v->model->contacts;
   if (!v->closed[i]) return;
-  const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * v->model->members.count;
-  place += STRUT_CONTACT_ENTRIES * i;
+  const int32_t *place =
+      v->shape->place + strut_places_of_contacts(v->model) + STRUT_CONTACT_ENTRIES * i;
   for (int a = 0; a < 2; a++)
     for (int b = 0; b <= a; b++, place++) {
       if (*place < 0) continue;
@@ -107,6 +147,7 @@ void strut_vibration_update(strut_vibration *v) {
     place_member(v, j);
     add_member(v, j);
   }
+  add_elements(v);
   for (int32_t i = 0; i < v->model->contacts.count; i++) add_contact(v, i);
   bound_spectrum(v);
 }
@@ -120,9 +161,12 @@ static bool allocate(strut_vibration *v) {
   v->k = strut_arena_allocate(&v->arena, entries, sizeof *v->k);
   v->m = strut_arena_allocate(&v->arena, entries, sizeof *v->m);
   v->d = strut_arena_allocate(&v->arena, entries, sizeof *v->d);
+  v->rounded = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->rounded);
+  v->sum = strut_arena_allocate(&v->arena, entries, sizeof *v->sum);
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  return v->q && v->member && v->closed && v->k && v->m && v->d && v->mass && v->work;
+  return v->rounded && v->sum && v->q && v->member && v->closed && v->k && v->m && v->d &&
+         v->mass && v->work;
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,
@@ -176,6 +220,8 @@ void strut_vibration_force(const strut_vibration *v, strut_dd *force) {
     add_to(force, row_of[t->to[j]], dd_negative(x));
     add_to(force, row_of[t->to[j] + 1], dd_negative(y));
   }
+  element_sum elements = {(strut_vibration *)v, force};
+  strut_elements_visit(model, t->rest, v->rounded, -HUGE_VAL, false, &elements, add_element_force);
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     if (!v->closed[i]) continue;

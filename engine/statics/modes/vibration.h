@@ -25,10 +25,12 @@ typedef struct strut_vibration {
   strut_potential *shape; /* coordinates, and the pattern of all matrices here; owned */
   int32_t n;
   strut_dd *q;                    /* (length) [m] */
+  double *rounded;                /* (length) the same in a double: what elements use */
   strut_vibration_member *member; /* (member_count) */
   uint8_t *closed;                /* (contacts) 1 where the ground pushes, there with stiffness */
   strut_dd *k;                    /* K [N/m], in the pattern's places as the next two */
   double *m, *d;                  /* M [kg], D [N s/m] */
+  double *sum;                    /* scratch at the same places */
   double *mass;                   /* (n) row sums of M: 0 where nothing has mass */
   int32_t massive;                /* rows with mass */
   double largest;                 /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */

@@ -2,6 +2,7 @@
 #include "engine/statics/rigidity/equilibrium_matrix.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "engine/forces/tangent.h"
@@ -16,6 +17,33 @@ static void add_entry(strut_equilibrium_matrix *a, int32_t row, double value) {
   a->value[at] = value;
 }
 
+static int compare_rows(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return x < y ? -1 : x > y;
+}
+
+/* Of a running cable: its gradient, with the entries of a node that it meets twice summed. */
+static void add_gradient(const strut_model *model, const strut_element *e, const double *q,
+                         strut_equilibrium_matrix *a) {
+  strut_element_pose pose;
+  double entry[STRUT_MOST_GRADIENT][2];
+  size_t count = 0, n = 2 * (size_t)e->nodes;
+  strut_element_evaluate(model, (int32_t)(e - model->elements.element), model->members.rest, q,
+                         (double)NAN, &pose);
+  for (size_t k = 0; k < n; k++) {
+    uint32_t at = model->elements.at[(size_t)e->first + k / 2] + (uint32_t)(k % 2);
+    if (a->row_of[at] < 0) continue;
+    entry[count][0] = a->row_of[at], entry[count++][1] = pose.b[k];
+  }
+  qsort(entry, count, sizeof entry[0], compare_rows);
+  for (size_t k = 0; k < count; k++) {
+    double sum = entry[k][1];
+    while (k + 1 < count && entry[k + 1][0] == entry[k][0]) sum += entry[++k][1];
+    add_entry(a, (int32_t)entry[k][0], sum);
+  }
+  a->length[a->columns - 1] = pose.strain;
+}
+
 /* The column after the last; rows of the node that comes first in the model come first. */
 static void add_column(const strut_model *model, const double *q, strut_equilibrium_matrix *a) {
   int32_t j = a->columns;
@@ -28,6 +56,10 @@ static void add_column(const strut_model *model, const double *q, strut_equilibr
   uint32_t first = from < to ? from : to, second = from < to ? to : from;
   a->columns++;
   a->start[j + 1] = a->start[j];
+  if (strut_member_is_element(&model->elements, j)) {
+    add_gradient(model, strut_element_of_member(&model->elements, j), q, a);
+    return;
+  }
   add_entry(a, a->row_of[first], sign * u.x);
   add_entry(a, a->row_of[first + 1], sign * u.y);
   add_entry(a, a->row_of[second], -sign * u.x);
@@ -43,8 +75,11 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   a->length = strut_arena_allocate(arena, members + 1, sizeof *a->length);
   a->direction = strut_arena_allocate(arena, members + 1, sizeof *a->direction);
   a->start = strut_arena_allocate(arena, members + 1, sizeof *a->start);
-  a->row = strut_arena_allocate(arena, ENTRIES * members + 1, sizeof *a->row);
-  a->value = strut_arena_allocate(arena, ENTRIES * members + 1, sizeof *a->value);
+  size_t most = ENTRIES * members + 1;
+  for (int32_t i = 0; i < model->elements.count; i++)
+    most += 2 * (size_t)model->elements.element[i].nodes;
+  a->row = strut_arena_allocate(arena, most, sizeof *a->row);
+  a->value = strut_arena_allocate(arena, most, sizeof *a->value);
   if (!a->coordinate || !a->row_of || !a->length || !a->direction || !a->start || !a->row ||
       !a->value)
     return STRUT_NO_MEMORY;
@@ -75,6 +110,7 @@ void strut_equilibrium_dense(const strut_equilibrium_matrix *a, double *dense) {
 typedef struct sums {
   strut_triplets mass, elastic, geometric, contact;
   const strut_model *model;
+  const double *q;
   int32_t *row_of;
   int32_t touching;
 } sums;
@@ -94,6 +130,18 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
   const strut_stiffness_block across = strut_block_of(m->across, 0.0, turned);
   strut_block_add(&along, STRUT_MEMBER_ENTRIES, row, &s->elastic);
   strut_block_add(&across, STRUT_MEMBER_ENTRIES, row, &s->geometric);
+}
+
+static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+  sums *s = context;
+  double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
+  int32_t n = 2 * s->model->elements.element[i].nodes;
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c < n; c++) k[r * n + c] = pose->slope * pose->b[r] * pose->b[c];
+  strut_element_add(s->model, i, k, s->row_of, &s->elastic);
+  memset(k, 0, (size_t)(n * n) * sizeof *k);
+  strut_element_bend(s->model, i, s->q, pose->force, k);
+  strut_element_add(s->model, i, k, s->row_of, &s->geometric);
 }
 
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
@@ -123,16 +171,17 @@ static void add_mass(const strut_model *model, sums *s) {
 
 static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
   size_t members = (size_t)model->members.count, contacts = (size_t)model->contacts.count;
+  size_t most = strut_tangent_entries(model, false);
   return strut_triplets_reserve(&s->mass, (size_t)model->length + 6 * members, scratch) &&
-         strut_triplets_reserve(&s->elastic, STRUT_MEMBER_ENTRIES * members + 1, scratch) &&
-         strut_triplets_reserve(&s->geometric, STRUT_MEMBER_ENTRIES * members + 1, scratch) &&
+         strut_triplets_reserve(&s->elastic, most + 1, scratch) &&
+         strut_triplets_reserve(&s->geometric, most + 1, scratch) &&
          strut_triplets_reserve(&s->contact, STRUT_CONTACT_ENTRIES * contacts + 1, scratch);
 }
 
 strut_status strut_linear_matrices_build(const strut_model *model, const double *q,
                                          strut_arena *arena, strut_linear_matrices *matrices) {
   strut_arena scratch = {0};
-  sums s = {.model = model};
+  sums s = {.model = model, .q = q};
   strut_tangent tangent = {0};
   *matrices = (strut_linear_matrices){0};
   s.row_of = strut_arena_allocate(&scratch, (size_t)model->length, sizeof *s.row_of);
@@ -142,7 +191,7 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
     int32_t n = matrices->n = strut_number_free(model, NULL, s.row_of, coordinate);
     add_mass(model, &s);
     strut_tangent_visit(model, q, model->members.rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &s,
-                        add_member, add_contact);
+                        add_member, add_element, add_contact);
     matrices->mass = strut_sparse_build(n, &s.mass, arena);
     matrices->elastic = strut_sparse_build(n, &s.elastic, arena);
     matrices->geometric = strut_sparse_build(n, &s.geometric, arena);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/model/pose.h"
 
 static const double NONE = 1e-9;    /* of the largest force: no force */
@@ -128,14 +129,14 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   return STRUT_OK;
 }
 
-static bool measure_forces(const strut_model *model, strut_rigidity *r) {
+static bool measure_forces(const strut_model *model, const double *q, strut_rigidity *r) {
   const strut_member_table *t = &model->members;
   r->force = strut_arena_allocate(&r->arena, (size_t)t->count + 1, sizeof *r->force);
   r->density = strut_arena_allocate(&r->arena, (size_t)t->count + 1, sizeof *r->density);
   if (!r->force || !r->density) return false;
   for (int32_t j = 0; j < t->count; j++) {
-    double length = r->matrix.length[j], force = t->stiffness[j] * (length - t->rest[j]);
-    r->force[j] = fmax(force, t->slack[j]) + 0.0; /* + 0.0: no -0 */
+    double length = r->matrix.length[j];
+    r->force[j] = strut_member_elastic_tension(model, t->rest, j, q) + 0.0; /* + 0.0: no -0 */
     if (length > 0)
       r->density[j] = r->force[j] / length;
     else
@@ -250,7 +251,7 @@ static strut_status find_all(const strut_model *model, const double *q, strut_ri
                              strut_error *error) {
   strut_status status = strut_equilibrium_matrix_build(model, q, &r->arena, &r->matrix);
   if (status != STRUT_OK) return status;
-  if (!measure_forces(model, r) || !measure_balance(model, q, r) || !count_bars(model, r))
+  if (!measure_forces(model, q, r) || !measure_balance(model, q, r) || !count_bars(model, r))
     return STRUT_NO_MEMORY;
   status = strut_null_spaces_find(&r->matrix, &r->arena, &r->spaces, error);
   if (status == STRUT_OK) status = strut_self_stress_sort(model, &r->spaces, &r->arena, &r->states);

@@ -68,6 +68,7 @@ static strut_bounds shown(const sheet *s, const strut_compare_column *c) {
 static void mark_driven(const sheet *s, const strut_window *window, const strut_compare_column *c) {
   const strut_scene *scene = c->model->scene;
   for (size_t i = 0; i < scene->actuator_count; i++) {
+    if (scene->actuators[i].member < 0) continue;
     const strut_member *m = &scene->members[scene->actuators[i].member];
     double from[2], to[2];
     strut_window_point(window, c->q + 2 * m->node[0], from);

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/elements.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "engine/forces/strains/angle.h"
+#include "engine/forces/strains/area.h"
+#include "engine/forces/strains/length.h"
+#include "engine/forces/strains/path.h"
+#include "engine/forces/strains/reach.h"
+#include "engine/model/pose.h"
+
+/* Strain and gradient. */
+static double strain_of(const strut_element *e, const uint32_t *at, const double *q, double turn,
+                        double *b) {
+  switch (e->strain) {
+#define STRUT_CASE(NAME, name, ...)                                                                \
+  case STRUT_STRAIN_##NAME: return strut_strain_##name(at, e->nodes, q, turn, b);
+    STRUT_STRAINS(STRUT_CASE, )
+#undef STRUT_CASE
+    case STRUT_STRAIN_COUNT: break;
+  }
+  return 0.0;
+}
+
+void strut_element_bend(const strut_model *model, int32_t element, const double *q, double t,
+                        double *h) {
+  const strut_element *e = &model->elements.element[element];
+  const uint32_t *at = model->elements.at + e->first;
+  switch (e->strain) {
+#define STRUT_CASE(NAME, name, ...)                                                                \
+  case STRUT_STRAIN_##NAME: strut_strain_##name##_bend(at, e->nodes, q, t, h); return;
+    STRUT_STRAINS(STRUT_CASE, )
+#undef STRUT_CASE
+    case STRUT_STRAIN_COUNT: break;
+  }
+}
+
+void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
+                            const double *q, double turn, strut_element_pose *pose) {
+  assert(element >= 0 && element < model->elements.count);
+  const strut_element *e = &model->elements.element[element];
+  pose->natural = strut_element_natural(e, rest);
+  pose->strain =
+      strain_of(e, model->elements.at + e->first, q, isnan(turn) ? pose->natural : turn, pose->b);
+  strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
+  double x = pose->strain - pose->natural;
+  pose->acts = !e->carries || (e->carries * x > 0.0 && e->carries * r.force > 0.0);
+  pose->force = pose->acts ? r.force : 0.0;
+  pose->energy = pose->acts ? r.energy : 0.0;
+  pose->slope = pose->acts ? r.slope : 0.0;
+}
+
+double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
+                          const double *v) {
+  const strut_element *e = &model->elements.element[element];
+  const uint32_t *at = model->elements.at + e->first;
+  double sum = 0.0;
+  for (int32_t k = 0; k < e->nodes; k++)
+    sum += pose->b[2 * k] * v[at[k]] + pose->b[2 * k + 1] * v[at[k] + 1];
+  return sum;
+}
+
+void strut_element_stiffness(const strut_model *model, int32_t element,
+                             const strut_element_pose *pose, const double *q, double *k) {
+  int32_t n = 2 * model->elements.element[element].nodes;
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t j = 0; j < n; j++) k[i * n + j] = pose->slope * pose->b[i] * pose->b[j];
+  strut_element_bend(model, element, q, pose->force, k);
+}
+
+double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
+                                    const double *q) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  strut_member_pose plain = strut_member_pose_at(&model->members, rest, member, q);
+  double sum = strut_member_elastic_force(&model->members, member, &plain);
+  strut_element_pose pose;
+  for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL) {
+    strut_element_evaluate(model, (int32_t)(e - model->elements.element), rest, q, (double)NAN,
+                           &pose);
+    sum += pose.force;
+  }
+  return sum;
+}
+
+double strut_member_path_length(const strut_model *model, int32_t member, const double *q) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  double b[STRUT_MOST_GRADIENT];
+  if (!e) return strut_member_length(&model->members, member, q);
+  return strain_of(e, model->elements.at + e->first, q, 0.0, b);
+}
+
+void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
+                          double least, bool stops, void *context, strut_visit_element *visit) {
+  strut_element_pose pose;
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
+    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST;
+    if (stops && stop && !pose.acts) {
+      pose.acts = true;
+      pose.slope = e->numbers.stiffness;
+      visit(context, i, &pose);
+      continue;
+    }
+    if (!pose.acts || (e->carries && fabs(pose.force) <= least)) continue;
+    visit(context, i, &pose);
+  }
+}
+
+double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
+                             const double *q) {
+  double sum = 0.0;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    strut_element_evaluate(model, i, rest, q, turn ? turn[i] : (double)NAN, &pose);
+    sum += pose.energy;
+  }
+  return sum;
+}
+
+/* An element with its damper: what it exerts, the elastic part, and rates. */
+typedef struct exertion {
+  double force, elastic, own_rate;
+} exertion;
+
+/* Its modes are those that a method with events has frozen, or those that hold here. */
+static inline exertion exert(const strut_element *e, const strut_state *state, int32_t i,
+                             const strut_law_response *r, double x, double own_rate) {
+  double force = r->force + e->damping * own_rate;
+  if (e->carries) {
+    int8_t mode = state->element_acts[i];
+    bool acts = mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
+    if (!acts) return (exertion){0.0, 0.0, own_rate};
+  }
+  return (exertion){force, r->force, own_rate};
+}
+
+static inline void add_powers(strut_state *state, const exertion *x, double rest_rate) {
+  double drive = -x->force * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
+  state->power[STRUT_POWER_DRIVE] += drive;
+  state->power[STRUT_POWER_MEMBERS] += lost;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+}
+
+/* One element; `strain` and `law` are inlined, so that a block's loop tests neither. */
+#define STRUT_ADD_ELEMENT(strain_name, law_name)                                                   \
+  static void add_##strain_name##_##law_name(const strut_model *model, strut_state *state,         \
+                                             const strut_element_block *block, const double *q,    \
+                                             const double *v, double *force) {                     \
+    const strut_element_table *t = &model->elements;                                               \
+    for (int32_t i = block->begin; i < block->end; i++) {                                          \
+      const strut_element *e = &t->element[i];                                                     \
+      const uint32_t *at = t->at + e->first;                                                       \
+      double b[STRUT_MOST_GRADIENT], rate = 0.0;                                                   \
+      double strain = strut_strain_##strain_name(at, e->nodes, q, state->element_turn[i], b);      \
+      double natural = strut_element_natural(e, state->rest);                                      \
+      double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0;                           \
+      state->element_turn[i] = strain;                                                             \
+      if (e->damping > 0.0 || state->ledger)                                                       \
+        for (int32_t k = 0; k < e->nodes; k++)                                                     \
+          rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];                               \
+      strut_law_response r =                                                                       \
+          strut_law_##law_name(&e->numbers, strain, natural, state->element_piece[i]);             \
+      exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);                     \
+      for (int32_t k = 0; k < e->nodes; k++) {                                                     \
+        force[at[k]] -= x.force * b[2 * k];                                                        \
+        force[at[k] + 1] -= x.force * b[2 * k + 1];                                                \
+      }                                                                                            \
+      if (state->ledger) add_powers(state, &x, rest_rate);                                         \
+    }                                                                                              \
+  }
+
+#define STRUT_ADD_CELL(LAW, law, word, needs, strain) STRUT_ADD_ELEMENT(strain, law)
+#define STRUT_ADD_ROW(NAME, name, ...) STRUT_LAWS(STRUT_ADD_CELL, name)
+STRUT_STRAINS(STRUT_ADD_ROW, )
+
+typedef void add_block(const strut_model *model, strut_state *state,
+                       const strut_element_block *block, const double *q, const double *v,
+                       double *force);
+
+#define STRUT_NAME_CELL(LAW, law, word, needs, strain) add_##strain##_##law,
+#define STRUT_NAME_ROW(NAME, name, ...) {STRUT_LAWS(STRUT_NAME_CELL, name)},
+static add_block *const adders[STRUT_STRAIN_COUNT][STRUT_LAW_COUNT] = {
+    STRUT_STRAINS(STRUT_NAME_ROW, )};
+
+void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
+                               const double *v, double *force) {
+  for (int32_t b = 0; b < model->elements.block_count; b++) {
+    const strut_element_block *block = &model->elements.block[b];
+    adders[block->strain][block->law](model, state, block, q, v, force);
+  }
+}
+
+double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,
+                             strut_element_pose *pose) {
+  const strut_element *e = &model->elements.element[element];
+  strut_element_evaluate(model, element, state->rest, state->q, state->element_turn[element], pose);
+  double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0;
+  strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
+  double own = strut_element_rate(model, element, pose, state->v) - rest_rate;
+  return exert(e, state, element, &r, pose->strain - pose->natural, own).force;
+}

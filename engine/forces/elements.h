@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Forces, energy and stiffness of elements: each a strain e with a law, written once for all pairs.
+ *
+ * With t the force of the law and b = de/dq: the nodes feel -t b, the tangent stiffness is
+ * (dt/de) b b' + t d2e/dq2, the damping is c b b', and the drive's power is -t de0/dt. An element that
+ * carries one sign only acts where x = e - e0 and t both have that sign. `rest` (slots) holds natural
+ * strains: the model's own, or a state's driven ones.
+ */
+#ifndef STRUT_ENGINE_FORCES_ELEMENTS_H
+#define STRUT_ENGINE_FORCES_ELEMENTS_H
+
+#include "engine/model/state.h"
+
+/** Entries of an element's gradient at most. */
+enum { STRUT_MOST_GRADIENT = 2 * STRUT_MOST_ELEMENT_NODES };
+
+/** An element in a configuration. */
+typedef struct strut_element_pose {
+  double strain, natural; /* e, e0 */
+  double force;           /* t of the law [N], [N m]; 0 where the element does not act */
+  double energy, slope;   /* [J], dt/de; 0 where it does not act */
+  bool acts;
+  double b[STRUT_MOST_GRADIENT]; /* (2 nodes) de/dq */
+} strut_element_pose;
+
+/** Natural strain of an element. */
+static inline double strut_element_natural(const strut_element *e, const double *rest) {
+  return e->slot >= 0 ? rest[e->slot] : e->natural;
+}
+
+/**
+ * The element at positions q, without dampers. turn: the value near which an angle is taken; NAN: its
+ * natural one.
+ */
+void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
+                            const double *q, double turn, strut_element_pose *pose);
+/** de/dt at velocities v, for a pose of the same element. */
+double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
+                          const double *v);
+/** h (2 nodes, 2 nodes) += t d2e/dq2. */
+void strut_element_bend(const strut_model *model, int32_t element, const double *q, double t,
+                        double *h);
+/** k (2 nodes, 2 nodes): the tangent stiffness of a pose that was evaluated at q. */
+void strut_element_stiffness(const strut_model *model, int32_t element,
+                             const strut_element_pose *pose, const double *q, double *k);
+
+/**
+ * Adds the forces of all elements at q and v to `force`, with the state's natural strains and frozen
+ * modes; with the state's ledger their powers.
+ */
+void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
+                               const double *v, double *force);
+/** Elastic energy of all elements [J]; turn (elements): see strut_element_evaluate, or NULL. */
+double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
+                             const double *q);
+
+/** Elastic force of member j at q, of its spring or of its elements, tension positive [N]. */
+double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
+                                    const double *q);
+/** Length of member j at q, over its guides [m]. */
+double strut_member_path_length(const strut_model *model, int32_t member, const double *q);
+
+/** A visited element with its pose; `context` is the visitor's own. */
+typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);
+/**
+ * Calls `visit` for every element that acts at q with more than `least` in size, for one that carries
+ * both signs always; with `stops` for all stops, too, those that do not act as if at their kink.
+ */
+void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
+                          double least, bool stops, void *context, strut_visit_element *visit);
+
+/** Force of an element at the state, with its damper; `pose` is filled as well. */
+double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,
+                             strut_element_pose *pose);
+
+#endif

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/model/elements.h"
+
+#include <assert.h>
+#include <gsl/gsl_interp.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/model/model.h"
+
+/* A stop is this many times stiffer than its member where the scene does not say. */
+static const double USUAL_STOP = 100.0;
+
+size_t strut_element_slots(const strut_scene *scene) { return scene->hinge_count; }
+
+/* The slots stand behind those of the members. */
+static int32_t hinge_slot(const strut_model *model, int32_t hinge) {
+  int32_t members = (model->members.count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  return members + hinge;
+}
+
+int32_t strut_actuator_slot(const strut_model *model, size_t i) {
+  const strut_actuator *a = &model->scene->actuators[i];
+  return a->member >= 0 ? a->member : hinge_slot(model, a->hinge);
+}
+
+double strut_element_start(const strut_model *model, int32_t element) {
+  const strut_element *e = &model->elements.element[element];
+  return e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
+}
+
+static size_t elements_of_member(const strut_member *m) {
+  return (size_t)strut_member_is_special(m) + (size_t)isfinite(m->longest) +
+         (size_t)(m->shortest > 0.0);
+}
+
+static void count_elements(const strut_scene *scene, size_t *elements, size_t *nodes) {
+  *elements = scene->hinge_count;
+  *nodes = 3 * scene->hinge_count;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    size_t own = elements_of_member(&scene->members[j]);
+    *elements += own;
+    *nodes += own * (scene->members[j].guide_count + 2);
+  }
+}
+
+/* Slopes at the points: of the straight piece to the right, or of Steffen's monotone spline. */
+static bool find_slopes(const strut_law *law, double *slope) {
+  if (!law->smooth || law->count < 3) {
+    for (size_t i = 0; i + 1 < law->count; i++)
+      slope[i] = (law->force[i + 1] - law->force[i]) / (law->x[i + 1] - law->x[i]);
+    return true;
+  }
+  gsl_interp *spline = gsl_interp_alloc(gsl_interp_steffen, law->count);
+  if (!spline) return false;
+  bool good = gsl_interp_init(spline, law->x, law->force, law->count) == 0;
+  for (size_t i = 0; i < law->count && good; i++)
+    slope[i] = gsl_interp_eval_deriv(spline, law->x, law->force, law->x[i], NULL);
+  gsl_interp_free(spline);
+  return good;
+}
+
+/* Coefficients of a cubic from values and slopes at its two ends, h apart. */
+static void fill_piece(const strut_law *law, const double *slope, size_t i, double piece[4]) {
+  double h = law->x[i + 1] - law->x[i], rise = (law->force[i + 1] - law->force[i]) / h;
+  bool straight = !law->smooth || law->count < 3;
+  piece[0] = law->force[i];
+  piece[1] = straight ? rise : slope[i];
+  piece[2] = straight ? 0.0 : (3.0 * rise - 2.0 * slope[i] - slope[i + 1]) / h;
+  piece[3] = straight ? 0.0 : (slope[i] + slope[i + 1] - 2.0 * rise) / (h * h);
+}
+
+static const strut_law_curve *make_curve(strut_model *model, const strut_law *law) {
+  size_t n = law->count;
+  strut_arena *arena = &model->arena;
+  strut_law_curve *curve = strut_arena_allocate(arena, 1, sizeof *curve);
+  double(*piece)[4] = strut_arena_allocate(arena, n, sizeof *piece);
+  double *slope = strut_arena_allocate(arena, n, sizeof *slope);
+  double *energy = strut_arena_allocate(arena, n, sizeof *energy);
+  if (!curve || !piece || !slope || !energy || !find_slopes(law, slope)) return NULL;
+  *curve = (strut_law_curve){n, law->x, (const double(*)[4])piece, energy, law->smooth};
+  for (size_t i = 0; i + 1 < n; i++) {
+    double h = law->x[i + 1] - law->x[i], *p = piece[i];
+    fill_piece(law, slope, i, p);
+    energy[i + 1] = energy[i] + h * (p[0] + h * (p[1] / 2.0 + h * (p[2] / 3.0 + h * p[3] / 4.0)));
+  }
+  strut_law_numbers numbers = {.curve = curve};
+  double origin = strut_law_table(&numbers, 0.0, 0.0, -1).energy;
+  for (size_t i = 0; i < n; i++) energy[i] -= origin;
+  return curve;
+}
+
+static bool set_numbers(strut_model *model, const strut_law *law, double stiffness,
+                        strut_law_numbers *numbers) {
+  *numbers = (strut_law_numbers){.stiffness = stiffness};
+  switch (law->kind) {
+    case STRUT_LAW_LINEAR:
+    case STRUT_LAW_LOGARITHMIC: break;
+    case STRUT_LAW_BILINEAR:
+      numbers->first = law->knee, numbers->second = law->second_stiffness;
+      break;
+    case STRUT_LAW_PLAY: numbers->first = law->gap; break;
+    case STRUT_LAW_EXPONENTIAL: numbers->first = law->scale; break;
+    case STRUT_LAW_POLYNOMIAL:
+      numbers->coefficient = law->force;
+      numbers->count = law->count;
+      numbers->stiffness = law->count ? law->force[0] : 0.0;
+      break;
+    case STRUT_LAW_TABLE:
+      numbers->curve = make_curve(model, law);
+      if (!numbers->curve) return false;
+      numbers->stiffness = strut_law_table(numbers, 0.0, 0.0, -1).slope;
+      break;
+    case STRUT_LAW_COUNT: break;
+  }
+  return true;
+}
+
+static int8_t sign_of(strut_carries carries) {
+  return carries == STRUT_CARRIES_TENSION ? 1 : carries == STRUT_CARRIES_COMPRESSION ? -1 : 0;
+}
+
+typedef struct compilation {
+  strut_model *model;
+  strut_element *element;
+  uint32_t *at;
+  int32_t count, nodes;
+  bool failed;
+} compilation;
+
+static strut_element *add_element(compilation *c, strut_element element) {
+  element.first = c->nodes;
+  element.sibling = -1;
+  c->element[c->count] = element;
+  return &c->element[c->count++];
+}
+
+static void add_node(compilation *c, strut_element *element, int32_t node) {
+  c->at[c->nodes++] = 2 * (uint32_t)node;
+  element->nodes++;
+}
+
+static void add_way(compilation *c, strut_element *element, const strut_member *m) {
+  for (size_t k = 0; k < m->guide_count + 2; k++) add_node(c, element, strut_member_node(m, k));
+}
+
+/* Its slot keeps the rest length; a running cable's no longer joins nodes, and its mass is lumped. */
+static void take_over(compilation *c, size_t j) {
+  strut_model *model = c->model;
+  strut_member_table *t = &model->members;
+  const strut_scene *scene = model->scene;
+  const strut_member *m = &scene->members[j];
+  ((double *)t->stiffness)[j] = 0.0;
+  ((double *)t->damping)[j] = 0.0;
+  ((double *)t->slack)[j] = -HUGE_VAL;
+  if (!m->guide_count) return;
+  ((uint32_t *)t->from)[j] = ((uint32_t *)t->to)[j] = 2 * (uint32_t)model->node_count;
+  ((double *)t->mass)[j] = 0.0;
+  double whole = 0.0;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t k = 0; k <= m->guide_count; k++) {
+      int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+      double part = strut_distance(scene->nodes[a].position, scene->nodes[b].position);
+      if (pass == 0) {
+        whole += part;
+        continue;
+      }
+      double share = 0.5 * m->mass * (whole > 0.0 ? part / whole : 0.0);
+      ((double *)model->point_mass)[a] += share;
+      ((double *)model->point_mass)[b] += share;
+    }
+}
+
+static void add_stop(compilation *c, size_t j, strut_element_role role, double at,
+                     double stiffness) {
+  const strut_member *m = &c->model->scene->members[j];
+  strut_element *e = add_element(
+      c, (strut_element){.strain = m->guide_count ? STRUT_STRAIN_PATH : STRUT_STRAIN_LENGTH,
+                         .law = STRUT_LAW_LINEAR,
+                         .role = role,
+                         .item = (int32_t)j,
+                         .slot = -1,
+                         .carries = role == STRUT_ELEMENT_LONGEST ? 1 : -1,
+                         .natural = at,
+                         .damping = m->stop_damping,
+                         .numbers = {.stiffness = stiffness}});
+  add_way(c, e, m);
+}
+
+static void add_member(compilation *c, size_t j) {
+  const strut_member *m = &c->model->scene->members[j];
+  double stiffness = c->model->members.stiffness[j];
+  if (strut_member_is_special(m)) {
+    bool cable = m->kind == STRUT_CABLE;
+    strut_element *e = add_element(
+        c, (strut_element){.strain = m->guide_count ? STRUT_STRAIN_PATH : STRUT_STRAIN_LENGTH,
+                           .law = m->law.kind,
+                           .role = STRUT_ELEMENT_MEMBER,
+                           .item = (int32_t)j,
+                           .slot = (int32_t)j,
+                           .carries = cable ? 1 : sign_of(m->law.carries),
+                           .damping = m->damping});
+    add_way(c, e, m);
+    if (!set_numbers(c->model, &m->law, stiffness, &e->numbers)) c->failed = true;
+    stiffness = e->numbers.stiffness;
+    take_over(c, j);
+  }
+  double stop = m->stop_stiffness > 0.0 ? m->stop_stiffness : USUAL_STOP * stiffness;
+  if (m->shortest > 0.0) add_stop(c, j, STRUT_ELEMENT_SHORTEST, m->shortest, stop);
+  if (isfinite(m->longest)) add_stop(c, j, STRUT_ELEMENT_LONGEST, m->longest, stop);
+}
+
+static void add_hinge(compilation *c, size_t i) {
+  strut_model *model = c->model;
+  const strut_hinge *h = &model->scene->hinges[i];
+  int32_t slot = hinge_slot(model, (int32_t)i);
+  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_ANGLE,
+                                                    .law = h->law.kind,
+                                                    .role = STRUT_ELEMENT_HINGE,
+                                                    .item = (int32_t)i,
+                                                    .slot = slot,
+                                                    .carries = sign_of(h->law.carries),
+                                                    .damping = h->damping});
+  for (int k = 0; k < 3; k++) add_node(c, e, h->node[k]);
+  ((double *)model->members.rest)[slot] = strut_hinge_rest(model->scene, i);
+  if (!set_numbers(model, &h->law, h->stiffness, &e->numbers)) c->failed = true;
+}
+
+/* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
+static bool sort_elements(compilation *c, strut_element_table *t) {
+  strut_arena *arena = &c->model->arena;
+  strut_element *sorted = strut_arena_allocate(arena, (size_t)c->count, sizeof *sorted);
+  strut_element_block *block =
+      strut_arena_allocate(arena, (size_t)STRUT_STRAIN_COUNT * STRUT_LAW_COUNT, sizeof *block);
+  if (!sorted || !block) return false;
+  for (int strain = 0; strain < STRUT_STRAIN_COUNT; strain++)
+    for (int law = 0; law < STRUT_LAW_COUNT; law++) {
+      int32_t begin = t->count;
+      for (int32_t i = 0; i < c->count; i++) {
+        const strut_element *e = &c->element[i];
+        if ((int)e->strain == strain && (int)e->law == law) sorted[t->count++] = *e;
+      }
+      if (t->count == begin) continue;
+      block[t->block_count++] =
+          (strut_element_block){(strut_strain_kind)strain, (strut_law_kind)law, begin, t->count};
+    }
+  for (int32_t i = 0; i < t->count; i++) {
+    int32_t rows = 2 * sorted[i].nodes;
+    sorted[i].place = t->entries;
+    t->entries += rows * (rows + 1) / 2;
+    if (sorted[i].nodes > t->most_nodes) t->most_nodes = sorted[i].nodes;
+  }
+  t->element = sorted, t->block = block;
+  return true;
+}
+
+/* Chains the elements of each member, its own force first. */
+static bool link_members(strut_model *model) {
+  strut_element_table *t = &model->elements;
+  strut_element *element = (strut_element *)t->element;
+  size_t members = model->scene->member_count;
+  int32_t *of_member = strut_arena_allocate(&model->arena, members, sizeof *of_member);
+  if (!of_member) return false;
+  for (size_t j = 0; j < members; j++) of_member[j] = -1;
+  for (int own = 0; own < 2; own++)
+    for (int32_t i = 0; i < t->count; i++) {
+      strut_element *e = &element[i];
+      if (e->role == STRUT_ELEMENT_HINGE || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
+      e->sibling = of_member[e->item];
+      of_member[e->item] = i;
+    }
+  t->of_member = of_member;
+  return true;
+}
+
+bool strut_elements_compile(strut_model *model) {
+  const strut_scene *scene = model->scene;
+  size_t elements, nodes;
+  count_elements(scene, &elements, &nodes);
+  if (!elements) return true;
+  compilation c = {.model = model};
+  c.element = strut_arena_allocate(&model->arena, elements, sizeof *c.element);
+  c.at = strut_arena_allocate(&model->arena, nodes, sizeof *c.at);
+  if (!c.element || !c.at) return false;
+  for (size_t j = 0; j < scene->member_count; j++)
+    if (elements_of_member(&scene->members[j])) add_member(&c, j);
+  for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);
+  assert(c.count == (int32_t)elements && c.nodes <= (int32_t)nodes);
+  model->elements.at = c.at;
+  model->plan |= STRUT_TERM_ELEMENTS;
+  return !c.failed && sort_elements(&c, &model->elements) && link_members(model);
+}

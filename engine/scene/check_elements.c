@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rules about laws, stops and hinges. See check.h. */
+#include <math.h>
+
+#include "engine/base/vec.h"
+#include "engine/scene/check_rules.h"
+
+/* A law without a finding of its own, or what is wrong with it. */
+static const char *fault_of(const strut_law *law) {
+  const double numbers[] = {law->knee, law->second_stiffness, law->gap, law->scale};
+  if ((unsigned)law->kind >= STRUT_LAW_COUNT) return "is of an unknown kind";
+  if ((unsigned)law->carries > STRUT_CARRIES_COMPRESSION) return "carries an unknown sign";
+  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    if (!isfinite(numbers[i])) return "has a number that is not finite";
+  for (size_t i = 0; i < law->count; i++)
+    if (!isfinite(law->force[i]) || (law->kind == STRUT_LAW_TABLE && !isfinite(law->x[i])))
+      return "has a number that is not finite";
+  switch (law->kind) {
+    case STRUT_LAW_BILINEAR: return law->knee > 0.0 ? NULL : "needs a knee above zero";
+    case STRUT_LAW_PLAY: return law->gap > 0.0 ? NULL : "needs a gap above zero";
+    case STRUT_LAW_EXPONENTIAL: return law->scale > 0.0 ? NULL : "needs a scale above zero";
+    case STRUT_LAW_POLYNOMIAL: return law->count ? NULL : "needs at least one coefficient";
+    case STRUT_LAW_TABLE:
+      if (law->count < 2) return "needs at least two points";
+      for (size_t i = 1; i < law->count; i++)
+        if (!(law->x[i] > law->x[i - 1])) return "needs points with increasing x";
+      return NULL;
+    case STRUT_LAW_LINEAR:
+    case STRUT_LAW_LOGARITHMIC:
+    case STRUT_LAW_COUNT: break;
+  }
+  return NULL;
+}
+
+/* Is the law valid, and the stiffness given where and only where the law does not bring its own? */
+static bool check_law(strut_checker *checker, strut_subject subject, size_t index,
+                      const char *owner, const strut_law *law, bool stiffness) {
+  const char *fault = fault_of(law);
+  if (fault)
+    strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
+  else if (stiffness && strut_law_at(law->kind)->own)
+    strut_report_finding(checker, subject, index, "stiffness",
+                         "%s gives a stiffness beside its law, which has its own", owner);
+  else if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)
+    strut_report_finding(checker, subject, index, "law", "the law %s of %s needs a stiffness",
+                         strut_law_at(law->kind)->word, owner);
+  else
+    return true;
+  return false;
+}
+
+static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  bool valid = true;
+  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "shortest", owner, m->shortest,
+                             STRUT_NOT_NEGATIVE);
+  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "stop_stiffness", owner,
+                             m->stop_stiffness, STRUT_NOT_NEGATIVE);
+  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "stop_damping", owner,
+                             m->stop_damping, STRUT_NOT_NEGATIVE);
+  if (isnan(m->longest) || m->longest <= 0.0) {
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
+                         "the longest of %s must be above zero, found %g", owner, m->longest);
+    return false;
+  }
+  bool stops = m->shortest > 0.0 || isfinite(m->longest);
+  bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
+               strut_law_at(m->law.kind)->own;
+  if (valid && m->shortest >= m->longest)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
+                         "the longest of %s, %g m, must be above its shortest, %g m", owner,
+                         m->longest, m->shortest);
+  else if (valid && !stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
+    strut_report_finding(checker, STRUT_ON_MEMBER, index,
+                         m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
+                         "%s describes stops, but has neither a shortest nor a longest", owner);
+  else if (valid && stops && !stiff)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "stop_stiffness",
+                         "the stops of %s need a stop_stiffness", owner);
+  else
+    return valid;
+  return false;
+}
+
+bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  bool stiffness = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
+  if (!check_law(checker, STRUT_ON_MEMBER, index, owner, &m->law, stiffness)) return false;
+  if (m->kind == STRUT_CABLE && m->law.carries == STRUT_CARRIES_COMPRESSION) {
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
+                         "%s is a cable, which cannot carry compression", owner);
+    return false;
+  }
+  if (m->law.kind == STRUT_LAW_LOGARITHMIC && m->rest_value <= 0.0) {
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
+                         "the law logarithmic of %s needs a rest length above zero", owner);
+    return false;
+  }
+  return check_stops(checker, index, owner);
+}
+
+/* Do the nodes of a hinge exist, are they three, and do both arms have a direction? */
+static void check_arms(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_hinge *h = &scene->hinges[index];
+  for (int k = 0; k < 3; k++)
+    if (h->node[k] < 0 || (size_t)h->node[k] >= scene->node_count) {
+      strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
+                           "%s is at a node that does not exist", owner);
+      return;
+    }
+  for (int k = 0; k < 3; k++)
+    if (h->node[k] == h->node[(k + 1) % 3]) {
+      strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
+                           "%s names node '%s' twice, expected three different nodes", owner,
+                           scene->nodes[h->node[k]].name);
+      return;
+    }
+  const strut_node *b = &scene->nodes[h->node[1]];
+  for (int k = 0; k < 3; k += 2) {
+    const strut_node *end = &scene->nodes[h->node[k]];
+    bool drawn = strut_distance(b->position, end->position) == 0.0;
+    if (!drawn && strut_distance(b->start, end->start) != 0.0) continue;
+    strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
+                         "nodes '%s' and '%s' %s in one place, so an arm of %s has no direction",
+                         b->name, end->name, drawn ? "are drawn" : "start", owner);
+    return;
+  }
+}
+
+void strut_check_hinges(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    char owner[200];
+    strut_format_name(owner, "hinge", h->name, i);
+    bool valid = strut_check_range(checker, STRUT_ON_HINGE, i, "stiffness", owner, h->stiffness,
+                                   STRUT_NOT_NEGATIVE);
+    valid &= strut_check_range(checker, STRUT_ON_HINGE, i, "damping", owner, h->damping,
+                               STRUT_NOT_NEGATIVE);
+    if (isinf(h->rest_angle))
+      strut_report_finding(checker, STRUT_ON_HINGE, i, "rest_angle",
+                           "the rest_angle of %s is not a finite number", owner);
+    valid = valid && check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0);
+    if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
+      strut_report_finding(checker, STRUT_ON_HINGE, i, "law",
+                           "the law logarithmic is for members, not for %s", owner);
+    else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own)
+      strut_report_finding(checker, STRUT_ON_HINGE, i, NULL,
+                           "%s has neither stiffness nor damping, so it does nothing", owner);
+    check_arms(checker, i, owner);
+  }
+}

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Elastic laws: the force of a member, the moment of a hinge, as a function of its strain.
+ *
+ * A law is a row of STRUT_LAWS and a header of engine/scene/laws with two functions. It knows material
+ * only: e is any strain (a length [m], an angle [rad], an area [m^2]), e0 its natural value, x = e - e0,
+ * and the force is the one that does work on e. Reader, checks, forces, energies, stiffness, statics and
+ * located events loop over this table, so that a law is added only here; see docs/recipes.md.
+ */
+#ifndef STRUT_ENGINE_SCENE_LAW_H
+#define STRUT_ENGINE_SCENE_LAW_H
+
+#include "engine/scene/laws/bilinear.h"
+#include "engine/scene/laws/exponential.h"
+#include "engine/scene/laws/linear.h"
+#include "engine/scene/laws/logarithmic.h"
+#include "engine/scene/laws/play.h"
+#include "engine/scene/laws/polynomial.h"
+#include "engine/scene/laws/table.h"
+
+/** Numbers of the laws: X(NAME, field). The field is also the key. */
+#define STRUT_LAW_PARAMETERS(X)                                                                    \
+  X(KNEE, knee)                         /* |x| at which a bilinear law changes its slope */        \
+  X(SECOND_STIFFNESS, second_stiffness) /* slope beyond it */                                      \
+  X(GAP, gap)                           /* free play on either side of the natural strain */       \
+  X(SCALE, scale)                       /* x over which an exponential law grows by e */           \
+  X(COEFFICIENTS, coefficients)         /* of a polynomial: of x, x^2, ... */                      \
+  X(POINTS, points)                     /* of a table */
+
+/**
+ * The laws: X(NAME, name, word, needs, context); context is passed on. needs: bits of the parameters
+ * that the law needs; OWN: it has a stiffness of its own, so that the element must not give one.
+ */
+#define STRUT_LAWS(X, context)                                                                     \
+  X(LINEAR, linear, "linear", 0, context)                                                          \
+  X(BILINEAR, bilinear, "bilinear", KNEE_BIT | SECOND_STIFFNESS_BIT, context)                      \
+  X(PLAY, play, "play", GAP_BIT, context)                                                          \
+  X(POLYNOMIAL, polynomial, "polynomial", COEFFICIENTS_BIT | OWN, context)                         \
+  X(LOGARITHMIC, logarithmic, "logarithmic", 0, context)                                           \
+  X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \
+  X(TABLE, table, "table", POINTS_BIT | OWN, context)
+
+typedef enum strut_law_kind {
+#define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_##NAME,
+  STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+      STRUT_LAW_COUNT
+} strut_law_kind;
+
+enum {
+#define STRUT_LAW_ROW(NAME, field) STRUT_LAW_PARAMETER_##NAME,
+  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+      STRUT_LAW_PARAMETER_COUNT
+};
+
+/** Which sign of force is carried. One that is not carried, or beyond the natural strain, is none. */
+typedef enum strut_carries {
+  STRUT_CARRIES_BOTH,
+  STRUT_CARRIES_TENSION,
+  STRUT_CARRIES_COMPRESSION
+} strut_carries;
+
+/** A law as a scene describes it. */
+typedef struct strut_law {
+  strut_law_kind kind;
+  strut_carries carries;
+  double knee, second_stiffness, gap, scale;
+  size_t count;
+  const double *x, *force; /* (count) points of a table; of a polynomial coefficients, in `force` */
+  bool smooth;             /* of a table: a monotone spline instead of straight lines */
+} strut_law;
+
+typedef struct strut_law_row {
+  const char *word;
+  unsigned needs; /* bit p: parameter p */
+  bool own;       /* the stiffness is part of its numbers */
+} strut_law_row;
+
+/** The words of the laws as the key table lists them: "linear|bilinear|...". */
+#define STRUT_LAW_WORD(NAME, name, word, ...) "|" word
+#define STRUT_LAW_WORDS (&("" STRUT_LAWS(STRUT_LAW_WORD, ))[1])
+
+/** The row of a valid law. */
+static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
+  enum {
+#define STRUT_LAW_ROW(NAME, field) NAME##_BIT = 1 << STRUT_LAW_PARAMETER_##NAME,
+    STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+        OWN = 1 << STRUT_LAW_PARAMETER_COUNT
+  };
+  static const strut_law_row rows[] = {
+#define STRUT_LAW_ROW(NAME, name, word, needs, context)                                            \
+  {word, (needs) & ~(unsigned)OWN, ((needs)&OWN) != 0},
+      STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+  };
+  return &rows[kind];
+}
+
+/** Key of a parameter. */
+static inline const char *strut_law_key(int parameter) {
+  static const char *const keys[] = {
+#define STRUT_LAW_ROW(NAME, field) #field,
+      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+  };
+  return keys[parameter];
+}
+
+/** Force, energy and slope at strain e. piece: the smooth piece to stay on, or -1 for the one at e. */
+static inline strut_law_response strut_law_respond(strut_law_kind kind, const strut_law_numbers *n,
+                                                   double e, double e0, int piece) {
+  switch (kind) {
+#define STRUT_LAW_ROW(NAME, name, ...)                                                             \
+  case STRUT_LAW_##NAME: return strut_law_##name(n, e, e0, piece);
+    STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+    case STRUT_LAW_COUNT: break;
+  }
+  return (strut_law_response){0};
+}
+
+/** Number of x at which the law changes its slope or jumps. */
+static inline int strut_law_kinks(strut_law_kind kind, const strut_law_numbers *n) {
+  switch (kind) {
+#define STRUT_LAW_ROW(NAME, name, ...)                                                             \
+  case STRUT_LAW_##NAME: return strut_law_##name##_kinks(n);
+    STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+    case STRUT_LAW_COUNT: break;
+  }
+  return 0;
+}
+
+/** The x of kink k, ascending. */
+static inline double strut_law_kink(strut_law_kind kind, const strut_law_numbers *n, int k) {
+  switch (kind) {
+#define STRUT_LAW_ROW(NAME, name, ...)                                                             \
+  case STRUT_LAW_##NAME: return strut_law_##name##_kink(n, k);
+    STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+    case STRUT_LAW_COUNT: break;
+  }
+  return 0.0;
+}
+
+/** The smooth piece in which x lies: the number of kinks below it. */
+static inline int strut_law_piece(strut_law_kind kind, const strut_law_numbers *n, double x) {
+  int kinks = strut_law_kinks(kind, n), piece = 0;
+  while (piece < kinks && strut_law_kink(kind, n, piece) < x) piece++;
+  return piece;
+}
+
+#endif
