@@ -46,9 +46,10 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
       strain_of(e, model->elements.at + e->first, q, isnan(turn) ? pose->natural : turn, pose->b);
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
   double x = pose->strain - pose->natural;
-  pose->acts = !e->carries || (e->carries * x > 0.0 && e->carries * r.force > 0.0);
+  bool beyond = !e->carries || e->carries * x > 0.0;
+  pose->acts = beyond && (!e->carries || e->carries * r.force > 0.0);
   pose->force = pose->acts ? r.force : 0.0;
-  pose->energy = pose->acts ? r.energy : 0.0;
+  pose->energy = beyond ? r.energy : 0.0;
   pose->slope = pose->acts ? r.slope : 0.0;
 }
 
@@ -132,7 +133,8 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
   if (e->carries) {
     int8_t mode = state->element_acts[i];
     bool acts = mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
-    if (!acts) return (exertion){0.0, 0.0, own_rate};
+    /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
+    if (!acts) return (exertion){0.0, e->carries * x > 0.0 ? r->force : 0.0, own_rate};
   }
   return (exertion){force, r->force, own_rate};
 }
@@ -191,6 +193,19 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
     const strut_element_block *block = &model->elements.block[b];
     adders[block->strain][block->law](model, state, block, q, v, force);
   }
+}
+
+strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,
+                                        int32_t element, const double *q, const double *v) {
+  const strut_element *e = &model->elements.element[element];
+  const uint32_t *at = model->elements.at + e->first;
+  double b[STRUT_MOST_GRADIENT], rate = 0.0, natural = strut_element_natural(e, state->rest);
+  double strain = strain_of(e, at, q, state->element_turn[element], b);
+  for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+  if (e->slot >= 0) rate -= state->rest_rate[e->slot];
+  strut_law_response r =
+      strut_law_respond(e->law, &e->numbers, strain, natural, state->element_piece[element]);
+  return (strut_element_motion){strain - natural, rate, r.force + e->damping * rate};
 }
 
 double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,

@@ -70,6 +70,14 @@ typedef void strut_visit_element(void *context, int32_t element, const strut_ele
 void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
                           double least, bool stops, void *context, strut_visit_element *visit);
 
+/** Strain beyond the natural one, its rate, and the force as if the element acted. */
+typedef struct strut_element_motion {
+  double stretch, rate, force;
+} strut_element_motion;
+/** Of an element at q and v, with the state's natural strains and frozen piece. */
+strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,
+                                        int32_t element, const double *q, const double *v);
+
 /** Force of an element at the state, with its damper; `pose` is filled as well. */
 double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,
                              strut_element_pose *pose);

@@ -144,7 +144,7 @@ static void add_way(compilation *c, strut_element *element, const strut_member *
   for (size_t k = 0; k < m->guide_count + 2; k++) add_node(c, element, strut_member_node(m, k));
 }
 
-/* Its slot keeps the rest length; a running cable's no longer joins nodes, and its mass is lumped. */
+/* Its slot keeps ends and rest length, but has no force; the mass of a running cable is lumped. */
 static void take_over(compilation *c, size_t j) {
   strut_model *model = c->model;
   strut_member_table *t = &model->members;
@@ -154,7 +154,6 @@ static void take_over(compilation *c, size_t j) {
   ((double *)t->damping)[j] = 0.0;
   ((double *)t->slack)[j] = -HUGE_VAL;
   if (!m->guide_count) return;
-  ((uint32_t *)t->from)[j] = ((uint32_t *)t->to)[j] = 2 * (uint32_t)model->node_count;
   ((double *)t->mass)[j] = 0.0;
   double whole = 0.0;
   for (int pass = 0; pass < 2; pass++)

@@ -40,9 +40,9 @@ typedef enum strut_term {
 
 /**
  * Member tables in scene order; (slots) entries each. Padding slots have no length, and pull with no
- * force on the node of padding that every coordinate array ends with. So does the slot of a member whose
- * force is that of an element (elements.h), which has its rest length there; slots after the members
- * hold the natural strains of elements that are no members.
+ * force on the node of padding that every coordinate array ends with. A member whose force is that of
+ * an element (elements.h) has its ends and its rest length here, but neither stiffness nor damping;
+ * slots after the members hold the natural strains of elements that are no members.
  */
 typedef struct strut_member_table {
   int32_t count, slots, blocks;

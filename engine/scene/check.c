@@ -288,6 +288,11 @@ void strut_check_use(strut_checker *checker) {
       if (n < 0 || (size_t)n >= scene->node_count) continue;
       state[n] = (unsigned char)(state[n] | USED | (scene->members[i].mass > 0.0 ? HEAVY : 0));
     }
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    for (int k = 0; k < 3; k++) {
+      int32_t n = scene->hinges[i].node[k];
+      if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
+    }
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].node >= 0 && (size_t)scene->loads[i].node < scene->node_count)
       state[scene->loads[i].node] |= USED;

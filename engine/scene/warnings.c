@@ -159,6 +159,7 @@ static void warn_of_pairs(strut_checker *checker) {
   }
   for (size_t i = 0; i < scene->member_count; i++) {
     int32_t a = scene->members[i].node[0], b = scene->members[i].node[1];
+    if (scene->members[i].guide_count) a = -1, b = -(int32_t)i; /* like no other */
     pairs[i] = (pair){a < b ? a : b, a < b ? b : a, i};
   }
   if (scene->member_count) qsort(pairs, scene->member_count, sizeof *pairs, compare_pairs);
@@ -189,7 +190,10 @@ static void warn_of_loose_masses(strut_checker *checker) {
     return;
   }
   for (size_t i = 0; i < scene->member_count; i++)
-    used[scene->members[i].node[0]] = used[scene->members[i].node[1]] = true;
+    for (size_t k = 0; k < scene->members[i].guide_count + 2; k++)
+      used[strut_member_node(&scene->members[i], k)] = true;
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    for (int k = 0; k < 3; k++) used[scene->hinges[i].node[k]] = true;
   for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
     const strut_node *node = &scene->nodes[i];
     if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))

@@ -139,13 +139,14 @@ static bool any_contradicts_at_stage(const strut_model *model, const strut_event
   return false;
 }
 
-/* Earliest point, within the step, where a cable that pulls at both ends is slack, or the other way; 0: none. */
+/* Earliest point, within the step, where a law that acts at both ends does not, or the other way; 0: none. */
 static double earliest_slack_dip(const strut_model *model, strut_state *state,
                                  const strut_event_stepper *l, double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
   strut_event_measure(model, state, l, l->next);
-  for (int32_t k = 0; k < l->cable_count; k++) {
-    double side = l->pulling[k] ? 1.0 : -1.0;
+  for (int32_t k = 0; k < l->law_count; k++) {
+    double side = l->acting[k] ? 1.0 : -1.0;
+    if (l->laws[k].kinks) continue;
     double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
     if (!(from > 0.0 && to > 0.0)) continue;
     double at = dip(from, side * h * l->now->stretch_rate[k], to,
@@ -211,7 +212,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   l->error = error_of(model, l, h, v, a);
   if (!(l->error <= 1.0)) return;
   double part = model->contacts.count ? earliest_dip(model, l, h) : 0.0;
-  double slack = l->cable_count ? earliest_slack_dip(model, state, l, h) : 0.0;
+  double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;
   if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
   if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
       strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)

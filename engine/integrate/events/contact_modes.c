@@ -44,10 +44,14 @@ static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, do
   v[1] += more * c->tangent[1];
 }
 
-static void cable_mode(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
-  int32_t j = l->cable[k];
-  l->pulling[k] = pulls;
+static void set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
+  int32_t j = l->laws[k].member;
+  l->acting[k] = pulls;
   l->fresh = false;
+  if (j < 0) {
+    state->element_acts[l->laws[k].element] = pulls ? 1 : -1;
+    return;
+  }
   state->slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;
   state->slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;
 }
@@ -110,15 +114,46 @@ static void derive_consistently(const strut_model *model, strut_state *state,
   }
 }
 
-/* Which cables pull, as positions, velocities and drives are. */
-static void start_cables(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                         double t) {
+static void set_piece(strut_state *state, strut_event_stepper *l, int32_t k, int piece) {
+  state->element_piece[l->laws[k].element] = (int16_t)piece;
+  l->fresh = false;
+}
+
+/* On the piece on which the strain is; it has been measured. */
+static void find_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       int32_t k) {
+  const strut_element *e = &model->elements.element[l->laws[k].element];
+  set_piece(state, l, k, strut_law_piece(e->law, &e->numbers, l->now->stretch[k]));
+}
+
+/* Over the nearer kink of the piece. */
+static void pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                      int32_t k) {
+  const strut_element *e = &model->elements.element[l->laws[k].element];
+  int piece = state->element_piece[l->laws[k].element];
+  int kinks = strut_law_kinks(e->law, &e->numbers);
+  double low = HUGE_VAL, high = HUGE_VAL, x = l->now->stretch[k];
+  if (piece > 0) low = x - strut_law_kink(e->law, &e->numbers, piece - 1);
+  if (piece < kinks) high = strut_law_kink(e->law, &e->numbers, piece) - x;
+  set_piece(state, l, k, low < high ? piece - 1 : piece + 1);
+}
+
+/* Which laws act, and on which piece, as positions, velocities and drives are. */
+static void start_laws(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t) {
   bool changed = false;
-  for (int32_t k = 0; k < l->cable_count; k++) cable_mode(state, l, k, true);
+  for (int32_t k = 0; k < l->law_count; k++)
+    if (l->laws[k].kinks)
+      set_piece(state, l, k, -1);
+    else
+      set_acting(state, l, k, true);
   derive_consistently(model, state, l, t);
-  for (int32_t k = 0; k < l->cable_count; k++)
-    if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
-      cable_mode(state, l, k, false);
+  for (int32_t k = 0; k < l->law_count; k++)
+    if (l->laws[k].kinks) {
+      find_piece(model, state, l, k);
+      changed = true;
+    } else if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
+      set_acting(state, l, k, false);
       changed = true;
     }
   if (changed) derive_consistently(model, state, l, t);
@@ -127,7 +162,7 @@ static void start_cables(const strut_model *model, strut_state *state, strut_eve
 void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t) {
   l->fresh = false;
-  start_cables(model, state, l, t);
+  start_laws(model, state, l, t);
 }
 
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
@@ -139,7 +174,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
     l->mode[i] = STRUT_MODE_OPEN;
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
   }
-  start_cables(model, state, l, t);
+  start_laws(model, state, l, t);
 }
 
 /*
@@ -218,7 +253,8 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       break;
     }
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
-    case STRUT_EVENT_CABLE: cable_mode(state, l, i, !l->pulling[i]); break;
+    case STRUT_EVENT_ACTS: set_acting(state, l, i, !l->acting[i]); break;
+    case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
     default: break;
   }
   derive_consistently(model, state, l, t);

@@ -19,10 +19,11 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
 
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
-  if (kind == STRUT_EVENT_CABLE) {
-    if (l->pulling[i]) return end->tension[i];
-    /* It pulls where stretch and tension are positive; the lesser decides, both in newtons. */
-    double k = model->members.stiffness[l->cable[i]], d = model->members.damping[l->cable[i]];
+  if (kind == STRUT_EVENT_KINK) return end->tension[i];
+  if (kind == STRUT_EVENT_ACTS) {
+    if (l->acting[i]) return end->tension[i];
+    /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
+    double k = l->laws[i].stiffness, d = l->laws[i].damping;
     double elastic = (k > 0.0 ? k : d / l->wanted_step) * end->stretch[i];
     return elastic < end->tension[i] ? -elastic : -end->tension[i];
   }
@@ -49,7 +50,7 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (kind == STRUT_EVENT_CABLE) return false;
+  if (kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
@@ -106,8 +107,7 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
     measure_contact(c, i, l->next->q, l->next->v, &b);
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
-  if (kind != STRUT_EVENT_CABLE && strut_event_rate(l, l->now, kind, i, &d0) &&
-      strut_event_rate(l, l->next, kind, i, &d1))
+  if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
     return cubic_root(g0, h * d0, g1, h * d1);
   return g0 / (g0 - g1);
 }
@@ -119,22 +119,48 @@ static void keep_first(const strut_model *model, const strut_event_stepper *l,
   *first = (strut_event){kind, i, fraction};
 }
 
-/* Tensions, not clamped, and stretches of the cables at an end; the rest lengths are its own. */
-static void measure_cables(const strut_model *model, const strut_state *state,
-                           const strut_event_stepper *l, const strut_step_end *end) {
+static void measure_cable(const strut_model *model, const strut_state *state, int32_t j,
+                          const strut_step_end *end, int32_t k) {
   const strut_member_table *t = &model->members;
-  for (int32_t k = 0; k < l->cable_count; k++) {
-    int32_t j = l->cable[k];
-    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, end->q);
-    end->stretch[k] = pose.stretch;
-    end->stretch_rate[k] = strut_member_rate(t, j, &pose, end->v) - state->rest_rate[j];
-    end->tension[k] = t->stiffness[j] * end->stretch[k] + t->damping[j] * end->stretch_rate[k];
+  strut_member_pose pose = strut_member_pose_at(t, state->rest, j, end->q);
+  end->stretch[k] = pose.stretch;
+  end->stretch_rate[k] = strut_member_rate(t, j, &pose, end->v) - state->rest_rate[j];
+  end->tension[k] = t->stiffness[j] * end->stretch[k] + t->damping[j] * end->stretch_rate[k];
+}
+
+/* Of an element that carries one sign, with that sign; of kinks, the margins of the piece. */
+static void measure_element(const strut_model *model, const strut_state *state,
+                            const strut_law_switch *law, const strut_step_end *end, int32_t k) {
+  const strut_element *e = &model->elements.element[law->element];
+  strut_element_motion m = strut_element_move(model, state, law->element, end->q, end->v);
+  if (!law->kinks) {
+    end->stretch[k] = e->carries * m.stretch;
+    end->stretch_rate[k] = e->carries * m.rate;
+    end->tension[k] = e->carries * m.force;
+    return;
   }
+  int piece = state->element_piece[law->element], kinks = strut_law_kinks(e->law, &e->numbers);
+  double low = HUGE_VAL, high = HUGE_VAL;
+  if (piece > 0) low = m.stretch - strut_law_kink(e->law, &e->numbers, piece - 1);
+  if (piece < kinks) high = strut_law_kink(e->law, &e->numbers, piece) - m.stretch;
+  end->stretch[k] = m.stretch;
+  end->stretch_rate[k] = m.rate;
+  end->tension[k] = fmin(low, high);
+}
+
+/* The rest lengths are those of the end. */
+static void measure_laws(const strut_model *model, const strut_state *state,
+                         const strut_event_stepper *l, const strut_step_end *end) {
+  for (int32_t k = 0; k < l->law_count; k++)
+    if (l->laws[k].member >= 0)
+      measure_cable(model, state, l->laws[k].member, end, k);
+    else
+      measure_element(model, state, &l->laws[k], end, k);
 }
 
 void strut_event_measure(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
-  if (l->cable_count) measure_cables(model, state, l, end);
+  if (l->law_count) measure_laws(model, state, l, end);
 }
 
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
@@ -168,9 +194,11 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
     }
   }
   strut_event_measure(model, state, l, l->next);
-  for (int32_t j = 0; j < l->cable_count; j++)
-    if (strut_event_value(model, l, l->next, STRUT_EVENT_CABLE, j) < 0.0)
-      keep_first(model, l, STRUT_EVENT_CABLE, j, h, &first);
+  for (int32_t j = 0; j < l->law_count; j++) {
+    strut_event_kind kind = l->laws[j].kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
+    if (strut_event_value(model, l, l->next, kind, j) < 0.0)
+      keep_first(model, l, kind, j, h, &first);
+  }
   return first;
 }
 

@@ -12,17 +12,22 @@ static const double AT_ONCE = 1e-9;
    modes say: switches may follow each other faster and faster without end (Zeno). */
 enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
 
+/* Most laws that switch: each cable, each element by its sign and by its kinks. */
+static size_t most_switches(const strut_model *model) {
+  bool slack = model->plan & STRUT_TERM_SLACK;
+  return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count;
+}
+
 static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
-  size_t length = (size_t)model->length, members = (size_t)model->members.count;
+  size_t length = (size_t)model->length, switches = most_switches(model) + 1;
   if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
   if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
   end->a = strut_arena_allocate(arena, length, sizeof(double));
   end->structure = strut_arena_allocate(arena, length, sizeof(double));
   end->touch = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof *end->touch);
-  bool slack = model->plan & STRUT_TERM_SLACK;
-  end->tension = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
-  end->stretch = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
-  end->stretch_rate = strut_arena_allocate(arena, slack ? members : 1, sizeof(double));
+  end->tension = strut_arena_allocate(arena, switches, sizeof(double));
+  end->stretch = strut_arena_allocate(arena, switches, sizeof(double));
+  end->stretch_rate = strut_arena_allocate(arena, switches, sizeof(double));
   return end->q && end->v && end->a && end->structure && end->touch && end->tension &&
          end->stretch && end->stretch_rate;
 }
@@ -49,15 +54,25 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
   return ready;
 }
 
-static bool list_cables(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+static bool list_laws(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   const strut_member_table *t = &model->members;
-  if (!(model->plan & STRUT_TERM_SLACK)) return true;
-  size_t count = (size_t)t->count;
-  l->cable = strut_arena_allocate(&state->arena, count, sizeof *l->cable);
-  l->pulling = strut_arena_allocate(&state->arena, count, 1);
-  for (int32_t j = 0; j < t->count && l->cable; j++)
-    if (t->slack[j] == 0.0) l->cable[l->cable_count++] = j;
-  return l->cable && l->pulling;
+  size_t most = most_switches(model);
+  if (!most) return true;
+  l->laws = strut_arena_allocate(&state->arena, most, sizeof *l->laws);
+  l->acting = strut_arena_allocate(&state->arena, most, 1);
+  if (!l->laws || !l->acting) return false;
+  for (int32_t j = 0; j < t->count; j++)
+    if (t->slack[j] == 0.0)
+      l->laws[l->law_count++] = (strut_law_switch){j, -1, false, t->stiffness[j], t->damping[j]};
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const strut_law_switch own = {-1, i, false, e->numbers.stiffness, e->damping};
+    if (e->carries) l->laws[l->law_count++] = own;
+    if (!strut_law_kinks(e->law, &e->numbers)) continue;
+    l->laws[l->law_count] = own;
+    l->laws[l->law_count++].kinks = true;
+  }
+  return true;
 }
 
 /* Contact forces for whoever looks on. */
@@ -80,7 +95,7 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   l->tolerance = settings->tolerance;
   if (!make_end(model, &state->arena, l->now, true) ||
       !make_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
-      !list_cables(model, state, l) || !make_held(model, state) ||
+      !list_laws(model, state, l) || !make_held(model, state) ||
       strut_event_stepper_prepare(model, state, settings, l))
     return NULL;
   return l;

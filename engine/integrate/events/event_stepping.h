@@ -2,7 +2,7 @@
 /**
  * Steps that stop at events: what the methods with located events share.
  *
- * Each contact, and each cable, has a discrete mode, which is frozen within a step: in one mode the
+ * Each contact, cable and element with a kink has a discrete mode, which is frozen within a step: in one mode the
  * right-hand side is smooth. A step whose end contradicts a mode is taken again up to the moment
  * where that began; there the mode changes, and the rest of the step follows. Steps so end on the
  * grid n dt as those of any other method.
@@ -48,8 +48,10 @@ typedef struct strut_touch {
 typedef struct strut_step_end {
   double *q, *v, *a;
   strut_touch *touch; /* (contacts) of those that are closed; of open ones the gap alone */
-  double *tension, *stretch, *stretch_rate; /* (cables) not clamped [N], [m], [m/s] */
-  double power[STRUT_POWER_ROOM];           /* [W]; only with the ledger */
+  /* (switches) force as if it acted, and how far the strain is beyond the kink, both positive where it
+     acts; and the rate of the latter. Of a kink: the margins to both ends of its piece, the lesser */
+  double *tension, *stretch, *stretch_rate;
+  double power[STRUT_POWER_ROOM]; /* [W]; only with the ledger */
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
   double *structure, structure_power[STRUT_POWER_ROOM];
 } strut_step_end;
@@ -65,6 +67,15 @@ typedef struct strut_sliding_contact {
   const uint32_t *place;     /* (nodes) */
   const double *xy;          /* (nodes, 2) */
 } strut_sliding_contact;
+
+/** Something that a law switches: a cable or an element that carries one sign, or an element's kinks. */
+typedef struct strut_law_switch {
+  int32_t member;   /* of a cable; -1: of an element */
+  int32_t element;  /* of an element; -1: of a cable */
+  bool kinks;       /* the law's kinks, where its pieces meet */
+  double stiffness; /* force per strain, by which stretch and force are compared */
+  double damping;
+} strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;
 
@@ -107,12 +118,13 @@ struct strut_event_stepper {
   double *damped;                     /* (contacts) damper force while it is being solved for [N] */
   strut_contact_compliance *response; /* (contacts) */
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
-  double *stuck_factor;        /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
-  double *stuck_work;          /* (stuck_room) */
-  int32_t *cable, cable_count; /* members with a slack test */
-  uint8_t *pulling;            /* (cables) */
-  double *scatter;             /* (length) scratch, zero between uses */
-  double wanted_step;          /* of the settings [s] */
+  double *stuck_factor;   /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
+  double *stuck_work;     /* (stuck_room) */
+  strut_law_switch *laws; /* (law_count) */
+  int32_t law_count;
+  uint8_t *acting;                           /* (laws) of those without kinks */
+  double *scatter;                           /* (length) scratch, zero between uses */
+  double wanted_step;                        /* of the settings [s] */
   double refine, refine_time, refine_memory; /* [1], [s], [1] */
   double *settling_time;               /* (contacts) relaxation time of a closed contact [s] */
   double longest;                      /* adaptive: the longest step, a step of the grid [s] */
@@ -175,12 +187,13 @@ typedef enum strut_event_kind {
   STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
   STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
   STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
-  STRUT_EVENT_CABLE              /* a cable begins or ceases to pull */
+  STRUT_EVENT_ACTS, /* a cable or an element that carries one sign begins or ceases to act */
+  STRUT_EVENT_KINK  /* an element's strain passes a kink of its law */
 } strut_event_kind;
 
 typedef struct strut_event {
   strut_event_kind kind;
-  int32_t index;   /* of the contact, or into l->cable */
+  int32_t index;   /* of the contact, or into l->laws */
   double fraction; /* of the step, by interpolation */
 } strut_event;
 
@@ -190,7 +203,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
 /** The value that event ends at 0, at an end; positive while the mode holds. */
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);
-/** Cables' tensions and stretches at an end that has just been evaluated. */
+/** Forces and strains of the laws that switch, at an end that has just been evaluated. */
 void strut_event_measure(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end);
 /** Time derivative of that value where it is known; false where a secant must do. */
@@ -205,7 +218,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
 /** Modes from q and v alone. */
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t);
-/** After a drive has jumped: cables anew; contacts keep their modes, since nothing has moved. */
+/** After a drive has jumped: laws anew; contacts keep their modes, since nothing has moved. */
 void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t);
 /** After a step, what need not be located: opening. True if something changed. */

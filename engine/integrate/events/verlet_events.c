@@ -101,7 +101,7 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
     if (contradicting_event(&model->contacts.entry[i], &l->next->touch[i], l->mode[i], l->side[i]))
       return true;
   }
-  return l->cable_count && strut_event_first(model, state, l, h).kind;
+  return l->law_count && strut_event_first(model, state, l, h).kind;
 }
 
 STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,

@@ -128,6 +128,11 @@ static void sum_parts(const strut_equilibrium_search *h, int32_t *parent, part *
     int32_t a = (int32_t)model->members.from[j] / 2, b = (int32_t)model->members.to[j] / 2;
     parent[root(parent, a)] = root(parent, b);
   }
+  for (int32_t j = 0; j < model->elements.count; j++) {
+    const uint32_t *at = model->elements.at + model->elements.element[j].first;
+    for (int32_t k = 1; k < model->elements.element[j].nodes; k++)
+      parent[root(parent, (int32_t)at[0] / 2)] = root(parent, (int32_t)at[k] / 2);
+  }
   for (int32_t i = 0; i < model->node_count; i++) {
     part *p = &parts[parent[i] = root(parent, i)];
     for (int c = 0; c < 2; c++) {

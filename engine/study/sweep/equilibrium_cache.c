@@ -76,6 +76,14 @@ static void add_nodes(structure *s, const strut_scene *scene) {
   }
 }
 
+static void add_law(structure *s, const strut_law *law) {
+  const double values[] = {law->kind, law->carries, law->knee,   law->second_stiffness,
+                           law->gap,  law->scale,   law->smooth, (double)law->count};
+  add_all(s, values, sizeof values / sizeof values[0]);
+  add_all(s, law->force, law->count);
+  if (law->kind == STRUT_LAW_TABLE) add_all(s, law->x, law->count);
+}
+
 static void add_forces(structure *s, const strut_scene *scene) {
   add(s, (double)scene->member_count);
   for (size_t i = 0; i < scene->member_count; i++) {
@@ -83,6 +91,19 @@ static void add_forces(structure *s, const strut_scene *scene) {
     const double values[] = {m->node[0], m->node[1], m->kind,      m->stiffness, m->axial_stiffness,
                              m->damping, m->mass,    m->rest_kind, m->rest_value};
     add_all(s, values, sizeof values / sizeof values[0]);
+    const double more[] = {m->shortest, m->longest, m->stop_stiffness, m->stop_damping};
+    add_all(s, more, sizeof more / sizeof more[0]);
+    add(s, (double)m->guide_count);
+    for (size_t k = 0; k < m->guide_count; k++) add(s, m->guides[k]);
+    add_law(s, &m->law);
+  }
+  add(s, (double)scene->hinge_count);
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    const double values[] = {h->node[0],   h->node[1], h->node[2],
+                             h->stiffness, h->damping, strut_hinge_rest(scene, i)};
+    add_all(s, values, sizeof values / sizeof values[0]);
+    add_law(s, &h->law);
   }
   add(s, (double)scene->contact_count);
   for (size_t i = 0; i < scene->contact_count; i++) {
