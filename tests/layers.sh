@@ -20,7 +20,8 @@ breaches() {
     function breach(why) { print place ": " why ": " text }
     BEGIN {
       # Folders in the order in which they may include each other; those of a line stand side by side.
-      count = split("engine/base|engine/scene|engine/model|engine/forces|engine/integrate|" \
+      count = split("engine/base|engine/scene/laws|engine/scene|engine/model|engine/forces/strains|" \
+        "engine/forces|engine/integrate|" \
         "engine/integrate/events engine/integrate/limit|engine/integrate/lanes|engine/run/measure|" \
         "engine/run/orbit|engine/run|engine/run/accuracy|engine/statics|engine/statics/search|" \
         "engine/statics/equilibria|" \
