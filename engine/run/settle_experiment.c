@@ -101,7 +101,8 @@ static void add_stick_stiffness(const strut_model *model, const double *q, strut
     const strut_contact_entry *e = &c->entry[i];
     const double *t = c->tangent;
     bool touches = strut_contact_gap(c, i, q) < 0.0;
-    if (!touches || e->friction.law == STRUT_FRICTION_NONE || !(e->friction.mu_static > 0.0))
+    if (!touches || e->friction.law == STRUT_FRICTION_NONE ||
+        !(e->friction.mu_static > 0.0 || e->friction.mu_static_backward > 0.0))
       continue;
     strut_sparse *k = tangent->stiffness;
     const int32_t row[2] = {find_row(tangent, (int32_t)c->at[i]),

@@ -324,11 +324,14 @@ static void check_coefficients(strut_reader *reader, strut_fields *fields, strut
   const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
-  const strut_slot *rival = statics->key ? statics : kinetics;
-  if (!mu->key || !rival->key) return;
+  const strut_slot *forward = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_FORWARD);
+  const strut_slot *rival = statics->key ? statics : kinetics->key ? kinetics : forward;
+  if (!mu->key) mu = forward;
+  if (!mu->key || !rival->key || rival == mu) return;
   strut_report_error(reader, mu->key->place,
-                     "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
-                     strut_owner_text(reader, owner), rival->key->text);
+                     "%s gives both '%s' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic', "
+                     "or 'mu_forward' and 'mu_backward'",
+                     strut_owner_text(reader, owner), mu->key->text, rival->key->text);
   fields->broken = true;
 }
 

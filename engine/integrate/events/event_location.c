@@ -35,11 +35,14 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_OPEN: return -strut_contact_gap(&model->contacts, i, end->q);
     case STRUT_EVENT_SLIP_ENDS: return s * o->slip - stick_band_edge(e);
     case STRUT_EVENT_LEAVES_STICK_BAND: return stick_band_edge(e) - way_out(l, o, i) * o->slip;
-    case STRUT_EVENT_STICK_BREAKS: return e->friction.mu_static * o->normal - fabs(o->friction);
-    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->friction.mu_kinetic * o->normal;
+    case STRUT_EVENT_STICK_BREAKS:
+      return strut_friction_static(&e->friction, -o->friction) * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT:
+      return s * o->friction + strut_friction_kinetic(&e->friction, s) * o->normal;
     case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
     case STRUT_EVENT_PUSH: {
-      double room = e->friction.mu_static * o->normal - fabs(o->applied);
+      double most = strut_friction_static(&e->friction, o->applied) * o->normal;
+      double room = most - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
     }
     case STRUT_EVENT_YIELDED: return yield_margin(e, o);
@@ -86,7 +89,7 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
 static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
                             double room) {
   const strut_contact_entry *e = &model->contacts.entry[i];
-  if (!l->stepper->exact && e->friction.mu_static == e->friction.mu_kinetic) return room;
+  if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
   double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
   strut_event_rate(l, l->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
