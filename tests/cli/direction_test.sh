@@ -40,7 +40,7 @@ rk4-events step:~2~ms law:~coulomb 0.002
 verlet-events step:~1~ms law:~coulomb 0.002
 verlet-events step:~1~ms law:~karnopp,~stick_velocity:~1e-5~m/s 0.01
 rk4 step:~0.5~ms law:~karnopp,~stick_velocity:~1e-4~m/s 0.06
-verlet-events step:~0.5~ms law:~smooth,~width:~1e-5~m/s 0.02
+adaptive step:~20~ms,~tolerance:~1e-5 law:~smooth,~width:~1e-5~m/s 0.02
 END
 
 # Points of a study run side by side in lanes: with the bits of single runs.
@@ -56,7 +56,7 @@ for forward in 0 0.1 0.6; do
   expect 0 run "$work/worm.yaml" --set forward=$forward --json
   one=$(jq .velocity "$work/out")
   awk -F, -v f=$forward 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
-    $at["forward"] == f { print $at["velocity"] }' "$work"/study/*.csv >"$work/value"
+    $at["forward"] == f { print $at["velocity [m/s]"] }' "$work/study/table.csv" >"$work/value"
   many=$(cat "$work/value")
   jq -ne --argjson a "$one" --argjson b "$many" '$a == $b' >/dev/null ||
     fail "forward $forward: $one alone, $many in the study"
