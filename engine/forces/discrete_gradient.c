@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/forces.h"
+#include "engine/forces/drive.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/mass.h"
 
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;

@@ -4,7 +4,7 @@
 #include <cjson/cJSON.h>
 #include <math.h>
 
-#include "engine/output/json_value.h"
+#include "engine/output/json_settle.h"
 
 /* Every helper does nothing once memory was out, so that only the end has to ask. */
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/pose.h"
 

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/drive.h"
 #include "engine/forces/forces.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */

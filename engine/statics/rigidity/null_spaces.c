@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/rigidity/null_space_methods.h"
 #include "engine/statics/rigidity/sparse_qr.h"
 
 /* Bases with more vectors, or more numbers, than these are for nobody to read. */
