@@ -50,8 +50,12 @@ static const char *component_scale(strut_channel id) {
   switch (id) {
     case STRUT_CHANNEL_CONTACT: return "contact_component";
     case STRUT_CHANNEL_ENERGY: return "energy_component";
-    default: return "axis";
+    case STRUT_CHANNEL_POSITION:
+    case STRUT_CHANNEL_VELOCITY:
+    case STRUT_CHANNEL_LENGTH:
+    case STRUT_CHANNEL_FORCE: break;
   }
+  return "axis";
 }
 
 /* Closes the HDF5 file; false if not all of it could be written. */

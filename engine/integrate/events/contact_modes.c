@@ -219,7 +219,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     }
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
     case STRUT_EVENT_CABLE: cable_mode(state, l, i, !l->pulling[i]); break;
-    default: break;
+    case STRUT_EVENT_NONE: break;
   }
   derive_consistently(model, state, l, t);
 }

@@ -375,7 +375,9 @@ static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary
           "%.1g) does not: their mean velocities and that with half the step agree to %.2g m/s",
           step, tolerance, solve->error);
       return;
-    default:
+    case STRUT_ORBIT_NONE:
+    case STRUT_ORBIT_CORRECTED:
+    case STRUT_ORBIT_REFERENCE:
       snprintf(
           to->why, size,
           "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "

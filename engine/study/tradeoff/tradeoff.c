@@ -168,8 +168,9 @@ static bool makes_sense(const strut_scene *scene, kind what) {
     case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
     case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
     case GROUND: return scene->contact_count > 0 && has_damped_ground(scene);
-    default: return false;
+    case KINDS: break;
   }
+  return false;
 }
 
 /* The regularisation speed for friction laws that need one [m/s]. */

@@ -82,7 +82,8 @@ static void take_values(const tradeoff_study *s, const strut_summary *summary, d
     case STRUT_TRADEOFF_ENERGY:
       value[0] = summary->energy.moved > 0 ? summary->energy.residual / summary->energy.moved : 0;
       break;
-    default: value[0] = summary->velocity;
+    case STRUT_TRADEOFF_AUTOMATIC:
+    case STRUT_TRADEOFF_VELOCITY: value[0] = summary->velocity; break;
   }
 }
 
