@@ -153,14 +153,10 @@ static bool create_all(hdf5 *self, const strut_record_layout *layout) {
   return written(self) && good;
 }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
-}
-
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   hdf5 *self = context;
   self->width = layout->width;
-  if (!strut_hdf5_has_memory()) return no_memory(error);
+  if (!strut_hdf5_has_memory()) return strut_no_memory(error, "while writing files");
   strut_status status = strut_file_open(&self->file, self->directory, "trajectory.h5", error);
   if (status != STRUT_OK) return status;
   strut_hdf5_quiet quiet = strut_hdf5_hush();

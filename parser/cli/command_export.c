@@ -27,8 +27,7 @@ static strut_status still_of(const strut_arguments *arguments, const strut_opene
   motion->position = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
   motion->length = strut_arena_allocate(arena, members, sizeof(double));
   motion->force = strut_arena_allocate(arena, members, sizeof(double));
-  if (!motion->position || !motion->length || !motion->force)
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!motion->position || !motion->length || !motion->force) return strut_no_memory(error, "");
   for (size_t i = 0; i < 2 * nodes; i++) motion->position[i] = shape.q[i];
   for (size_t i = 0; i < members; i++) {
     const double *from = shape.q + table->from[i], *to = shape.q + table->to[i];

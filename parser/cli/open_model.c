@@ -192,7 +192,7 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   char *scene = inside(arena, directory, "scene.yaml");
   char *trajectory = inside(arena, directory, "trajectory.h5");
   char *summary = inside(arena, directory, "summary.json");
-  if (!scene || !trajectory || !summary) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!scene || !trajectory || !summary) return strut_no_memory(error, "");
   strut_status status = check_files(directory, scene, trajectory, error);
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;

@@ -50,7 +50,7 @@ static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model 
   solve->orbit.y = strut_arena_allocate(&solve->arena, 2 * length + 1, sizeof(double));
   if (solve->end_state.q && solve->end_state.v && solve->fixed_point && solve->orbit.y)
     return STRUT_OK;
-  return strut_fail(solve->a->error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(solve->a->error, "");
 }
 
 /*

@@ -150,7 +150,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
   if (!plan->columns || !plan->quantities || !add_columns(plan, setup))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   return STRUT_OK;
 }
 
@@ -163,7 +163,7 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   strut_setup setup;
   strut_study_value *values =
       strut_arena_allocate(&plan->arena, plan->axis_columns + 1, sizeof *values);
-  if (!values) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!values) return strut_no_memory(error, "");
   strut_grid_values(study, 0, values);
   strut_status status = scenes->setup(scenes->context, values, &setup, error);
   if (status) return status;

@@ -298,9 +298,7 @@ static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3;
 /* Cumulative shares of the budget for the unchanged model: references, rows, refined references. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
-static strut_status out_of_memory(tradeoff_study *s) {
-  return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
-}
+static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
 
 strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
                                     const strut_model **model) {
@@ -310,7 +308,7 @@ strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int v
   if (!m->model) {
     m->scene = s->setups[point]->scene;
     status = strut_tradeoff_change_scene(s, variant, &m->scene, &m->arena)
-                 ? strut_fail(s->error, STRUT_NO_MEMORY, "out of memory")
+                 ? strut_no_memory(s->error, "")
                  : strut_model_compile(&m->scene, &m->model, s->error);
   }
   *model = m->model;
