@@ -25,6 +25,7 @@ extern "C" {
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/model.h"
 #include "engine/model/state.h"

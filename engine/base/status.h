@@ -48,4 +48,7 @@ STRUT_API int strut_status_exit_code(strut_status status);
 STRUT_API strut_status strut_fail(strut_error *error, strut_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/** The same for STRUT_NO_MEMORY: "out of memory", and what for, such as "while drawing", or "". */
+STRUT_API strut_status strut_no_memory(strut_error *error, const char *purpose);
+
 #endif

@@ -18,6 +18,7 @@
 #include "engine/forces/lane_tables.h"
 #include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
+#include "engine/model/mass.h"
 
 #ifndef STRUT_LANE_WIDTH
 #define STRUT_LANE_WIDTH 2

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/mass.h"
 
 /* Does every contact have the printed laws, whose coefficients may differ by direction? */
 static bool laws_are_printed(const strut_model *model) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/mass.h"
 #include "engine/model/pose.h"
 
 /* Lengths are put right until they are so near, relative to themselves and to the coordinates. */

@@ -14,8 +14,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "engine/base/memory.h"
+#include "engine/base/status.h"
 #include "engine/model/elements.h"
-#include "engine/model/mass.h"
 #include "engine/scene/scene.h"
 
 /** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
@@ -102,7 +103,7 @@ typedef struct strut_model {
   strut_contact_table contacts;
   strut_drive_table drives;
   strut_load_table loads;
-  strut_mass *mass; /* NULL where some free coordinate has no mass: statics only */
+  struct strut_mass *mass; /* mass.h; NULL where some free coordinate has no mass: statics only */
   strut_arena arena;
 } strut_model;
 

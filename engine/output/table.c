@@ -178,17 +178,10 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
     const char *name;
     double value;
   } rows[] = {
-      {"kinetic", e->kinetic},
-      {"elastic", e->elastic},
-      {"gravity", e->gravity},
-      {"ground springs", e->contact},
-      {"drive work", e->drive_work},
-      {"load work", e->load_work},
-      {"belt work", e->belt_work},
-      {"lost in members", e->dissipated_members},
-      {"lost in contact", e->dissipated_contact},
-      {"lost to friction", e->dissipated_friction},
-      {"residual", e->residual},
+#define ENERGY_ROW(name, kind, label) {label, e->name},
+      STRUT_ENERGY_TABLE(ENERGY_ROW)
+#undef ENERGY_ROW
+          {"residual", e->residual},
   };
   strut_buffer_add(table, "\n  energy\n");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

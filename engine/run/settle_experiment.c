@@ -306,12 +306,11 @@ strut_status strut_settle_model(const strut_model *model, const strut_experiment
   *start = (strut_settled_start){.model = model};
   if (!experiment->settle.wanted) return STRUT_OK;
   double *q = strut_arena_allocate(&start->arena, (size_t)model->length, sizeof *q);
-  if (!q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!q) return strut_no_memory(error, "");
   strut_status status = strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->time,
                                                 &start->how, error);
   if (status) return status;
-  if (move_start(model->scene, q, start))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (move_start(model->scene, q, start)) return strut_no_memory(error, "");
   status = strut_model_compile(start->scene, &start->own, error);
   start->model = start->own;
   return status;

@@ -55,7 +55,7 @@ static strut_status begin_results(const strut_arguments *arguments, const strut_
         strut_hdf5_create(keep->results.stage, keep->scene_text);
   }
   if (keep->csv && keep->hdf5) return STRUT_OK;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(error, "");
 }
 
 /* Adds the summary and the scene, and makes all files appear. */

@@ -108,8 +108,8 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
     names[i + 1] = strut_arena_format(&arena, "%s.svg", study->figures[i].name);
     if (!names[i + 1]) names = NULL;
   }
-  strut_status status = names ? strut_ownership_check(directory, names, error)
-                              : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      names ? strut_ownership_check(directory, names, error) : strut_no_memory(error, "");
   strut_arena_free(&arena);
   return status;
 }

@@ -275,7 +275,7 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
   if (status != STRUT_OK) return status;
   strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
-  if (!reader) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!reader) return strut_no_memory(error, "");
   strut_setup_init(&setup);
   strut_reader_target(reader, &setup);
   reader->diagnostics = &file->diagnostics;

@@ -103,7 +103,7 @@ static void put_limits(strut_writer *writer, strut_key_limits limits) {
       strut_put(writer, " to ");
       strut_put_number(writer, limits.most);
       break;
-    default: break;
+    case STRUT_RANGE_ANY: break;
   }
 }
 

@@ -256,7 +256,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
     case STRUT_EVENT_ACTS: set_acting(state, l, i, !l->acting[i]); break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
-    default: break;
+    case STRUT_EVENT_NONE: break;
   }
   derive_consistently(model, state, l, t);
 }

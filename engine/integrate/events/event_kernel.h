@@ -42,7 +42,7 @@ STRUT_INLINE double yield_friction(const strut_contact_entry *e, double normal, 
 /* Friction by the mode; a multiplier, which comes later, is 0 here. */
 STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode, int8_t side,
                                      double normal, double slip, double applied) {
-  switch (mode) {
+  switch ((strut_contact_mode)mode) {
     case STRUT_MODE_SLIP:
     case STRUT_MODE_PUSH: return -side * strut_friction_kinetic(&e->friction, side) * normal;
     case STRUT_MODE_SLIDE:
@@ -54,8 +54,11 @@ STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode,
       return applied > most ? -most : applied < -most ? most : -applied;
     }
     case STRUT_MODE_YIELD: return yield_friction(e, normal, applied);
-    default: return 0.0;
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_STICK:
+    case STRUT_MODE_CREEP: break;
   }
+  return 0.0;
 }
 
 /* Kinematics of contact i at q, v. */
@@ -196,7 +199,7 @@ STRUT_INLINE double yield_margin(const strut_contact_entry *e, const strut_touch
 /* What a closed contact's state at the end of a step contradicts of its mode. */
 STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
                                                   const strut_touch *o, uint8_t mode, double s) {
-  switch (mode) {
+  switch ((strut_contact_mode)mode) {
     case STRUT_MODE_SLIP:
       return s * o->slip < stick_band_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
@@ -220,8 +223,10 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
     case STRUT_MODE_YIELD:
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       return yield_margin(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
-    default: return STRUT_EVENT_NONE;
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_SLIDE: break;
   }
+  return STRUT_EVENT_NONE;
 }
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */

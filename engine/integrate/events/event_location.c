@@ -47,21 +47,33 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     }
     case STRUT_EVENT_YIELDED: return yield_margin(e, o);
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
-    default: return 1.0;
+    case STRUT_EVENT_NONE:
+    case STRUT_EVENT_ACTS:
+    case STRUT_EVENT_KINK: break;
   }
+  return 1.0;
 }
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK) return false;
+  if (kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK) return false; /* i is no contact */
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
     case STRUT_EVENT_SLIP_ENDS: *rate = l->side[i] * o->slip_rate; return true;
     case STRUT_EVENT_LEAVES_STICK_BAND: *rate = -way_out(l, o, i) * o->slip_rate; return true;
     case STRUT_EVENT_DAMPER: *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate; return true;
-    default: return false;
+    case STRUT_EVENT_NONE:
+    case STRUT_EVENT_TOUCH:
+    case STRUT_EVENT_STICK_BREAKS:
+    case STRUT_EVENT_CREEP_OUT:
+    case STRUT_EVENT_CREEP_IN:
+    case STRUT_EVENT_PUSH:
+    case STRUT_EVENT_YIELDED:
+    case STRUT_EVENT_ACTS:
+    case STRUT_EVENT_KINK: break;
   }
+  return false;
 }
 
 /* First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */

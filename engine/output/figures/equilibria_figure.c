@@ -393,9 +393,7 @@ strut_status strut_equilibria_figure(const char *path, double width, const strut
                                      const strut_equilibria *equilibria, strut_error *error) {
   plan p = {.model = model, .all = equilibria, .width = width};
   strut_canvas *canvas = NULL;
-  strut_status status = choose_equilibria(&p)
-                            ? STRUT_OK
-                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = choose_equilibria(&p) ? STRUT_OK : strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_cards(&p);
     status = strut_canvas_open(path, width, figure_height(&p), model->scene->name, &canvas, error);

@@ -85,7 +85,7 @@ strut_status strut_form_figure(const char *path, double width, const strut_model
   double *force = strut_arena_allocate(&arena, model->scene->member_count + 1, sizeof *force);
   if (!before || !force) {
     strut_arena_free(&arena);
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+    return strut_no_memory(error, "while drawing");
   }
   memcpy(before, drawn, (size_t)model->node_count * sizeof *drawn);
   strut_bounds bounds = strut_bounds_none();

@@ -368,7 +368,7 @@ strut_status strut_modes_figure(const char *path, double width, const strut_mode
     arrange(&f, width);
     status = draw_figure(&f, path, width, error);
   } else {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    strut_no_memory(error, "");
   }
   strut_arena_free(&f.arena);
   return status;

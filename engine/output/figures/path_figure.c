@@ -569,7 +569,7 @@ strut_status strut_path_figure(const char *path_name, double width, const strut_
   path_picture picture = {.model = model, .path = path};
   strut_status status = prepare_picture(&picture, &arena)
                             ? draw_picture(&picture, path_name, width, error)
-                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+                            : strut_no_memory(error, "");
   strut_arena_free(&arena);
   return status;
 }

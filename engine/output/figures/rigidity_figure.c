@@ -207,8 +207,7 @@ strut_status strut_rigidity_figure(const char *path, double width, const strut_m
   strut_arena arena = {0};
   strut_canvas *canvas = NULL;
   p.moved = strut_arena_allocate(&arena, (size_t)model->length, sizeof *p.moved);
-  strut_status status =
-      p.moved ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = p.moved ? STRUT_OK : strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_panels(&p);
     double height = 2 * EDGE + TITLE + (double)p.rows * p.cell[1] + SCALE;

@@ -295,8 +295,7 @@ static strut_status draw_page(maker *m, const char *path, strut_error *error) {
   double size[2] = {0, 0};
   m->entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *m->entries);
   char(*text)[200] = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *text);
-  if (!m->entries || !text)
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (!m->entries || !text) return strut_no_memory(error, "while drawing");
   m->entry_count = name_entries(m, text);
   strut_status status = strut_canvas_open_pixels(1, 1, 1, &ruler, error);
   if (status != STRUT_OK) return status;

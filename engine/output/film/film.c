@@ -44,10 +44,6 @@ strut_status strut_film_check_length(const strut_film *film, double motion, stru
                     lasts, STRUT_FILM_LONGEST);
 }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while making a film");
-}
-
 /* Sets the number of pictures, their size and their spacing in time. */
 static strut_status count_frames(making *m, strut_film_format format, strut_error *error) {
   const double *time = m->motion->time;
@@ -133,7 +129,7 @@ static strut_status draw_frames(making *m, strut_canvas *canvas, strut_encoder *
     strut_moment_at(&m->moment, m->motion, m->shown, frame_time(m, i));
     strut_view_frame_draw(&m->scenery, canvas, i, &m->moment);
     const unsigned char *pixels = strut_canvas_pixels(canvas, &stride);
-    if (!pixels) return no_memory(error);
+    if (!pixels) return strut_no_memory(error, "while making a film");
     status = strut_encoder_frame(encoder, pixels, m->made->width, m->made->height, stride, error);
     if (film->progress) film->progress(film->progress_context, (double)i / (double)m->made->frames);
   }
@@ -170,7 +166,7 @@ strut_status strut_film_make(const strut_film *film, const strut_model *model,
   strut_film_format format;
   strut_status status = strut_encoder_format(film->path, &format, error);
   if (status == STRUT_OK) status = count_frames(&m, format, error);
-  if (status == STRUT_OK && !survey(&m)) status = no_memory(error);
+  if (status == STRUT_OK && !survey(&m)) status = strut_no_memory(error, "while making a film");
   if (status == STRUT_OK) {
     find_scales(&m);
     status = encode(&m, error);

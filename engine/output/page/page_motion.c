@@ -171,16 +171,7 @@ static const double DIVERGED_REACH = 1e3;
 
 enum { TIME, POSITION, FORCE, CONTACT, ENERGY, BLOCKS };
 static const char *const keys[BLOCKS] = {"time", "position", "force", "contact", "energy"};
-static const char *const energy_names[STRUT_ENERGIES] = {"kinetic",
-                                                         "elastic",
-                                                         "gravity",
-                                                         "contact",
-                                                         "drive_work",
-                                                         "load_work",
-                                                         "belt_work",
-                                                         "dissipated_members",
-                                                         "dissipated_contact",
-                                                         "dissipated_friction"};
+static const char *const energy_names[STRUT_ENERGIES] = {STRUT_ENERGY_NAMES};
 
 typedef struct motion {
   const strut_page *page;

@@ -10,7 +10,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json.h"
+#include "engine/output/json_settle.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
 

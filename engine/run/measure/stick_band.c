@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/model/mass.h"
 #include "engine/model/pose.h"
 
 /* Samples per solved acceleration; fewest of those for a mean. */

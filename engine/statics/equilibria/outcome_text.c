@@ -276,7 +276,7 @@ static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equili
       snprintf(e->verdict, room, "unstable: %d negative eigenvalue%s", (int)e->point.negative,
                e->point.negative == 1 ? "" : "s");
       break;
-    default: describe_no_rest(h, e); break;
+    case STRUT_OUTCOME_NO_REST: describe_no_rest(h, e); break;
   }
 }
 

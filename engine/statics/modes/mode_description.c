@@ -98,7 +98,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
   gsl_matrix_free(vector);
   gsl_vector_free(value);
   gsl_eigen_symmv_free(w);
-  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(error, "");
 }
 
 /* Description of a mode in words, from its computed quantities. */

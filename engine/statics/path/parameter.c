@@ -211,7 +211,7 @@ strut_status strut_path_parameter_create(const strut_model *model,
   if (!strut_path_terms_create(model, arena, &p->base) ||
       !strut_path_terms_create(model, arena, &p->low) ||
       !strut_path_terms_create(model, arena, &p->high))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   read_terms(model, &p->base);
   memcpy(p->base.position, position, (size_t)model->length * sizeof *position);
   return check_effect(p, error);

@@ -274,5 +274,5 @@ strut_status strut_critical_judge(const strut_potential *potential, const double
     return strut_fail(error, STRUT_DIVERGED,
                       "the structure moves to where energies and stiffnesses leave the range of "
                       "numbers; check the units of sizes, stiffnesses and loads");
-  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(error, "");
 }

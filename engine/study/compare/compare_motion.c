@@ -15,8 +15,7 @@ enum { LONG_WINDOW = 20 }; /* periods of a motion that is not periodic */
 static const double WINDOW_TOLERANCE = 1e-6, STEPS = 50.0;
 
 static const char *word_of(strut_motion kind) {
-  static const char *const words[] = {NULL, "periodic", "irregular", "transient"};
-  return words[kind];
+  return kind == STRUT_MOTION_NOT_WATCHED ? NULL : strut_motion_name(kind);
 }
 
 /* The steady motion over whole periods, from where the run ended. */

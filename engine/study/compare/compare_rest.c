@@ -9,6 +9,7 @@
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/rigid_motions.h"
 #include "engine/statics/rigidity/equilibrium_matrix.h"
+#include "engine/statics/rigidity/linear_matrices.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare_parts.h"
 

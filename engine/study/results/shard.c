@@ -113,7 +113,7 @@ static strut_status note(strut_shards_found *found, strut_shard shard, strut_are
                          strut_error *error) {
   if (!found->count) {
     found->there = strut_arena_allocate(arena, (size_t)shard.count, 1);
-    if (!found->there) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
+    if (!found->there) return strut_no_memory(error, "for shards");
     found->count = shard.count;
   }
   if (shard.count == found->count) {
@@ -129,7 +129,7 @@ strut_status strut_shards_find(const char *directory, strut_shards_found *found,
   *found = (strut_shards_found){0};
   char *whole = strut_arena_format(arena, "%s/%s", directory, WHOLE);
   char *folder = strut_arena_format(arena, "%s/%s", directory, FOLDER);
-  if (!whole || !folder) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
+  if (!whole || !folder) return strut_no_memory(error, "for shards");
   found->whole = access(whole, F_OK) == 0;
   DIR *open = opendir(folder);
   if (!open && errno == ENOENT) return STRUT_OK;
@@ -171,8 +171,7 @@ strut_status strut_shard_begin(const char *directory, strut_shard shard, strut_e
   if (status == STRUT_OK) status = agree(directory, shard, &found, error);
   if (status == STRUT_OK) {
     char *folder = strut_arena_format(&arena, shard.count ? "%s/%s" : "%s", directory, FOLDER);
-    status = folder ? strut_directory_create(folder, error)
-                    : strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
+    status = folder ? strut_directory_create(folder, error) : strut_no_memory(error, "for shards");
   }
   strut_arena_free(&arena);
   return status;
@@ -190,10 +189,6 @@ typedef struct merge {
   size_t count;
   strut_arena arena;
 } merge;
-
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
-}
 
 /* A sentence being built, truncated at its capacity. */
 typedef struct sentence {
@@ -258,13 +253,14 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
 static strut_status open_sources(merge *m, strut_error *error) {
   strut_status status = STRUT_OK;
   m->sources = strut_arena_allocate(&m->arena, m->count, sizeof *m->sources);
-  if (!m->sources) return no_memory(error);
+  if (!m->sources) return strut_no_memory(error, "for shards");
   for (size_t i = 0; i < m->count && status == STRUT_OK; i++) {
     strut_slots_plan plan;
     if (m->found.count && !m->found.there[i]) continue;
     strut_shard shard = {(int64_t)i, m->found.count};
     char *path = strut_shard_path(m->directory, shard, &m->arena);
-    status = path ? strut_slots_read(path, &m->sources[i], &plan, error) : no_memory(error);
+    status = path ? strut_slots_read(path, &m->sources[i], &plan, error)
+                  : strut_no_memory(error, "for shards");
     if (status != STRUT_OK) break;
     strut_shard_points(shard, &plan);
     const strut_slots_plan *own = strut_slots_plan_of(m->sources[i]);

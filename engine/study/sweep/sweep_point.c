@@ -116,8 +116,7 @@ static void refine_experiment(const strut_study *study, strut_experiment *e) {
 
 static const char *outcome_word(const strut_sweep_worker *w, const strut_summary *summary,
                                 const char *outcome) {
-  static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
-  return w->plan->flips ? outcome : kinds[summary->steady.kind];
+  return w->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
 }
 
 static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,

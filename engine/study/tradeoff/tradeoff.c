@@ -169,8 +169,9 @@ static bool makes_sense(const strut_scene *scene, kind what) {
     case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
     case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
     case GROUND: return scene->contact_count > 0 && has_damped_ground(scene);
-    default: return false;
+    case KINDS: break;
   }
+  return false;
 }
 
 /* The regularisation speed for friction laws that need one [m/s]. */
@@ -298,9 +299,7 @@ static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3;
 /* Cumulative shares of the budget for the unchanged model: references, rows, refined references. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
-static strut_status out_of_memory(tradeoff_study *s) {
-  return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
-}
+static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
 
 strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
                                     const strut_model **model) {
@@ -310,7 +309,7 @@ strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int v
   if (!m->model) {
     m->scene = s->setups[point]->scene;
     status = strut_tradeoff_change_scene(s, variant, &m->scene, &m->arena)
-                 ? strut_fail(s->error, STRUT_NO_MEMORY, "out of memory")
+                 ? strut_no_memory(s->error, "")
                  : strut_model_compile(&m->scene, &m->model, s->error);
   }
   *model = m->model;

@@ -166,7 +166,7 @@ strut_status strut_tradeoff_figure(const char *path, double width, const strut_t
   bool good = begin_panel(&panels[0], r, &arena) && begin_panel(&panels[1], r, &arena) &&
               fill_methods(&panels[0], r, &arena) && fill_models(&panels[1], r, &arena);
   strut_status status = good ? draw(path, width, r, panels, models > 1, error)
-                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+                             : strut_no_memory(error, "while drawing");
   strut_c_locale_leave(locale);
   strut_arena_free(&arena);
   return status;
