@@ -65,7 +65,7 @@ static void print_film(const strut_film *film, const strut_film_made *made) {
          made->frames, strut_quantity_of((double)made->frames / made->fps, DIGITS, "s").text);
   printf(film->speed == 1 ? " at real speed\n" : " at %.4g times real speed\n", film->speed);
   if (made->lasts < SHORT && motion > 0)
-    printf("  the recording lasts only %s: --speed 1/%.0f makes a film of %s\n",
+    printf("  the recording lasts only %s; --speed 1/%.0f makes a film of %s\n",
            strut_quantity_of(motion, DIGITS, "s").text, fmax(2, better_speed(motion)),
            strut_quantity_of(motion * fmax(2, better_speed(motion)), 2, "s").text);
   if (made->every > 1.5 * made->shown)

@@ -144,7 +144,7 @@ said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n
 check("add 'trajectories: yes' to the study" in said, said)
 os.rename("out", "before")
 said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1)
-check("no run recorded any of it" in said, said)
+check("no run recorded any of this" in said, said)
 said = sweep(STUDY + "  bad: {kind: snapshots, difference: mass}\n", code=1)
 check("'difference' needs an axis of two values; 'mass' has 1" in said, said)
 finish()

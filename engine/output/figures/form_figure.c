@@ -48,9 +48,9 @@ static void draw_form(strut_canvas *canvas, const strut_model *model, const doub
   char text[200];
   bool same = moved <= 1e-9 * model->size;
   if (same) {
-    snprintf(text, sizeof text, "the shape as drawn, and the forces that hold it");
+    snprintf(text, sizeof text, "the drawn shape, and the forces that hold it");
   } else {
-    snprintf(text, sizeof text, "grey: as drawn; nodes moved by up to %s",
+    snprintf(text, sizeof text, "grey: drawn shape; nodes moved by up to %s",
              strut_drawn_quantity(moved, 3, "m").text);
   }
   strut_draw_heading(canvas, EDGE, model->scene->name, text);

@@ -167,7 +167,7 @@ static void draw_title(const plan *p, strut_canvas *canvas, const char *at) {
                       (int)r->states.count, r->states.count == 1 ? "" : "s",
                       (int)r->mechanisms.count, r->mechanisms.count == 1 ? "" : "s");
   if (left_out > 0)
-    snprintf(text + used, sizeof text - (size_t)used, "; %d of them are not drawn", (int)left_out);
+    snprintf(text + used, sizeof text - (size_t)used, "; %d not drawn", (int)left_out);
   strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
 }
 

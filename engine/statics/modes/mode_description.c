@@ -174,7 +174,8 @@ static void describe_nodes(const strut_vibration *v, const double *x, strut_mode
   int count = name_side(v, x, leader, lead, 1, "", mode);
   append_text(mode, count == 1 ? " moves%s" : " move%s", direction_text(lead));
   name_side(v, x, leader, lead, -1, " against ", mode);
-  name_side(v, x, leader, lead, 0, ", across them ", mode);
+  if (name_side(v, x, leader, lead, 0, ", ", mode) > 0)
+    append_text(mode, " perpendicular to %s", count == 1 ? "it" : "them");
 }
 
 /* Energies of half a stiffness each: stretch of the members, closed contacts. */
@@ -235,9 +236,9 @@ static void describe_rigid(const strut_vibration *v, const double *x, strut_mode
   }
   const char *way = direction_text(first);
   if (shift)
-    append_text(mode, "the whole moves%s", *way ? way : " freely");
+    append_text(mode, "the structure moves%s", *way ? way : " freely");
   else
-    append_text(mode, "the whole turns freely");
+    append_text(mode, "the structure rotates freely");
 }
 
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
@@ -249,7 +250,7 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   }
   describe_nodes(v, x, mode);
   if (mode->kind == STRUT_MODE_MECHANISM) {
-    append_text(mode, "; nothing resists");
+    append_text(mode, "; no stiffness resists");
     return;
   }
   energies e = energies_of(v, x);

@@ -99,11 +99,12 @@ static void words_of(const strut_compare_column *c, char words[LINES][WORDS]) {
   if (states > 0)
     used = snprintf(words[1], WORDS, "%.0f stable state%s", states, states > 1 ? "s" : "");
   if (isfinite(lowest))
-    snprintf(words[1] + used, WORDS - (size_t)used, "%s%s", used ? ", from " : "from ",
+    snprintf(words[1] + used, WORDS - (size_t)used, "%s%s",
+             used ? ", lowest frequency " : "lowest frequency ",
              strut_drawn_quantity(lowest, 3, "Hz").text);
   used = 0;
   if (c->still)
-    snprintf(words[2], WORDS, "moves on the spot");
+    snprintf(words[2], WORDS, "no net motion");
   else if (isfinite(v[STRUT_COMPARE_VELOCITY].value))
     used = snprintf(words[2], WORDS, "%s",
                     strut_drawn_quantity(v[STRUT_COMPARE_VELOCITY].value, 3, "m/s").text);
@@ -157,7 +158,7 @@ static size_t make_key(const sheet *s, strut_key_item items[KEYS]) {
   if (any(s, STRUT_COMPARE_ACTUATORS))
     items[count++] = line(strut_palette_thing(DRIVEN), 2.6, "driven");
   if (s->alike && s->count > 1)
-    items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = "all to one scale"};
+    items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = "same scale"};
   return count;
 }
 

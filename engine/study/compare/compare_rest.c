@@ -129,7 +129,7 @@ static void put_barrier(strut_compare_work *work, const char *from, const strut_
   else
     strut_compare_leave(
         work, at, at,
-        from ? "no way to another state is known" : "it starts in no state of the list");
+        from ? "no path to another state is known" : "the start is in none of the listed states");
 }
 
 static void put_states(strut_compare_work *work, const char *from, const strut_equilibria *all) {
@@ -153,7 +153,7 @@ strut_status strut_compare_states(strut_compare_work *work, const strut_model *m
   strut_error error = {0};
   strut_equilibria all = {0};
   if (work->options->no_states) {
-    strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not asked for");
+    strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not requested");
     return STRUT_OK;
   }
   strut_status status =
@@ -180,7 +180,7 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
   if (status == STRUT_OK) {
     int found = 0;
     strut_compare_leave(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
-                        "there are fewer elastic modes");
+                        "the model has fewer elastic modes");
     for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
       if (modes.list[i].kind == STRUT_MODE_ELASTIC)
         strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
@@ -318,7 +318,7 @@ static void put_softest(strut_compare_work *work, const strut_model *model) {
     if (c->softest[d] >= 0)
       strut_compare_put(work, at, c->stiffness[c->softest[d]][d]);
     else
-      strut_compare_leave(work, at, at, "no node can move that way");
+      strut_compare_leave(work, at, at, "no node can move in that direction");
   }
 }
 
@@ -333,7 +333,7 @@ static strut_status measure(strut_compare_work *work, const strut_model *model,
   if (!factorise(s)) {
     c->stiffness = NULL;
     strut_compare_leave(work, STRUT_COMPARE_STIFFNESS_X, STRUT_COMPARE_STIFFNESS_Y,
-                        "some motion meets no stiffness");
+                        "a motion has no stiffness");
     return STRUT_OK;
   }
   for (size_t i = 0; i < nodes; i++)

@@ -180,7 +180,7 @@ static double regularisation_speed(const tradeoff_study *s, const strut_friction
 
 static void describe(const tradeoff_study *s, kind what, strut_model_variant *f) {
   const strut_scene *scene = &s->setups[0]->scene;
-  if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
+  if (what == OWN) snprintf(f->name, sizeof f->name, "unchanged model");
   if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
   if (what == MASS)
     snprintf(f->name, sizeof f->name, "%s masses",
@@ -196,9 +196,9 @@ static void describe(const tradeoff_study *s, kind what, strut_model_variant *f)
   if (what != GROUND) return;
   bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
   snprintf(f->name, sizeof f->name, "%s",
-           printed ? "Hunt-Crossley ground" : "printed ground damping");
+           printed ? "Hunt-Crossley ground" : "approach-only ground damping");
   snprintf(f->remark, sizeof f->remark,
-           "damps as the scene's law does at the depth at which the ground carries the weight, %s",
+           "damped as by the scene's law at the depth at which the ground carries the weight, %s",
            strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
 }
 
