@@ -117,7 +117,7 @@ static strut_status find_and_report(const strut_arguments *arguments, const stru
   } else {
     status = report_equilibria(arguments, &all, model);
     if (!status && plot->path && all.count > 0) {
-      status = strut_equilibria_figure(plot->path, plot->width, model, &all, &error);
+      status = strut_equilibria_figure(plot, model, &all, &error);
       if (status) strut_print_error(&error);
     }
     if (!status && all.count == 0) {

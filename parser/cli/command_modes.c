@@ -45,7 +45,7 @@ static strut_status report_modes(const strut_arguments *arguments, const strut_p
       strut_print_report(arguments, arguments->json ? strut_modes_json(model, modes)
                                                     : strut_modes_table(model, modes));
   if (status != STRUT_OK || !plot->path) return status;
-  status = strut_modes_figure(plot->path, plot->width, model, modes, panels, &error);
+  status = strut_modes_figure(plot, model, modes, panels, &error);
   return strut_print_failure(status, &error);
 }
 

@@ -240,6 +240,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
+    STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -264,7 +265,7 @@ static strut_status report_path(const strut_arguments *arguments, const strut_pl
                                  : strut_path_table(path, model->scene);
     status = strut_print_report(arguments, text);
     if (status != STRUT_OK || !plot->path) return status;
-    status = strut_path_figure(plot->path, plot->width, model, path, &error);
+    status = strut_path_figure(plot, model, path, &error);
   }
   return strut_print_failure(status, &error);
 }

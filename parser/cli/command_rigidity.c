@@ -43,8 +43,7 @@ static strut_status analyse_rigidity(const strut_arguments *arguments, const str
   if (status == STRUT_OK) status = strut_rigidity_find(model, shape.q, &rigidity, error);
   if (status == STRUT_OK) status = report_rigidity(arguments, model, &shape, &rigidity, error);
   if (status == STRUT_OK && plot->path)
-    status = strut_rigidity_figure(plot->path, plot->width, model, shape.q, shape.name, &rigidity,
-                                   error);
+    status = strut_rigidity_figure(plot, model, shape.q, shape.name, &rigidity, error);
   strut_rigidity_free(&rigidity);
   strut_arena_free(&arena);
   return status;

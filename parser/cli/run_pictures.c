@@ -137,21 +137,12 @@ static strut_status read_times(const strut_command *command, const strut_argumen
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *p) {
   int view = STRUT_RUN_OVERVIEW;
-  const char *draw = strut_option_text(arguments, STRUT_OPTION_DRAW);
   strut_status status = strut_plot_read(command, arguments, 0, &p->plot);
   if (status == STRUT_OK)
     status = strut_option_word(command, arguments, STRUT_OPTION_DRAW, views, &view);
-  if (status == STRUT_OK && draw && !p->plot.path) {
-    fprintf(stderr, "strut %s: --draw needs --plot FILE\n", command->name);
-    status = STRUT_USAGE;
-  }
   p->figure.view = (strut_run_view)view;
   p->figure.width = p->plot.width;
-  p->figure.title = strut_option_text(arguments, STRUT_OPTION_TITLE);
-  if (status == STRUT_OK && p->figure.title && !p->plot.path) {
-    fprintf(stderr, "strut %s: --title needs --plot FILE\n", command->name);
-    status = STRUT_USAGE;
-  }
+  p->figure.title = p->plot.title;
   if (status == STRUT_OK) status = read_scale(command, arguments, p);
   if (status == STRUT_OK) status = read_times(command, arguments, p);
   p->quiet = arguments->quiet;

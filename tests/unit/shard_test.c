@@ -205,7 +205,7 @@ static void test_what_does_not_belong_together(void **unused) {
   assert_int_equal(link(scratch_path("d/shards/shard-0000-of-0002.slots"),
                         scratch_path("d/shards/shard-0001-of-0002.slots")),
                    0);
-  expect_merge(STRUT_USAGE, "is for other points than its name says");
+  expect_merge(STRUT_USAGE, "holds other points than its name says");
   scratch_remove();
   scratch_make();
   run_shard(study, (strut_shard){0, 0}, 100);

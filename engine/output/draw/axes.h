@@ -15,6 +15,13 @@ typedef struct strut_axis {
   double low, high; /* the range; both NAN: from the data, with a little room */
 } strut_axis;
 
+/** A label and a range that replace those of an axis. Zero-initialised: none. */
+typedef struct strut_axis_choice {
+  const char *label; /* replaces the name; the unit still follows; NULL: the name stays */
+  bool limited;      /* the axis goes from low to high, in its unit */
+  double low, high;
+} strut_axis_choice;
+
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
   strut_axis x, y;  /* ranges settled */
@@ -37,6 +44,8 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
  * axis, 0 to 1 where nothing was included; widened by `room` of its width on either side.
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
+/** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
+STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
 /**
  * Lays out a frame for settled axes in `box`, leaving room for ticks, labels, a second y axis on
  * the right (NULL: none) and a title (NULL: none); panels side by side line up when their boxes do.

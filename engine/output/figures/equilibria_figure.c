@@ -152,6 +152,7 @@ enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
 /* Which equilibria are drawn, and how large. */
 typedef struct plan {
+  const char *title;
   const strut_model *model;
   const strut_equilibria *all;
   size_t *standing, standing_count; /* stable on the ground, by energy */
@@ -367,7 +368,7 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
            p->standing_count == 1 ? "um" : "a",
            p->model->scene->ground.present ? " on the ground" : "",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
-  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
+  strut_draw_heading(canvas, EDGE, p->title, text);
   y = draw_cards(p, canvas, y, &good);
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
@@ -389,16 +390,19 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   return STRUT_OK;
 }
 
-strut_status strut_equilibria_figure(const char *path, double width, const strut_model *model,
+strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                      const strut_equilibria *equilibria, strut_error *error) {
-  plan p = {.model = model, .all = equilibria, .width = width};
+  plan p = {.model = model,
+            .all = equilibria,
+            .width = plot->width,
+            .title = strut_plot_title(plot, model->scene->name)};
   strut_canvas *canvas = NULL;
   strut_status status = choose_equilibria(&p)
                             ? STRUT_OK
                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
   if (status == STRUT_OK) {
     lay_out_cards(&p);
-    status = strut_canvas_open(path, width, figure_height(&p), model->scene->name, &canvas, error);
+    status = strut_canvas_open(plot->path, plot->width, figure_height(&p), p.title, &canvas, error);
   }
   if (status == STRUT_OK) {
     status = draw_figure(&p, canvas);

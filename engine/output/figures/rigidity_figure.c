@@ -16,6 +16,7 @@ enum { ROWS = 4, COLUMNS = 3 };
 
 /* What the panels show, in this order. */
 typedef struct plan {
+  const char *title;
   const strut_model *model;
   const double *q;
   const strut_rigidity *rigidity;
@@ -168,7 +169,7 @@ static void draw_title(const plan *p, strut_canvas *canvas, const char *at) {
                       (int)r->mechanisms.count, r->mechanisms.count == 1 ? "" : "s");
   if (left_out > 0)
     snprintf(text + used, sizeof text - (size_t)used, "; %d not drawn", (int)left_out);
-  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
+  strut_draw_heading(canvas, EDGE, p->title, text);
 }
 
 static void draw_figure(const plan *p, strut_canvas *canvas, const char *at) {
@@ -200,10 +201,14 @@ static void draw_figure(const plan *p, strut_canvas *canvas, const char *at) {
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
 }
 
-strut_status strut_rigidity_figure(const char *path, double width, const strut_model *model,
+strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
                                    const double *q, const char *at, const strut_rigidity *rigidity,
                                    strut_error *error) {
-  plan p = {.model = model, .q = q, .rigidity = rigidity, .width = width};
+  plan p = {.model = model,
+            .q = q,
+            .rigidity = rigidity,
+            .width = plot->width,
+            .title = strut_plot_title(plot, model->scene->name)};
   strut_arena arena = {0};
   strut_canvas *canvas = NULL;
   p.moved = strut_arena_allocate(&arena, (size_t)model->length, sizeof *p.moved);
@@ -212,7 +217,7 @@ strut_status strut_rigidity_figure(const char *path, double width, const strut_m
   if (status == STRUT_OK) {
     lay_out_panels(&p);
     double height = 2 * EDGE + TITLE + (double)p.rows * p.cell[1] + SCALE;
-    status = strut_canvas_open(path, width, height, model->scene->name, &canvas, error);
+    status = strut_canvas_open(plot->path, plot->width, height, p.title, &canvas, error);
   }
   if (status == STRUT_OK) {
     draw_figure(&p, canvas, at);

@@ -345,7 +345,7 @@ static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_i
   if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
   if (has_visible_paths(run)) {
     double span = strut_run_time_from(run, first_of_paths(run));
-    snprintf(texts[count], 120, "node trajectories, last %s, dark to bright",
+    snprintf(texts[count], 120, "trajectories, last %s, dark to bright",
              strut_drawn_quantity(span, 3, "s").text);
     items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
     count++;

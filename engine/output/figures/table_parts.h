@@ -29,7 +29,7 @@ void strut_table_panel_title(const strut_table *table, int column, const char *n
                              char title[300]);
 
 /** The axis for a column named `name` with that unit; its range is NAN where it is not limited. */
-strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
+strut_axis strut_table_axis_of(const strut_axis_choice *wanted, const char *name, const char *unit,
                                bool logarithmic);
 
 /** A page of panels of one size, below a title and `head` [pt] for a legend. */
