@@ -19,7 +19,7 @@
 /** Most points of a study, and most values of one list. */
 #define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
 
-/** How an axis gives a parameter its values. */
+/** Form of the values of an axis. */
 typedef enum strut_range_kind {
   STRUT_RANGE_LIST, /* number, or word where the parameter is a text */
   STRUT_RANGE_EVEN, /* count values from `from` to `to`, both among them */

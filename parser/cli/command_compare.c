@@ -47,7 +47,7 @@ static bool is_taken(const compared_models *compared, size_t count, const char *
   return false;
 }
 
-/* The label with what --set behind the model says: "crawler friction=0.2". */
+/* The label with the values of --set behind the model: "crawler friction=0.2". */
 static const char *add_own_settings(const strut_arguments *arguments, compared_models *compared,
                                     size_t number, const char *label) {
   for (size_t i = 0; i < arguments->override_count && label; i++)
@@ -160,7 +160,7 @@ static strut_status open_one(const strut_arguments *arguments, compared_models *
   return status;
 }
 
-/* ---- all of them ---- */
+/* ---- all models ---- */
 
 /* Parameters of all models, concatenated: candidates for suggestions. */
 static const char *parameter_at(const void *context, size_t i) {

@@ -56,7 +56,7 @@ static int find_column(const strut_table *table, const char *option, const char 
   return STRUT_NO_COLUMN;
 }
 
-/* An option that names a column: false with a message where there is none of that name. */
+/* Reads an option that names a column: false with a message if the table has no such column. */
 static bool read_column(const strut_arguments *arguments, const strut_table *table,
                         strut_option_id id, const char *option, int *column) {
   const char *text = strut_option_text(arguments, id);
@@ -187,7 +187,7 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
   return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-/* Kinds of diagrams, and the options that only some of them have. */
+/* Kinds of diagrams, and the options that belong to some of them only. */
 static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
                                      const strut_table *table, strut_error *error) = {

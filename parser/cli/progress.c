@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* TIOCGWINSZ is not in POSIX 2008; without it COLUMNS tells. */
+/* TIOCGWINSZ is not in POSIX 2008; without it, COLUMNS gives the width. */
 #define _DEFAULT_SOURCE 1
 #include "parser/cli/progress.h"
 

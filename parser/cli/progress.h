@@ -9,9 +9,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Whether the user's locale writes UTF-8. */
+/** True if the user's locale writes UTF-8. */
 bool strut_terminal_unicode(void);
-/** Columns of the terminal on that descriptor, else what COLUMNS says, else `usual`. */
+/** Columns of the terminal on that descriptor, else the value of COLUMNS, else `usual`. */
 int strut_terminal_columns(int descriptor, int usual);
 
 typedef struct strut_progress {

@@ -97,7 +97,7 @@ strut_status strut_run_film_make(strut_film *film, const strut_model *model,
 
 static const char *const views[] = {"overview", "period", "snapshots", "curves", NULL};
 
-/* An option that goes with one view only. */
+/* Refuses an option that belongs to another view. */
 static strut_status belongs(const strut_command *command, const strut_run_pictures *p,
                             const char *text, const char *option, strut_run_view view) {
   if (!text || (p->plot.path && p->figure.view == view)) return STRUT_OK;

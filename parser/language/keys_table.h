@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The table of the language: one row for each key. keys.h says what is made of it.
+ * The table of the language, one row per key; keys.h lists what is generated from it.
  *
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *

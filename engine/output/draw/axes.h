@@ -58,7 +58,7 @@ STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut
 STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
 /** The y axis with its grid only, for diagrams whose x axis has no numbers. */
 STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
-/** Where a pair of values is on the page, y on the left axis. */
+/** Maps a pair of values to the page, y on the left axis. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
 /** The same axes with the right one as their y, to place what belongs to it. */
 STRUT_API strut_axes strut_axes_right(const strut_axes *axes);
@@ -86,7 +86,7 @@ typedef struct strut_tick_set {
   char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" for no text */
   char label[200]; /* "velocity in mm/s", with an offset where one was taken */
 } strut_tick_set;
-/** Fills `set` for an axis that has room for about `wanted` of them. */
+/** Fills `set` with about `wanted` ticks. */
 STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 
 /** A colour bar beside a drawing, with name, ticks and unit. */

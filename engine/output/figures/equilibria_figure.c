@@ -19,7 +19,7 @@ static const double *drawn_shape(const strut_equilibria *all, size_t i) {
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
 }
 
-/* Its energy there [J]. */
+/* Energy of the equilibrium at rest [J]. */
 static double drawn_energy(const strut_equilibria *all, size_t i) {
   const strut_equilibrium *e = &all->list[i];
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
@@ -150,7 +150,7 @@ static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110,
                     LADDER = 150;
 enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
-/* Which equilibria are drawn, and how large. */
+/* The equilibria that are drawn, and the sizes of their cards. */
 typedef struct plan {
   const char *title;
   const strut_model *model;

@@ -171,7 +171,7 @@ static void write_title(const strut_mode *mode, size_t number, char title[TITLE]
   strut_c_locale_leave(locale);
 }
 
-/* Which nodes move. Colours show the strained members. */
+/* Names the moving nodes. Colours show the strained members. */
 static void describe_mode(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
   const char *end = strchr(mode->description, ';');
   char growth[TITLE / 2] = "";
@@ -225,7 +225,7 @@ static size_t draw_arrows(figure *f, const strut_window *window) {
   return count;
 }
 
-/* Whether names cover little of the drawing; the texts name the moving nodes anyway. */
+/* True if names cover little of the drawing; the texts name the moving nodes anyway. */
 static bool names_fit(figure *f, strut_box box) {
   double covered = 0.0;
   if (f->model->node_count > NAMED) return false;

@@ -52,7 +52,7 @@ typedef struct path_picture {
   double (*others)[2]; /* (other_room, 2) lines that names keep off [pt] */
 } path_picture;
 
-/* Whether the path scales this load. */
+/* True if the path scales this load. */
 static bool load_grows(const strut_path *path, const strut_load *load) {
   if (path->over != STRUT_PATH_OVER_LOAD) return false;
   if (path->load) return strcmp(load->name, path->load) == 0;

@@ -14,7 +14,7 @@ static const double EDGE = 5, TITLE = 28, LINE = 12, MARGIN = 18, NARROW = 110, 
 static const double SWING = 0.12; /* the largest motion as drawn, of the larger extent */
 enum { ROWS = 4, COLUMNS = 3 };
 
-/* What the panels show, in this order. */
+/* Contents of the panels, in this order. */
 typedef struct plan {
   const char *title;
   const strut_model *model;
@@ -29,7 +29,7 @@ typedef struct plan {
 
 static int32_t panels_of(const plan *p) { return p->forces + p->states + p->motions; }
 
-/* Whether members pull or push more than the rounding of their lengths does. */
+/* True if member forces exceed the effect of rounding in their lengths. */
 static bool forces_told(const plan *p) {
   double most = 0, scale = 0;
   for (size_t j = 0; j < p->model->scene->member_count; j++) {

@@ -18,7 +18,7 @@ static const double CLOSED = 1e-3;   /* of the model's size: closer to the groun
 static const double ROUNDING = 1e-9; /* of an energy */
 static const double ROOM = 0.06;     /* above and below the curves */
 
-/* What a panel draws, and its curves; values are (frames) each. */
+/* A panel and its curves of (frames) values each. */
 typedef struct panel {
   const char *name, *unit;
   double least; /* range at least */
@@ -57,7 +57,7 @@ static double value_at(const strut_run_scene *run, int kind, size_t item, size_t
   }
 }
 
-/* Whether a contact ever touches the ground; heights of others are omitted. */
+/* True if a contact ever touches the ground; heights of others are omitted. */
 static bool comes_down(const strut_run_scene *run, size_t contact) {
   for (size_t f = 0; f < run->frames; f++)
     if (value_at(run, STRUT_RUN_HEIGHTS, contact, f) < CLOSED * run->model->size) return true;
@@ -326,7 +326,7 @@ static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
   return count;
 }
 
-/* Whether any path is long enough to be visible. */
+/* True if any path is long enough to be visible. */
 static bool has_visible_paths(const strut_run_scene *run) {
   size_t last = run->frames - 1, nodes = run->motion->node_count;
   strut_bounds b = bounds_of(run);

@@ -13,7 +13,7 @@
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 
-/** Those stable on the ground as cards, an energy ladder with barriers, and the others small. */
+/** Draws the equilibria that stand as cards, their energies with barriers, and the others small. */
 STRUT_API strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                                const strut_equilibria *equilibria,
                                                strut_error *error);

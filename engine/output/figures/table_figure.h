@@ -13,7 +13,7 @@
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 
-/** Which rows are drawn, and whether as differences. */
+/** Selection of rows, and whether their differences are drawn. */
 typedef struct strut_table_choice {
   int only; /* rows whose column has the text `only_value` */
   const char *only_value;

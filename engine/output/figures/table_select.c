@@ -114,7 +114,7 @@ typedef struct partner {
   double weight;    /* of `next` */
 } partner;
 
-/* Whether all keys but the last are equal. */
+/* True if all keys but the last are equal. */
 static bool alongside(const keyed *a, const keyed *b) {
   strut_table_pairing but_last = *a->pairing;
   but_last.key_count--;

@@ -144,7 +144,7 @@ static const char *direction_text(const double d[2]) {
   return "";
 }
 
-/* Where the cosine with the leading motion lies: 1 with it, -1 against it, 0 across. */
+/* Direction relative to the leading motion: 1 along it, -1 against it, 0 across. */
 static int side_of(const double lead[2], const double d[2]) {
   double cosine = (lead[0] * d[0] + lead[1] * d[1]) / (hypot(lead[0], lead[1]) * hypot(d[0], d[1]));
   return cosine > 0.5 ? 1 : cosine < -0.5 ? -1 : 0;
@@ -174,8 +174,7 @@ static void describe_nodes(const strut_vibration *v, const double *x, strut_mode
   int count = name_side(v, x, leader, lead, 1, "", mode);
   append_text(mode, count == 1 ? " moves%s" : " move%s", direction_text(lead));
   name_side(v, x, leader, lead, -1, " against ", mode);
-  if (name_side(v, x, leader, lead, 0, ", ", mode) > 0)
-    append_text(mode, " perpendicular to %s", count == 1 ? "it" : "them");
+  if (name_side(v, x, leader, lead, 0, ", ", mode) > 0) append_text(mode, " sideways");
 }
 
 /* Energies of half a stiffness each: stretch of the members, closed contacts. */

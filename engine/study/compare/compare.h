@@ -88,7 +88,7 @@ typedef struct strut_compare_barrier {
   double height; /* [J] above `from` */
 } strut_compare_barrier;
 
-/** What is compared. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
+/** A model to compare. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
 typedef struct strut_compare_input {
   const char *label;                   /* unique */
   strut_setup *setup;                  /* its start is resolved here, and its accuracy is set */

@@ -21,7 +21,7 @@ typedef struct sheet {
   const strut_compare_column *columns; /* (count) */
   size_t count, across, rows;
   double width, cell, height; /* of a panel, its texts included [pt] */
-  bool alike;                 /* one scale for all */
+  bool alike;                 /* the same scale for all */
   double size[2];             /* the largest extents [m] */
   strut_canvas *canvas;
 } sheet;

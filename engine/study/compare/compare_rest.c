@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a structure is at rest: rigidity, forces, states, frequencies. */
+/* Properties of a structure at rest: rigidity, forces, states, frequencies. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -215,7 +215,7 @@ static void add_sparse(stiff *s, const strut_sparse *a) {
     }
 }
 
-/* What linear_matrices adds into the ground, along it too. */
+/* Adds to K a contact stiffness along the ground, equal to that normal to it. */
 static void hold_contacts(stiff *s, const strut_model *model, const double *q,
                           const int32_t *row_of) {
   const strut_contact_table *c = &model->contacts;
@@ -244,7 +244,7 @@ static double form(const stiff *s, const double *x, const double *y) {
   return sum;
 }
 
-/* Of the rigid motions those that K does not resist, as combinations; and makes K resist them. */
+/* Finds the rigid motions without stiffness in K, as combinations, and adds stiffness against them. */
 static void lift_rigid(stiff *s) {
   double a[3][3] = {{0}}, value[3], vector[3][3], largest = largest_diagonal(s);
   int32_t count = s->rigid_count, kept = 0;

@@ -120,7 +120,7 @@ static bool has_member_mass(const strut_scene *scene) {
   return false;
 }
 
-/* Are there bars, none of them driven, that could be rigid? */
+/* True if there are bars and none is driven, so that they could be rigid. */
 static bool has_still_bars(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
@@ -141,7 +141,7 @@ static bool has_any_friction(const strut_scene *scene) {
   return false;
 }
 
-/* Depth of a contact at rest if all of them carried the weight alike [m]; 0 without gravity. */
+/* Depth of a contact at rest if all contacts shared the weight equally [m]; 0 without gravity. */
 static double depth_at_rest(const strut_scene *scene, const strut_contact *contact) {
   double mass = 0, gravity = hypot(scene->gravity[0], scene->gravity[1]);
   for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
