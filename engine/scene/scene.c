@@ -37,7 +37,7 @@ static double drawn_length(const strut_scene *scene, const strut_member *member)
   return strut_distance(a, b);
 }
 
-/* Rest length that gives `force` in the drawn shape; NAN where there is none. */
+/* Rest length that gives `force` in the drawn shape; NAN if none does. */
 static double length_under(const strut_member *member, double drawn, double force) {
   if (force == 0.0) return drawn;
   if (member->axial_stiffness > 0.0) {
