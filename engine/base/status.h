@@ -32,7 +32,7 @@ typedef enum strut_status {
       STRUT_STATUS_COUNT
 } strut_status;
 
-/** What went wrong, in one sentence. A zeroed struct means "nothing". */
+/** One sentence that describes an error. Zeroed: no error. */
 typedef struct strut_error {
   strut_status status;
   char message[600];

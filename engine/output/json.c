@@ -127,7 +127,7 @@ static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
-/* Only what there is: a scene that measures nothing else has no such key. */
+/* The key exists only if the scene measures quantities. */
 static void add_measured(strut_json *json, cJSON *to, const strut_summary *s) {
   if (!s->measured_count) return;
   cJSON *measured = strut_json_object(json, to, "measured");

@@ -14,7 +14,7 @@
 
 /* The file that marks a folder: its first line names the owner, its second the machine. */
 #define MARK ".strut-stage"
-#define MARK_BEGIN "strut gathers results here; this may be removed when it does not run any more\n"
+#define MARK_BEGIN "strut collects results here; remove this only when no strut is running\n"
 
 enum { MOST_NAMES = 1000, NUMBER_ROOM = 48, HOST_MOST = 64 };
 

@@ -89,9 +89,8 @@ static void add_measured(rows *r) {
     snprintf(value, sizeof value, "%s%s%s%s", strut_quantity_of_any(number_of, DIGITS, unit).text,
              isfinite(spread) ? ", spread " : "",
              isfinite(spread) ? strut_quantity_of_any(spread, DIGITS, unit).text : "",
-             cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero"))
-                 ? ", zero but for rounding"
-                 : "");
+             cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero")) ? ", zero up to rounding"
+                                                                          : "");
     add_row(r, item->string, value);
   }
 }

@@ -82,7 +82,7 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   }
   strut_buffer_add(table, ", from %s%s\n", in(s->window_start, "s").text,
                    s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
-                       ? ", zero but for rounding"
+                       ? ", zero up to rounding"
                        : "");
   strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
                    s->steps);
@@ -124,7 +124,7 @@ static void add_measured(strut_buffer *table, const strut_summary *s) {
     if (isfinite(m->spread))
       strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
     if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s));
-    if (m->zero) strut_buffer_add(table, "  zero but for rounding");
+    if (m->zero) strut_buffer_add(table, "  zero up to rounding");
     if (isfinite(m->expected))
       strut_buffer_add(table, "  %s within %s",
                        m->kept ? "known" : "NOT as accurate as requested, but",

@@ -292,7 +292,7 @@ static strut_status read_channel(reader *r, int i) {
   bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
   *trajectory_array_of(r->t, channels[i].id) = values;
   if (dataset >= 0) H5Dclose(dataset);
-  if (!fits) return trouble(r, "it is of another structure than the scene beside it");
+  if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
   return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
 }
 
@@ -303,7 +303,7 @@ static strut_status read_time(reader *r, size_t room) {
       H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
   if (dataset < 0 || !shape_of(dataset, 1, shape)) {
     if (dataset >= 0) H5Dclose(dataset);
-    return trouble(r, "no trajectory of strut");
+    return trouble(r, "not a trajectory of strut");
   }
   strut_trajectory *t = r->t;
   size_t frame = 1;
@@ -346,7 +346,7 @@ static strut_status read_file(reader *r, size_t room) {
   if (!same_names(r, "node", t->node_count, node_name) ||
       !same_names(r, "member", t->member_count, member_name) ||
       !same_names(r, "contact_node", r->scene->contact_count, contact_name))
-    return trouble(r, "it is of another structure than the scene beside it");
+    return trouble(r, "it belongs to another structure than the scene beside it");
   if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);
   t->status = run_status(r);
   strut_status status = read_time(r, room);

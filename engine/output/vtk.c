@@ -90,7 +90,7 @@ static void begin_names(strut_buffer *buffer, const char *name, size_t count) {
                    name, count);
 }
 
-/* One text of an array of them: its bytes as numbers up to the 0 that ends it. */
+/* Writes one text of a string array: its bytes as numbers, ended by 0. */
 static void add_name(strut_buffer *buffer, const char *text) {
   for (; *text; text++) strut_buffer_add(buffer, "%d ", (unsigned char)*text);
   strut_buffer_add(buffer, "0 ");

@@ -31,7 +31,7 @@ static const struct {
     {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
 };
 
-/* Names of the items of a channel, in the arena; *count of them. */
+/* The *count names of the items of a channel, in the arena. */
 static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
                                      size_t *count) {
   const strut_scene *scene = model->scene;

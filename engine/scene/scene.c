@@ -57,7 +57,7 @@ double strut_hinge_rest(const strut_scene *scene, size_t index) {
   return isnan(rest) ? strut_hinge_drawn(scene, index) : rest;
 }
 
-/* Rest length that gives `force` in the drawn shape; NAN where there is none. */
+/* Rest length that gives `force` in the drawn shape; NAN if none does. */
 static double length_under(const strut_member *member, double drawn, double force) {
   if (force == 0.0) return drawn;
   if (member->axial_stiffness > 0.0) {

@@ -119,7 +119,7 @@ double strut_signal_next_break(const strut_signal *signals, int32_t index, doubl
   return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
 }
 
-/* Longest period among a signal's repeating parts, or among its pulses; 0 where there is none. */
+/* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */
 static double longest_period(const strut_signal *signals, int32_t index, bool pulses) {
   const strut_signal *s = &signals[index];
   bool repeats = s->kind == STRUT_SINE || s->kind == STRUT_SQUARE;

@@ -93,7 +93,7 @@ static strut_status analyse_equilibria(strut_analysis *a, strut_error *error) {
     status = strut_report(a->arguments, a->names, strut_equilibria_json(&all, a->model), NULL,
                           strut_equilibria_table(&all, a->model, a->arguments->all), error);
   if (!status && a->plot.path && all.count > 0)
-    status = strut_equilibria_figure(a->plot.path, a->plot.width, a->model, &all, error);
+    status = strut_equilibria_figure(&a->plot, a->model, &all, error);
   if (!status && all.count == 0) status = strut_fail(error, STRUT_NOT_SETTLED, "%s", all.remark);
   strut_equilibria_free(&all);
   return status;

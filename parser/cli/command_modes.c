@@ -35,8 +35,7 @@ static strut_status analyse_modes(strut_analysis *a, strut_error *error) {
     status = strut_report(a->arguments, a->names, strut_modes_json(a->model, &modes),
                           strut_modes_csv(&modes), strut_modes_table(a->model, &modes), error);
   if (status == STRUT_OK && a->plot.path)
-    status =
-        strut_modes_figure(a->plot.path, a->plot.width, a->model, &modes, (size_t)count, error);
+    status = strut_modes_figure(&a->plot, a->model, &modes, (size_t)count, error);
   strut_modes_free(&modes);
   return status;
 }

@@ -238,6 +238,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
+    STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
@@ -248,8 +249,7 @@ static strut_status report_path(const strut_arguments *arguments, const strut_pl
   strut_status status = strut_report(arguments, file_names, strut_path_json(path, model->scene),
                                      strut_path_csv(path, model->scene),
                                      strut_path_table(path, model->scene), &error);
-  if (status == STRUT_OK && plot->path)
-    status = strut_path_figure(plot->path, plot->width, model, path, &error);
+  if (status == STRUT_OK && plot->path) status = strut_path_figure(plot, model, path, &error);
   if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   return status;
 }

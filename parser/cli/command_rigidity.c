@@ -28,8 +28,7 @@ static strut_status analyse_rigidity(strut_analysis *a, strut_error *error) {
     status = strut_report(a->arguments, a->names, strut_rigidity_json(&rigidity, model, shape.name),
                           NULL, strut_rigidity_table(&rigidity, model, shape.name), error);
   if (status == STRUT_OK && a->plot.path)
-    status = strut_rigidity_figure(a->plot.path, a->plot.width, model, shape.q, shape.name,
-                                   &rigidity, error);
+    status = strut_rigidity_figure(&a->plot, model, shape.q, shape.name, &rigidity, error);
   strut_rigidity_free(&rigidity);
   strut_arena_free(&arena);
   return status;

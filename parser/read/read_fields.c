@@ -35,7 +35,7 @@ static const char *name_of_sections(const void *context, size_t i) {
   return key < 0 ? NULL : strut_key_at(key)->name;
 }
 
-/* What was probably meant by a key that no section has; NULL: nothing is near. */
+/* Suggests a known key for an unknown one; NULL if none is near. */
 static const char *nearest_key(strut_reader *reader, const char *text,
                                const sections_context *context) {
   for (size_t i = 0; i < context->count; i++) {

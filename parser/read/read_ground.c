@@ -100,7 +100,7 @@ static bool complete_friction(strut_reader *reader, friction_layers *f,
   return complete;
 }
 
-/* What all contacts of the ground start from. */
+/* The defaults of all contacts: those of the ground. */
 typedef struct ground_defaults {
   strut_contact contact;
   friction_layers friction;

@@ -92,8 +92,8 @@ static strut_status find_sides(const strut_table *table, const strut_table_pairi
   if (status) return status;
   if (s->names.count < 2)
     return strut_fail(error, STRUT_USAGE,
-                      "column '%.60s' has one text, '%.60s': there is nothing to compare", name,
-                      s->names.name[0]);
+                      "column '%.60s' has only the text '%.60s', so there is nothing to compare",
+                      name, s->names.name[0]);
   size_t *rows = rows_with(table, p->of, s->names.name[0], arena, &s->first_count);
   s->second = rows_with(table, p->of, s->names.name[1], arena, &s->second_count);
   s->first = strut_arena_allocate(arena, s->first_count, sizeof *s->first);
@@ -110,7 +110,7 @@ typedef struct partner {
   double weight;    /* of `next` */
 } partner;
 
-/* Whether all keys but the last are equal. */
+/* True if all keys but the last are equal. */
 static bool alongside(const keyed *a, const keyed *b) {
   strut_table_pairing but_last = *a->pairing;
   but_last.key_count--;

@@ -49,7 +49,7 @@ strut_status strut_encoder_format(const char *path, strut_film_format *format, s
     return STRUT_OK;
   }
   return strut_fail(error, STRUT_USAGE,
-                    "'%s' is no name of a film: it ends with .mp4, .webm or .gif", path);
+                    "'%s' is not the name of a film: it must end in .mp4, .webm or .gif", path);
 }
 
 static strut_status not_found(strut_error *error) {

@@ -39,7 +39,7 @@ strut_status strut_film_check_length(const strut_film *film, double motion, stru
   double lasts = motion / film->speed;
   if (!film->path || lasts <= STRUT_FILM_LONGEST) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
-                    "the film would last %.4g s, and more than %d s nobody watches: give a higher "
+                    "the film would last %.4g s, at most %d s are allowed: give a higher "
                     "--speed, or record less of the run (output: last)",
                     lasts, STRUT_FILM_LONGEST);
 }
@@ -51,7 +51,7 @@ static strut_status count_frames(making *m, strut_film_format format, strut_erro
   bool gif = format == STRUT_FILM_GIF;
   m->shown = strut_frames_to_show(m->model, m->motion);
   if (m->shown == 0)
-    return strut_fail(error, STRUT_DIVERGED, "there is no motion to make a film of");
+    return strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");
   double usual = gif ? STRUT_FILM_GIF_FPS : STRUT_FILM_FPS;
   double lasts = time[m->shown - 1] - time[0];
   *made = (strut_film_made){.width = gif ? GIF_WIDTH : WIDTH,
@@ -125,7 +125,7 @@ static strut_status draw_frames(making *m, strut_canvas *canvas, strut_encoder *
   for (size_t i = 0; i < m->made->frames && status == STRUT_OK; i++) {
     size_t stride = 0;
     if (film->interrupt && *film->interrupt)
-      return strut_fail(error, STRUT_INTERRUPTED, "interrupted: there is no film");
+      return strut_fail(error, STRUT_INTERRUPTED, "interrupted; no film was written");
     strut_moment_at(&m->moment, m->motion, m->shown, frame_time(m, i));
     strut_view_frame_draw(&m->scenery, canvas, i, &m->moment);
     const unsigned char *pixels = strut_canvas_pixels(canvas, &stride);

@@ -187,7 +187,7 @@ static bool all_finite(const double *values, size_t count) {
   return true;
 }
 
-/* Whether every node is within reach of its start; `reach` in sizes. */
+/* True if every node is within `reach` model sizes of its start. */
 static bool is_within(const strut_model *model, const double *q, double reach) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (fabs(q[i] - model->start[i]) > reach * model->size) return false;

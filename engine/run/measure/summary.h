@@ -79,7 +79,7 @@ STRUT_API const char *strut_motion_name(strut_motion motion);
 enum { STRUT_MOST_MULTIPLIERS = 8 };
 typedef struct strut_steady_summary {
   strut_motion kind;
-  int32_t repeats; /* n of a period-n motion; 1: every drive period alike */
+  int32_t repeats; /* n of a period-n motion; 1: every drive period is the same */
   int64_t periods; /* drive periods until that was known */
   double interval; /* half-width of the confidence interval of the velocity [m/s] */
   double residual; /* change of the shape over one repetition, relative to the shape's motion */

@@ -331,7 +331,7 @@ static bool undo_drift(const strut_former *f, double *q) {
   return true;
 }
 
-/* Whichever node moved most between the start and q; how far. */
+/* The node that moved most between the start and q, and its distance. */
 static double farthest(const strut_scene *scene, const double *q, size_t *node) {
   double most = -1;
   for (size_t i = 0; i < scene->node_count; i++) {
@@ -439,7 +439,7 @@ static strut_status find(strut_former *f, strut_error *error) {
   return status == STRUT_OK ? add_run(f, error) : status;
 }
 
-/* How far every node was drawn from where it is now. */
+/* Distance of every node from its drawn position. */
 static double moved_from(const double *drawn, const strut_scene *scene) {
   double most = 0;
   for (size_t i = 0; i < scene->node_count; i++)

@@ -146,7 +146,7 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
 
 enum { MOST_ITERATIONS = 5 };
 
-/* Below the largest eigenvalue by this much there is nothing but zero. */
+/* Eigenvalues below the largest by this factor are zero. */
 static const double NOTHING = 1e-24;
 /* Eigenvalues are one where they differ by less than this, relative. */
 static const double CLUSTER = 1e-6;

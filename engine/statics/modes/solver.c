@@ -162,7 +162,7 @@ void strut_extended_solve(const strut_extended_factor *f, strut_dd *x) {
   for (int32_t i = 0; i < f->n; i++) x[f->pattern->order[i]] = y[i];
 }
 
-/* Of the largest eigenvalue: below this a shift may drown in a plain factor's rounding. */
+/* Relative to the largest eigenvalue: a smaller shift may drown in a plain factor's rounding. */
 static const double SAFE_SHIFT = 1e-10;
 static const double SAFE_PIVOT = 1e-9; /* relative: what is less may have the wrong sign */
 

@@ -149,7 +149,7 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
   return true;
 }
 
-/* Of a built-in parameter the rates never change: `rates` holds zeros elsewhere from the start. */
+/* The rates of a built-in parameter never change; the other entries of `rates` stay zero. */
 bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_path_terms *rates) {
   int32_t at = p->options->index;
   switch (p->options->over) {

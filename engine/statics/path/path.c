@@ -12,7 +12,7 @@
 
 enum { DEFAULT_STEPS = 400, NAMES = 400 };
 
-/* Of the rounding in forces: what a descent may leave, as the path is corrected further anyway. */
+/* Residual that a descent may leave, relative to the rounding in forces; the path is corrected later. */
 static const double NEARLY = 1e6;
 static const double ALIKE = 1e-12; /* forces of several loads that count as one number */
 
@@ -148,7 +148,7 @@ static strut_status make_model(path_start *b, strut_error *error) {
   return status ? status : strut_model_compile(&b->setup.scene, &b->model, error);
 }
 
-/* q goes downhill to an equilibrium, with `held` coordinates where they are. */
+/* Descends from q to an equilibrium, with the `held` coordinates fixed. */
 static strut_status descend_to_rest(const strut_model *model, const uint8_t *held, bool without,
                                     double *q, strut_error *error) {
   strut_potential *potential = NULL;

@@ -146,7 +146,7 @@ static void add_stiffness(strut_path_system *s, const int32_t *row, int count, d
         *gsl_matrix_ptr(s->hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
 }
 
-/* How a member's force on its second node changes with the parameter, its free ends held. */
+/* Derivative of a member's force on its second node with respect to the parameter, at fixed nodes. */
 static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
   const strut_path_member *m = &s->member[j];
   const uint32_t a = s->model->members.from[j], b = s->model->members.to[j];

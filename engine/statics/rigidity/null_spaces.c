@@ -67,7 +67,7 @@ static double *right_null(const tall *t, size_t rank, strut_arena *arena) {
   return basis;
 }
 
-/* What is orthogonal to the left singular vectors kept: the end of the Q of their QR. */
+/* Basis orthogonal to the left singular vectors kept: the last columns of the Q of their QR. */
 static double *left_null(const tall *t, size_t rank, strut_arena *scratch, strut_arena *arena) {
   size_t m = t->rows, count = m - rank;
   double *basis = strut_arena_allocate(arena, count * m + 1, sizeof *basis);

@@ -34,7 +34,7 @@ typedef struct search {
   strut_task task[STRUT_BATCH];
   size_t tasks;
   int64_t random, room; /* random starts made; how many points `hits` has room for */
-  int64_t *hits;        /* of them, on each point; of strut_allocate */
+  int64_t *hits;        /* (count) starts that ended at each point; of strut_allocate */
   int64_t climbs_left;
   double cost, spent, budget; /* of one Hessian, so far, and at most */
   size_t batch_size;          /* tasks before the work done is looked at again */

@@ -19,7 +19,7 @@ typedef struct judgement {
   strut_sparse *hessian; /* at the shape, without cables and contacts that rounding alone closes */
   double least;          /* [N] what they must pull or push by */
   double *motion;        /* (3, n) rigid-body motions without stiffness, orthonormal */
-  int32_t rigid;         /* how many of them there are */
+  int32_t rigid;         /* number of rigid-body motions */
   double *work;          /* (3 n) */
 } judgement;
 

@@ -224,7 +224,7 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
   }
 }
 
-/* How far two shapes are from each other after the best rigid motion (Procrustes in the plane). */
+/* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
 
 static void centre_of(const strut_model *model, const double *q, double centre[2]) {
   centre[0] = centre[1] = 0.0;

@@ -208,7 +208,7 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
   }
   if (!status && !b.rows)
     status = strut_fail(error, STRUT_USAGE,
-                        "figure '%.60s' of the study: no run recorded any of it", figure->name);
+                        "figure '%.60s' of the study: no run recorded any of this", figure->name);
   if (!status) status = finish(&b, error);
   for (size_t i = 0; i <= plan->axis_columns; i++) strut_release(b.texts[i]);
   for (size_t i = 0; i < plan->axis_columns; i++) strut_release(b.axes[i]);
@@ -318,6 +318,6 @@ strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *dire
   for (int64_t point = 0; point < plan->points && !status; point++)
     status = draw_point(plan, directory, figure, width, axis, point, &drawn, error);
   if (status || drawn) return status;
-  return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of it",
+  return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of this",
                     figure->name);
 }

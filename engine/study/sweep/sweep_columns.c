@@ -159,7 +159,8 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   *plan = (strut_sweep_plan){.study = study, .scenes = *scenes};
   plan->points = strut_grid_points(study);
   plan->axis_columns = strut_grid_columns(study);
-  if (plan->points < 0) return strut_fail(error, STRUT_USAGE, "a study has 1e9 points at most");
+  if (plan->points < 0)
+    return strut_fail(error, STRUT_USAGE, "a study may have at most 1e9 points");
   strut_setup setup;
   strut_study_value *values =
       strut_arena_allocate(&plan->arena, plan->axis_columns + 1, sizeof *values);

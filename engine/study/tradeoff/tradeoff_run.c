@@ -231,7 +231,7 @@ strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, trad
   for (size_t p = 0; p < result->point_count; p++) f->floor[p] = HUGE_VAL;
   if (result->measure == STRUT_TRADEOFF_ENERGY) {
     for (size_t p = 0; p < result->point_count; p++) f->floor[p] = 0;
-    snprintf(f->reference[0], sizeof f->reference[0], "none: a balance closes at 0");
+    snprintf(f->reference[0], sizeof f->reference[0], "none: an exact balance closes at 0");
     return STRUT_OK;
   }
   strut_status status = choose(s, r, 0, NULL);
