@@ -121,9 +121,9 @@ double strut_elements_energy(const strut_model *model, const double *rest, const
   return sum;
 }
 
-/* An element with its damper: what it exerts, the elastic part, and rates. */
+/* An element with its damper: what it exerts, the elastic part, and rates; excess as of its law. */
 typedef struct exertion {
-  double force, elastic, own_rate;
+  double force, elastic, own_rate, excess;
 } exertion;
 
 /* Its modes are those that a method with events has frozen, or those that hold here. */
@@ -134,13 +134,14 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
     int8_t mode = state->element_acts[i];
     bool acts = mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
-    if (!acts) return (exertion){0.0, e->carries * x > 0.0 ? r->force : 0.0, own_rate};
+    bool beyond = e->carries * x > 0.0;
+    if (!acts) return (exertion){0.0, beyond ? r->force : 0.0, own_rate, beyond ? r->excess : 0.0};
   }
-  return (exertion){force, r->force, own_rate};
+  return (exertion){force, r->force, own_rate, r->excess};
 }
 
 static inline void add_powers(strut_state *state, const exertion *x, double rest_rate) {
-  double drive = -x->force * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
+  double drive = (x->excess - x->force) * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
   state->power[STRUT_POWER_DRIVE] += drive;
   state->power[STRUT_POWER_MEMBERS] += lost;
   state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;

@@ -5,6 +5,9 @@
 #include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
 
+/* Methods with events number the pieces of a law by 16 bits. */
+enum { MOST_POINTS = 30000 };
+
 /* A law without a finding of its own, or what is wrong with it. */
 static const char *fault_of(const strut_law *law) {
   const double numbers[] = {law->knee, law->second_stiffness, law->gap, law->scale};
@@ -15,6 +18,7 @@ static const char *fault_of(const strut_law *law) {
   for (size_t i = 0; i < law->count; i++)
     if (!isfinite(law->force[i]) || (law->kind == STRUT_LAW_TABLE && !isfinite(law->x[i])))
       return "has a number that is not finite";
+  if (law->count > MOST_POINTS) return "has more than 30000 points";
   switch (law->kind) {
     case STRUT_LAW_BILINEAR: return law->knee > 0.0 ? NULL : "needs a knee above zero";
     case STRUT_LAW_PLAY: return law->gap > 0.0 ? NULL : "needs a gap above zero";

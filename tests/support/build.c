@@ -85,10 +85,31 @@ int32_t build_sine(strut_scene *scene, double amplitude, double frequency) {
 int32_t build_actuator(strut_scene *scene, int32_t member, int32_t signal) {
   size_t i = scene->actuator_count;
   scene->actuators = grown(scene, scene->actuators, i, sizeof *scene->actuators);
-  scene->actuators[i] =
-      (strut_actuator){.name = name(scene, "a", i), .member = member, .signal = signal};
+  scene->actuators[i] = (strut_actuator){
+      .name = name(scene, "a", i), .member = member, .hinge = -1, .signal = signal};
   scene->actuator_count++;
   return (int32_t)i;
+}
+
+int32_t build_hinge(strut_scene *scene, int32_t a, int32_t b, int32_t c, double stiffness,
+                    double damping) {
+  size_t i = scene->hinge_count;
+  scene->hinges = grown(scene, scene->hinges, i, sizeof *scene->hinges);
+  strut_hinge *hinge = &scene->hinges[i];
+  *hinge = strut_hinge_default();
+  hinge->name = name(scene, "h", i);
+  hinge->node[0] = a, hinge->node[1] = b, hinge->node[2] = c;
+  hinge->stiffness = stiffness, hinge->damping = damping;
+  scene->hinge_count++;
+  return (int32_t)i;
+}
+
+void build_guides(strut_scene *scene, int32_t member, const int32_t *guides, size_t count) {
+  int32_t *copy = strut_arena_allocate(&scene->arena, count, sizeof *copy);
+  assert_non_null(copy);
+  memcpy(copy, guides, count * sizeof *copy);
+  scene->members[member].guides = copy;
+  scene->members[member].guide_count = count;
 }
 
 int32_t build_load(strut_scene *scene, int32_t node, double x, double y, int32_t signal) {

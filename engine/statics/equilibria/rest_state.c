@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
 #include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
@@ -15,12 +16,17 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
+/* Of hinges: their moments over the first arm. */
 static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
-    sum += fabs(strut_member_elastic_force(t, j, &pose));
+  for (int32_t j = 0; j < t->count; j++)
+    sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    strut_element_pose pose;
+    if (model->elements.element[i].role != STRUT_ELEMENT_HINGE) continue;
+    strut_element_evaluate(model, i, t->rest, q, (double)NAN, &pose);
+    sum += fabs(pose.force) * sqrt(pose.b[0] * pose.b[0] + pose.b[1] * pose.b[1]);
   }
   return sum;
 }
