@@ -43,7 +43,7 @@ static void add_member(strut_vibration *v, int32_t j) {
   strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place - STRUT_MEMBER_ENTRIES, v->d);
 }
 
-/* Of elements in single precision of a double: their rounding is that of their stiffness. */
+/* Elements have strains and gradients in a double, which rounds their directions alone. */
 typedef struct element_sum {
   strut_vibration *vibration;
   strut_dd *force; /* NULL: stiffness and damping */
@@ -55,8 +55,18 @@ static void add_element(void *context, int32_t i, const strut_element_pose *pose
   const int32_t *place = v->shape->place + strut_places_of_elements(v->model);
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * e->nodes;
-  strut_element_stiffness(v->model, i, pose, v->rounded, k);
-  strut_element_scatter(v->model, i, k, place, v->sum);
+  memset(k, 0, sizeof k);
+  strut_element_bend(v->model, i, v->rounded, pose->force, k);
+  const int32_t *own = place + e->place;
+  const uint32_t *at = v->model->elements.at + e->first;
+  for (int32_t r = 0; r < n; r++) /* a sum of squares to all digits, so that soft motions stay soft */
+    for (int32_t c = 0; c <= r; c++, own++) {
+      if (*own < 0) continue;
+      bool both = r != c && at[r / 2] == at[c / 2] && r % 2 == c % 2; /* a node met twice */
+      strut_dd entry = dd_scale(dd_product(pose->b[r], pose->b[c]), pose->slope);
+      entry = dd_add(entry, dd_of(k[r * n + c]));
+      v->k[*own] = dd_add(v->k[*own], both ? dd_add(entry, entry) : entry);
+    }
   for (int32_t r = 0; r < n; r++)
     for (int32_t c = 0; c < n; c++) k[r * n + c] = e->damping * pose->b[r] * pose->b[c];
   strut_element_scatter(v->model, i, k, place, v->d);
@@ -74,13 +84,10 @@ static void add_element_force(void *context, int32_t i, const strut_element_pose
 
 static void add_elements(strut_vibration *v) {
   element_sum sum = {v, NULL};
-  size_t entries = (size_t)v->shape->pattern->start[v->n];
   if (!v->model->elements.count) return;
   for (int32_t i = 0; i < v->model->length; i++) v->rounded[i] = dd_double(v->q[i]);
-  memset(v->sum, 0, entries * sizeof *v->sum);
   strut_elements_visit(v->model, v->model->members.rest, v->rounded, -HUGE_VAL, false, &sum,
                        add_element);
-  for (size_t i = 0; i < entries; i++) v->k[i] = dd_add(v->k[i], dd_of(v->sum[i]));
 }
 
 static void add_contact(strut_vibration *v, int32_t i) {
@@ -162,10 +169,9 @@ static bool allocate(strut_vibration *v) {
   v->m = strut_arena_allocate(&v->arena, entries, sizeof *v->m);
   v->d = strut_arena_allocate(&v->arena, entries, sizeof *v->d);
   v->rounded = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->rounded);
-  v->sum = strut_arena_allocate(&v->arena, entries, sizeof *v->sum);
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  return v->rounded && v->sum && v->q && v->member && v->closed && v->k && v->m && v->d &&
+  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d &&
          v->mass && v->work;
 }
 
@@ -279,4 +285,16 @@ strut_end_displacement strut_vibration_spread(const strut_vibration *v, int32_t 
   }
   double ux = v->member[j].ux.hi, uy = v->member[j].uy.hi;
   return (strut_end_displacement){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
+}
+
+double strut_vibration_strain(const strut_vibration *v, int32_t element,
+                              const strut_element_pose *pose, const double *x) {
+  const strut_element *e = &v->model->elements.element[element];
+  const uint32_t *at = v->model->elements.at + e->first;
+  double sum = 0.0;
+  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+    int32_t row = v->shape->row_of[at[k / 2] + (uint32_t)(k % 2)];
+    if (row >= 0) sum += pose->b[k] * x[row];
+  }
+  return sum;
 }
