@@ -185,8 +185,7 @@ typedef struct energies {
 /* Energy of an element's slope: of its law, not of the bend of its strain. */
 static double element_energy(const strut_vibration *v, int32_t i, const double *x) {
   strut_element_pose pose;
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
-  double along = pose.acts ? strut_vibration_strain(v, i, &pose, x) : 0.0;
+  double along = strut_vibration_pose(v, i, &pose) ? strut_vibration_strain(v, i, &pose, x) : 0.0;
   return pose.slope * along * along;
 }
 

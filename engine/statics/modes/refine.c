@@ -74,13 +74,14 @@ static void sample_elements(const strut_modes_work *work, bool at_rest, uint64_t
   strut_element_pose pose;
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *e = &t->element[i];
-    strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
+    bool acts = strut_vibration_pose(v, i, &pose);
     double bits = DBL_EPSILON * (fabs(pose.strain) + fabs(pose.natural));
-    for (int32_t k = 0; k < e->nodes; k++) {
+    if (e->strain == STRUT_STRAIN_ANGLE) bits += 4.0 * DBL_EPSILON; /* of directions */
+    for (int32_t k = 0; k < e->nodes && !at_rest; k++) {
       const double *at = v->rounded + t->at[e->first + k];
       bits += hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(at, at);
     }
-    noise[i] = pose.acts ? -pose.slope * bits * stirred(first + (uint64_t)i) : 0.0;
+    noise[i] = acts ? -pose.slope * bits * stirred(first + (uint64_t)i) : 0.0;
     for (int32_t k = 0; k < 2 * e->nodes && at_rest; k++) {
       int32_t row = v->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
       if (row >= 0) x[row] = dd_sub(x[row], dd_of(noise[i] * pose.b[k]));
@@ -93,8 +94,7 @@ static void settle_elements(const strut_modes_work *work, const double *moved, d
   const strut_vibration *v = work->v;
   strut_element_pose pose;
   for (int32_t i = 0; i < v->model->elements.count; i++) {
-    strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
-    if (pose.acts) noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
+    if (strut_vibration_pose(v, i, &pose)) noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
   }
 }
 
@@ -141,23 +141,25 @@ static double element_noise(const strut_vibration *v, int32_t i, double noise, c
   const strut_element *e = &v->model->elements.element[i];
   const uint32_t *at = v->model->elements.at + e->first;
   double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, sum = 0.0, size = 0.0, far = 0.0;
+  double blur = 2.0 * DBL_EPSILON; /* relative, of second derivatives */
   int32_t n = 2 * e->nodes;
   strut_element_pose pose;
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
-  if (!pose.acts) return 0.0;
+  if (!strut_vibration_pose(v, i, &pose)) return 0.0;
   strut_element_bend(v->model, i, v->rounded, 1.0, bend);
-  for (int32_t r = 0; r < n; r++) {
-    int32_t row = v->shape->row_of[at[r / 2] + (uint32_t)(r % 2)];
-    if (row < 0) continue;
-    far += fabs(pose.b[r] * x[row]);
-    for (int32_t c = 0; c < n; c++) {
-      int32_t column = v->shape->row_of[at[c / 2] + (uint32_t)(c % 2)];
-      double part = column >= 0 ? x[row] * bend[r * n + c] * x[column] : 0.0;
+  for (int32_t k = 0; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++) {
+    const double *place = v->rounded + at[k];
+    blur += 2.0 * hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(place, place);
+  }
+  for (int32_t r = 0; r < n - 2; r++) { /* of the last node nothing: it moves by 0 against itself */
+    double own = strut_vibration_relative(v, i, r, x);
+    far += fabs(pose.b[r] * own);
+    for (int32_t c = 0; c < n - 2; c++) {
+      double part = own * bend[r * n + c] * strut_vibration_relative(v, i, c, x);
       sum += part, size += fabs(part);
     }
   }
   double along = fabs(strut_vibration_strain(v, i, &pose, x)), bits = 2.0 * DBL_EPSILON * far;
-  return fabs(noise * sum) + 2.0 * DBL_EPSILON * fabs(pose.force) * size +
+  return fabs(noise * sum) + blur * fabs(pose.force) * size +
          fabs(pose.slope) * bits * (2.0 * along + bits);
 }
 

@@ -69,6 +69,15 @@ typedef struct strut_end_displacement {
 strut_end_displacement strut_vibration_spread(const strut_vibration *vibration, int32_t j,
                                               const double *x);
 
+/**
+ * An element in the shape: strain, force and gradient with the digits of positions that a double does
+ * not have, to first order. False where it does not act.
+ */
+bool strut_vibration_pose(const strut_vibration *vibration, int32_t element,
+                          strut_element_pose *pose);
+/** How the motion x (n) of its coordinate k (2 nodes) differs from that of an element's last node. */
+double strut_vibration_relative(const strut_vibration *vibration, int32_t element, int32_t k,
+                                const double *x);
 /** How the strain of an element changes in the motion x (n). */
 double strut_vibration_strain(const strut_vibration *vibration, int32_t element,
                               const strut_element_pose *pose, const double *x);
