@@ -59,7 +59,8 @@ static void add_element_rounding(const strut_relaxation *r, double *force) {
     strut_element_evaluate(r->model, i, r->state->rest, q, r->state->element_turn[i], &pose);
     double bits = fabs(pose.strain) * DBL_EPSILON;
     for (int32_t k = 0; k < e->nodes; k++)
-      bits += hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(q + at[k], q + at[k]);
+      bits +=
+          hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(q + at[k], q + at[k]);
     for (int32_t k = 0; k < e->nodes; k++)
       force[at[k]] += fabs(pose.slope) * bits * hypot(pose.b[2 * k], pose.b[2 * k + 1]);
   }

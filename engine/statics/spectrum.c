@@ -151,7 +151,8 @@ static double uncertain_force(const strut_model *model, int32_t i, const strut_e
   double bits = fabs(pose->strain) * DBL_EPSILON;
   for (int32_t k = 0; k < e->nodes; k++) {
     const double *at = q + model->elements.at[e->first + k];
-    bits = fmax(bits, hypot(pose->b[2 * k], pose->b[2 * k + 1]) * strut_coordinate_rounding(at, at));
+    bits =
+        fmax(bits, hypot(pose->b[2 * k], pose->b[2 * k + 1]) * strut_coordinate_rounding(at, at));
   }
   return fabs(pose->slope) * bits;
 }

@@ -191,6 +191,24 @@ out_has "7 members and hinges - 8 free coordinates"
 expect 0 export triangle.yaml --matrices matrices
 tail -n 1 matrices/columns.csv | grep -q '^7,hd,hinge,d,c$' || fail "columns of hinges in the matrices"
 
+# A weight on a ring: the cable's tension lends T / sqrt(2) to the motion along the ellipse.
+cat >hanging.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  r: [0, -1]
+members:
+  m: {kind: cable, nodes: [a, r, b], stiffness: 1e4, rest_length: 2.82771952}
+loads:
+  w: {node: r, force: [0, -10]}
+END
+expect 0 rigidity hanging.yaml --at start --json
+holds '.rank == 1 and .mechanisms.count == 1 and .mechanisms.infinitesimal == 1'
+near "$(value '.mechanisms.modes[0].stiffness')" 5 1e-6 "stiffness by the tension of a running cable"
+expect 0 rigidity hanging.yaml --at start
+out_has "stiffened by the member forces: 5 N/m"
+
 # ---- modes: a pendulum with a hinge, (kappa + m g l) / (m l^2); what is named ----
 cat >pendulum.yaml <<'END'
 strut: 1

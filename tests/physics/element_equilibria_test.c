@@ -13,7 +13,14 @@
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
-enum { ANCHORS = 3, FREE = 3, NODES = ANCHORS + FREE, UNKNOWNS = 2 * FREE, BRUTE = 1500, MOST = 400 };
+enum {
+  ANCHORS = 3,
+  FREE = 3,
+  NODES = ANCHORS + FREE,
+  UNKNOWNS = 2 * FREE,
+  BRUTE = 1500,
+  MOST = 400
+};
 
 static const double STOP = 60.0, NEAR = 1e-4;
 
@@ -184,7 +191,8 @@ static bool is_lowest(brute *b, const double *x, uint64_t *r) {
   memcpy(q + 2 * ANCHORS, x, UNKNOWNS * sizeof *x);
   double here = energy_at(b->s, q);
   for (int k = 0; k < 200; k++) {
-    for (size_t i = 0; i < UNKNOWNS; i++) q[2 * ANCHORS + i] = x[i] + random_between(r, -1e-3, 1e-3);
+    for (size_t i = 0; i < UNKNOWNS; i++)
+      q[2 * ANCHORS + i] = x[i] + random_between(r, -1e-3, 1e-3);
     if (energy_at(b->s, q) < here - 1e-12) return false;
   }
   return true;

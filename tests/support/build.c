@@ -85,7 +85,8 @@ int32_t build_sine(strut_scene *scene, double amplitude, double frequency) {
 int32_t build_actuator(strut_scene *scene, int32_t member, int32_t signal) {
   size_t i = scene->actuator_count;
   scene->actuators = grown(scene, scene->actuators, i, sizeof *scene->actuators);
-  scene->actuators[i] = (strut_actuator){name(scene, "a", i), member, signal};
+  scene->actuators[i] = (strut_actuator){
+      .name = name(scene, "a", i), .member = member, .hinge = -1, .signal = signal};
   scene->actuator_count++;
   return (int32_t)i;
 }

@@ -117,8 +117,7 @@ static void put_head(strut_json *json, const strut_rigidity *r, const strut_mode
   strut_json_text(json, root, "at", at);
   strut_json_integer(json, root, "nodes", (int64_t)scene->node_count);
   strut_json_integer(json, root, "members", (int64_t)scene->member_count);
-  if (scene->hinge_count)
-    strut_json_integer(json, root, "hinges", (int64_t)scene->hinge_count);
+  if (scene->hinge_count) strut_json_integer(json, root, "hinges", (int64_t)scene->hinge_count);
   strut_json_integer(json, root, "free_coordinates", r->matrix.rows);
   strut_json_integer(json, root, "supports", 2 * model->node_count - r->matrix.rows);
   strut_json_text(json, root, "method", r->spaces.dense ? "svd" : "qr");
@@ -317,7 +316,8 @@ static void add_counts(strut_buffer *table, const strut_rigidity *r) {
                      strut_motion_kind_name((strut_motion_kind)i));
     before = ", ";
   }
-  strut_buffer_add(table, "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
+  strut_buffer_add(table,
+                   "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
                    r->matrix.columns, r->matrix.columns > r->matrix.members ? " and hinges" : "",
                    r->matrix.rows, r->matrix.columns - r->matrix.rows);
 }

@@ -48,7 +48,8 @@ static bool copy_arrays(strut_level_frame *level) {
   s->loads = copy_array(&level->arena, s->loads, s->load_count, sizeof *s->loads);
   s->configurations = copy_array(&level->arena, s->configurations, s->configuration_count,
                                  sizeof *s->configurations);
-  if (!s->nodes || !s->members || !s->hinges || !s->contacts || !s->loads || !s->configurations) return false;
+  if (!s->nodes || !s->members || !s->hinges || !s->contacts || !s->loads || !s->configurations)
+    return false;
   for (size_t i = 0; i < s->configuration_count; i++) {
     strut_configuration *c = &s->configurations[i];
     if (c->position)

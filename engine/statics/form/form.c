@@ -473,9 +473,10 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
                       m->guide_count ? "runs over guides" : "has another law");
   }
   if (scene->hinge_count == 0) return STRUT_OK;
-  return strut_fail(error, STRUT_BAD_SCENE,
-                    "form finding by %s knows straight members with a linear law only: %s is a hinge",
-                    strut_form_source_name(from), scene->hinges[0].name);
+  return strut_fail(
+      error, STRUT_BAD_SCENE,
+      "form finding by %s knows straight members with a linear law only: %s is a hinge",
+      strut_form_source_name(from), scene->hinges[0].name);
 }
 
 strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,

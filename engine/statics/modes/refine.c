@@ -94,7 +94,8 @@ static void settle_elements(const strut_modes_work *work, const double *moved, d
   const strut_vibration *v = work->v;
   strut_element_pose pose;
   for (int32_t i = 0; i < v->model->elements.count; i++) {
-    if (strut_vibration_pose(v, i, &pose)) noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
+    if (strut_vibration_pose(v, i, &pose))
+      noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
   }
 }
 
@@ -174,8 +175,7 @@ static void measure_noise(strut_modes_work *work, const double *noise, const dou
       sum += noise[j] * across * across;
     }
     for (int32_t j = 0; j < v->model->elements.count; j++)
-      sum = fabs(sum) +
-            element_noise(v, j, elements[j], set->vector + (size_t)i * (size_t)v->n);
+      sum = fabs(sum) + element_noise(v, j, elements[j], set->vector + (size_t)i * (size_t)v->n);
     set->noise[i] = fmax(set->noise[i], 2.0 * fabs(sum)); /* twice: there are few samples */
   }
 }

@@ -107,7 +107,8 @@ static void add_element(void *context, int32_t i, const strut_element_pose *roun
   strut_dd b[STRUT_MOST_GRADIENT];
   balance_gradient(pose, e->nodes, b);
   const uint32_t *at = v->model->elements.at + e->first;
-  for (int32_t r = 0; r < n; r++) /* a sum of squares to all digits, so that soft motions stay soft */
+  for (int32_t r = 0; r < n;
+       r++) /* a sum of squares to all digits, so that soft motions stay soft */
     for (int32_t c = 0; c <= r; c++, own++) {
       if (*own < 0) continue;
       bool both = r != c && at[r / 2] == at[c / 2] && r % 2 == c % 2; /* a node met twice */
@@ -224,8 +225,7 @@ static bool allocate(strut_vibration *v) {
   v->rounded = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->rounded);
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d &&
-         v->mass && v->work;
+  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass && v->work;
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,

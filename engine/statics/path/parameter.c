@@ -233,10 +233,10 @@ static bool are_laws_different(const strut_element_table *a, const strut_element
         m->second != n->second || m->count != n->count)
       return true;
     if (m->count && !is_equal(m->coefficient, n->coefficient, m->count)) return true;
-    if (m->curve && (m->curve->count != n->curve->count ||
-                     !is_equal(m->curve->x, n->curve->x, m->curve->count) ||
-                     !is_equal(&m->curve->piece[0][0], &n->curve->piece[0][0],
-                               4 * (m->curve->count - 1))))
+    if (m->curve &&
+        (m->curve->count != n->curve->count ||
+         !is_equal(m->curve->x, n->curve->x, m->curve->count) ||
+         !is_equal(&m->curve->piece[0][0], &n->curve->piece[0][0], 4 * (m->curve->count - 1))))
       return true;
   }
   return false;

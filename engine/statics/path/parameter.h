@@ -17,7 +17,7 @@ typedef struct strut_path_terms {
   double *ground;                  /* (contacts) stiffness [N/m] */
   double normal[2], height;        /* of the ground */
   const strut_model *laws;         /* whose elements have laws and natural strains of these terms */
-  struct strut_path_scene *scene;  /* that `laws` is of if it is not the path's own model, or NULL */
+  struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
 } strut_path_terms;
 
 /** strut_path_parameter_create fills it; of the one in use the address must not change. */

@@ -17,9 +17,17 @@ static const double NEARLY = 1e6;
 static const double ALIKE = 1e-12; /* forces of several loads that count as one number */
 
 const char *strut_path_event_name(strut_path_event_kind kind) {
-  static const char *const names[] = {
-      "limit point",           "bifurcation",          "slack", "taut", "touchdown", "lift-off",
-      "limit point at a kink", "bifurcation at a kink", "engages", "releases", "kink of a law"};
+  static const char *const names[] = {"limit point",
+                                      "bifurcation",
+                                      "slack",
+                                      "taut",
+                                      "touchdown",
+                                      "lift-off",
+                                      "limit point at a kink",
+                                      "bifurcation at a kink",
+                                      "engages",
+                                      "releases",
+                                      "kink of a law"};
   return names[kind];
 }
 

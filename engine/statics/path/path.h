@@ -19,19 +19,19 @@
 enum { STRUT_PATH_COORDINATES = 600 };
 
 typedef enum strut_path_event_kind {
-  STRUT_PATH_LIMIT,       /* the parameter turns back */
-  STRUT_PATH_BIFURCATION, /* an eigenvalue of the stiffness changes its sign, the parameter
+  STRUT_PATH_LIMIT,            /* the parameter turns back */
+  STRUT_PATH_BIFURCATION,      /* an eigenvalue of the stiffness changes its sign, the parameter
                                   goes on */
-  STRUT_PATH_SLACK,       /* a cable ceases to pull */
-  STRUT_PATH_TAUT,        /* a cable begins to pull */
-  STRUT_PATH_TOUCHDOWN,   /* a node meets the ground */
-  STRUT_PATH_LIFT_OFF,    /* a node leaves it */
-  STRUT_PATH_KINK_LIMIT,  /* the parameter turns back at a kink: no eigenvalue passes zero */
+  STRUT_PATH_SLACK,            /* a cable ceases to pull */
+  STRUT_PATH_TAUT,             /* a cable begins to pull */
+  STRUT_PATH_TOUCHDOWN,        /* a node meets the ground */
+  STRUT_PATH_LIFT_OFF,         /* a node leaves it */
+  STRUT_PATH_KINK_LIMIT,       /* the parameter turns back at a kink: no eigenvalue passes zero */
   STRUT_PATH_KINK_BIFURCATION, /* the parameter continues, but the number of negative eigenvalues
                                   jumps */
-  STRUT_PATH_ENGAGE, /* a stop is reached, or another element of one sign begins to act */
-  STRUT_PATH_RELEASE, /* it ceases to act */
-  STRUT_PATH_LAW      /* a law passes a kink */
+  STRUT_PATH_ENGAGE,           /* a stop is reached, or another element of one sign begins to act */
+  STRUT_PATH_RELEASE,          /* it ceases to act */
+  STRUT_PATH_LAW               /* a law passes a kink */
 } strut_path_event_kind;
 
 /**

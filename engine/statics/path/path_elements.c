@@ -6,7 +6,8 @@
 
 #include "engine/statics/path/system.h"
 
-static const double APART = 1e-5; /* relative: natural strains whose difference gives a derivative */
+static const double APART =
+    1e-5; /* relative: natural strains whose difference gives a derivative */
 
 /* A kink that matters: it lies where the element can act. */
 static bool is_kink_felt(const strut_element *e, double kink) {
@@ -16,7 +17,8 @@ static bool is_kink_felt(const strut_element *e, double kink) {
 static int32_t count_switches(const strut_element_table *t) {
   int32_t count = 0;
   for (int32_t i = 0; i < t->count; i++)
-    count += (t->element[i].carries != 0) + strut_law_kinks(t->element[i].law, &t->element[i].numbers);
+    count +=
+        (t->element[i].carries != 0) + strut_law_kinks(t->element[i].law, &t->element[i].numbers);
   return count;
 }
 

@@ -30,8 +30,8 @@ typedef struct strut_path_element_switch {
 
 typedef struct strut_path_elements {
   int32_t switch_count;
-  strut_path_element *element;          /* (elements) */
-  strut_path_element_switch *switches;  /* (switch_count) kinks of one element ascending */
+  strut_path_element *element;         /* (elements) */
+  strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
 } strut_path_elements;
 
 /** False: out of memory. */

@@ -77,7 +77,9 @@ static void project_element(strut_path_system *s, int32_t i, size_t first, gsl_m
       for (int32_t a = 0; a < n; a++)
         for (int32_t b = 0; b < n; b++) sum += motion[k][a] * bend[a * n + b] * motion[l][b];
       *gsl_matrix_ptr(ritz, k, l) += sum;
-      if (k == l) s->soft_parts = fmax(s->soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
+      if (k == l)
+        s->soft_parts =
+            fmax(s->soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
     }
 }
 

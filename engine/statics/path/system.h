@@ -50,8 +50,8 @@ typedef struct strut_path_system {
   gsl_permutation *order;
   gsl_eigen_symm_workspace *values_only;
   gsl_eigen_symmv_workspace *eigen;
-  int32_t negative; /* eigenvalues below zero, after strut_path_spectrum */
-  double noise;     /* rounding of the stiffness's entries [N/m], likewise */
+  int32_t negative;  /* eigenvalues below zero, after strut_path_spectrum */
+  double noise;      /* rounding of the stiffness's entries [N/m], likewise */
   double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
   strut_arena arena;
 } strut_path_system;

@@ -16,20 +16,20 @@
 #include "engine/model/sparse.h"
 
 typedef struct strut_equilibrium_matrix {
-  int32_t rows;           /* free coordinates */
-  int32_t columns;        /* members, then hinges */
+  int32_t rows;    /* free coordinates */
+  int32_t columns; /* members, then hinges */
   int32_t members;
-  double size; /* of the model, by which hinges' moments are divided [m] */
-  int32_t *coordinate;    /* (rows) index into coordinate arrays */
-  int32_t *row_of;        /* (length) row of a coordinate, -1 where fixed */
-  double *length;         /* (columns) of the members in the shape; of hinges angle times size [m] */
+  double size;         /* of the model, by which hinges' moments are divided [m] */
+  int32_t *coordinate; /* (rows) index into coordinate arrays */
+  int32_t *row_of;     /* (length) row of a coordinate, -1 where fixed */
+  double *length;      /* (columns) of the members in the shape; of hinges angle times size [m] */
   double (*direction)[2]; /* (columns) unit vector from first node to second; 0, 0 without length */
-  int32_t *curved;        /* (columns) element of a running cable or a hinge; -1: a straight member */
-  double *curvature;      /* (columns) largest second derivative of such an element [1/m] */
-  double **bend;          /* (columns) its second derivatives / curvature (2 nodes, 2 nodes), or NULL */
-  int32_t *start;         /* (columns + 1) A by columns */
-  int32_t *row;           /* (start[columns]) ascending within a column */
-  double *value;          /* (start[columns]) */
+  int32_t *curved;   /* (columns) element of a running cable or a hinge; -1: a straight member */
+  double *curvature; /* (columns) largest second derivative of such an element [1/m] */
+  double **bend;     /* (columns) its second derivatives / curvature (2 nodes, 2 nodes), or NULL */
+  int32_t *start;    /* (columns + 1) A by columns */
+  int32_t *row;      /* (start[columns]) ascending within a column */
+  double *value;     /* (start[columns]) */
 } strut_equilibrium_matrix;
 
 /** Columns of the equilibrium matrix of a model. */

@@ -173,9 +173,9 @@ typedef struct search {
   const strut_self_stress *states;
   const strut_stress_wish *wish;
   size_t states_count, members, motions; /* members: and hinges */
-  double *weight; /* (states) the combination */
-  double *pull;   /* (states) a demand's coefficients: it wants weight . pull > 0 */
-  double *cable;  /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
+  double *weight;                        /* (states) the combination */
+  double *pull;  /* (states) a demand's coefficients: it wants weight . pull > 0 */
+  double *cable; /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
   double *form, *value, *vector; /* (motions, motions), (motions), (motions, motions) */
 } search;
 
