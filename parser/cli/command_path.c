@@ -188,7 +188,7 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
   wanted->index = find_actuator(scene, name);
   if (wanted->index >= 0) {
-    if (scene->actuators[wanted->index].hinge >= 0) *dimension = STRUT_DIM_ANGLE;
+    if (scene->actuators[wanted->index].member < 0) *dimension = STRUT_DIM_ANGLE;
     return STRUT_OK;
   }
   wanted->over = STRUT_PATH_OVER_COORDINATE;

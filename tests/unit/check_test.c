@@ -58,7 +58,7 @@ static void fill_drives(sample *s) {
   s->signals[2].terms = s->terms, s->signals[2].term_count = 2;
   s->signals[3] = strut_signal_default(STRUT_RAMP);
   s->signals[3].amplitude = 1, s->signals[3].stop = 2;
-  s->actuators[0] = (strut_actuator){"drive", 1, 2};
+  s->actuators[0] = (strut_actuator){"drive", 1, -1, 2};
   s->loads[0] = (strut_load){"push", 2, {1, 0}, -1};
   s->loads[1] = (strut_load){"swell", 1, {1, 0}, 3};
 }

@@ -281,7 +281,7 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
 }
 
 static bool is_hinge_driven(const strut_model *model, const strut_path_options *o) {
-  return o->over == STRUT_PATH_OVER_ACTUATOR && model->scene->actuators[o->index].hinge >= 0;
+  return o->over == STRUT_PATH_OVER_ACTUATOR && model->scene->actuators[o->index].member < 0;
 }
 
 /* Names the path's parameter for messages. */
