@@ -2,6 +2,7 @@
 #include "engine/run/plan.h"
 
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/mass.h"
 
 static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},

@@ -50,7 +50,7 @@ void strut_window_point(const strut_window *w, const double position[2], double 
   point[1] = w->box.y + (w->top - position[1]) * w->scale;
 }
 
-/* Where the ends of a member are on the page [pt]. */
+/* Maps the ends of a member to the page [pt]. */
 static void find_member_ends(const strut_window *w, const strut_model *model, const double *q,
                              size_t member, double ends[2][2]) {
   const strut_member *m = &model->scene->members[member];
@@ -110,7 +110,7 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
   }
 }
 
-/* Where the ground's line enters and leaves the window's neighbourhood [pt]. */
+/* The ends of the ground's line in the window's neighbourhood [pt]. */
 static void find_ground_line(const strut_window *w, const strut_model *model, double ends[2][2]) {
   const strut_ground *ground = &model->scene->ground;
   for (int k = 0; k < 2; k++) {
@@ -209,7 +209,7 @@ static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 static const double HATCHED = 2.0, FREE = 1.0,
                     FAR = 6.0; /* cost, enough freedom, second try [pt] */
 
-/* What names must not cover. */
+/* The obstacles that names must not cover. */
 typedef struct obstacles {
   size_t member_count, label_count;
   double (*ends)[2]; /* (2 member_count) [pt] */
@@ -226,7 +226,7 @@ double strut_distance_to_segment(const double p[2], const double a[2], const dou
   return hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1]);
 }
 
-/* Whether a point is on the hatching below the ground's line. */
+/* True if a point is on the hatching below the ground's line. */
 static bool is_on_hatching(const obstacles *o, const double p[2]) {
   const double *a = o->surface[0], *b = o->surface[1];
   double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);
