@@ -130,6 +130,7 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_SCENE:
     case STRUT_ON_NODE:
     case STRUT_ON_MEMBER:
+    case STRUT_ON_HINGE:
     case STRUT_ON_CONTACT:
     case STRUT_ON_ACTUATOR:
     case STRUT_ON_LOAD:

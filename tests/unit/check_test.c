@@ -43,7 +43,8 @@ static void fill_structure(sample *s) {
     s->contacts[i] = strut_contact_default();
     s->contacts[i].node = i + 1;
     s->contacts[i].stiffness = 100;
-    s->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, 0.2, 0.1, 1e-4, 0};
+    s->contacts[i].friction = (strut_friction){
+        .law = STRUT_FRICTION_KARNOPP, .mu_static = 0.2, .mu_kinetic = 0.1, .stick_velocity = 1e-4};
   }
 }
 
