@@ -90,6 +90,16 @@ static void write_columns(FILE *stream, const source *from) {
     write_text(stream, scene->nodes[member->node[1]].name);
     fputc('\n', stream);
   }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *hinge = &scene->hinges[i];
+    fprintf(stream, "%zu,", scene->member_count + i + 1);
+    write_text(stream, hinge->name);
+    fputs(",hinge,", stream);
+    write_text(stream, scene->nodes[hinge->node[0]].name);
+    fputc(',', stream);
+    write_text(stream, scene->nodes[hinge->node[2]].name);
+    fputc('\n', stream);
+  }
 }
 
 static void write_banner(FILE *stream, const source *from, const char *kind, const char *what) {

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/forces/elements.h"
-#include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -16,19 +15,26 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
-/* Of hinges: their moments over the first arm. */
+/* A hinge pushes on its nodes with its moment over the arms. */
+typedef struct hinge_sum {
+  const strut_model *model;
+  double sum;
+} hinge_sum;
+
+static void add_hinge_force(void *context, int32_t element, const strut_element_pose *pose) {
+  hinge_sum *s = context;
+  if (s->model->elements.element[element].role == STRUT_ELEMENT_HINGE)
+    s->sum += fabs(pose->force) * hypot(pose->b[0], pose->b[1]);
+}
+
 static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++)
     sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    strut_element_pose pose;
-    if (model->elements.element[i].role != STRUT_ELEMENT_HINGE) continue;
-    strut_element_evaluate(model, i, t->rest, q, (double)NAN, &pose);
-    sum += fabs(pose.force) * sqrt(pose.b[0] * pose.b[0] + pose.b[1] * pose.b[1]);
-  }
-  return sum;
+  hinge_sum hinges = {model, 0.0};
+  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &hinges, add_hinge_force);
+  return sum + hinges.sum;
 }
 
 static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {
