@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
@@ -29,6 +30,11 @@ static int32_t find_contact(const strut_model *model, int32_t node) {
   return -1;
 }
 
+static bool is_of_hinge(strut_column_kind kind) {
+  return kind == STRUT_COLUMN_HINGE_ANGLE || kind == STRUT_COLUMN_HINGE_RATE ||
+         kind == STRUT_COLUMN_MOMENT;
+}
+
 static void note_needs(strut_columns *c, strut_column_kind kind) {
   bool rigid = c->model->plan & STRUT_TERM_RIGID;
   switch (kind) {
@@ -44,7 +50,8 @@ static void note_needs(strut_columns *c, strut_column_kind kind) {
     case STRUT_COLUMN_NODE_VY:
     case STRUT_COLUMN_CENTRE_VX:
     case STRUT_COLUMN_CENTRE_VY:
-    case STRUT_COLUMN_RATE: c->speeds = true; break;
+    case STRUT_COLUMN_RATE:
+    case STRUT_COLUMN_HINGE_RATE: c->speeds = true; break;
     default: break;
   }
 }
@@ -52,6 +59,8 @@ static void note_needs(strut_columns *c, strut_column_kind kind) {
 size_t strut_columns_add(strut_columns *c, strut_column column) {
   if (column.kind == STRUT_COLUMN_NORMAL || column.kind == STRUT_COLUMN_FRICTION)
     column.item = find_contact(c->model, column.item);
+  if (is_of_hinge(column.kind))
+    column.item = strut_element_of_hinge(&c->model->elements, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -89,6 +98,14 @@ static double evaluate_member(const strut_columns *c, const strut_state *state,
     case STRUT_COLUMN_RATE: return m.rate;
     default: return m.force;
   }
+}
+
+static double evaluate_hinge(const strut_columns *c, const strut_state *state,
+                             strut_column column) {
+  strut_hinge_values h = strut_hinge_measure(c->model, state, column.item);
+  return column.kind == STRUT_COLUMN_HINGE_ANGLE  ? h.angle
+         : column.kind == STRUT_COLUMN_HINGE_RATE ? h.rate
+                                                  : h.moment;
 }
 
 /* Difference of two node positions. */
@@ -138,6 +155,9 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_STRETCH:
     case STRUT_COLUMN_RATE:
     case STRUT_COLUMN_FORCE: return evaluate_member(c, state, column);
+    case STRUT_COLUMN_HINGE_ANGLE:
+    case STRUT_COLUMN_HINGE_RATE:
+    case STRUT_COLUMN_MOMENT: return evaluate_hinge(c, state, column);
     case STRUT_COLUMN_TILT:
     case STRUT_COLUMN_ANGLE: node_difference(c, state, column, d); return atan2(d[1], d[0]);
     case STRUT_COLUMN_DISTANCE: node_difference(c, state, column, d); return hypot(d[0], d[1]);
@@ -203,6 +223,15 @@ double strut_columns_span(const strut_columns *c, size_t index) {
   return sums ? c->largest[index] : c->most[index] - c->least[index];
 }
 
+/* The stiffest spring of a member, or of its elements. */
+static double member_stiffness(const strut_model *model, int32_t member) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  double stiffest = model->members.stiffness[member];
+  for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL)
+    stiffest = fmax(stiffest, e->numbers.stiffness);
+  return stiffest;
+}
+
 double strut_columns_noise(const strut_columns *c, size_t index) {
   const strut_model *m = c->model;
   int32_t item = c->column[index].item;
@@ -217,13 +246,17 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
     case STRUT_COLUMN_CENTRE_X:
     case STRUT_COLUMN_CENTRE_Y: return length;
     case STRUT_COLUMN_TILT:
+    case STRUT_COLUMN_HINGE_ANGLE:
     case STRUT_COLUMN_ANGLE: return POSITION_ROUNDING;
+    case STRUT_COLUMN_MOMENT:
+      return POSITION_ROUNDING * m->elements.element[item].numbers.stiffness;
+    case STRUT_COLUMN_HINGE_RATE: return SUM_ROUNDING * c->fastest / m->size;
     case STRUT_COLUMN_NODE_VX:
     case STRUT_COLUMN_NODE_VY:
     case STRUT_COLUMN_CENTRE_VX:
     case STRUT_COLUMN_CENTRE_VY:
     case STRUT_COLUMN_RATE: return SUM_ROUNDING * c->fastest;
-    case STRUT_COLUMN_FORCE: return length * m->members.stiffness[item];
+    case STRUT_COLUMN_FORCE: return length * member_stiffness(m, item);
     case STRUT_COLUMN_NORMAL: return item < 0 ? 0.0 : length * m->contacts.entry[item].stiffness;
     default: return 0.0;
   }

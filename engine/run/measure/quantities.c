@@ -65,6 +65,7 @@ static bool find_primitive(strut_column column, strut_column *primitive) {
     case STRUT_COLUMN_CENTRE_VX: primitive->kind = STRUT_COLUMN_CENTRE_X; return true;
     case STRUT_COLUMN_CENTRE_VY: primitive->kind = STRUT_COLUMN_CENTRE_Y; return true;
     case STRUT_COLUMN_RATE: primitive->kind = STRUT_COLUMN_LENGTH; return true;
+    case STRUT_COLUMN_HINGE_RATE: primitive->kind = STRUT_COLUMN_HINGE_ANGLE; return true;
     default: return false;
   }
 }
