@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Makes an SVG of Cairo's a third as large, alike to the eye: places to a hundredth of a point, lines
-# told by their steps, letters' halos by the letters, what goes without saying left out.
+# told by their steps, letters' halos by the letters, letters as paths, what goes without saying left
+# out.
 
 # The shortest text of a number in hundredths.
 function short(hundredths,   text) {
@@ -17,9 +18,11 @@ function hundredths(text,   value) {
   return value < 0 ? -int(0.5 - value) : int(value + 0.5)
 }
 
-# Appends a number to a path: a sign parts it from the one before as well as a space does.
+# Appends a number to a path: a sign parts it from the one before as well as a space does, and so does
+# a point from a number that has one already.
 function append(text) {
-  path = path (path ~ /[0-9.]$/ && text !~ /^-/ ? " " : "") text
+  path = path (last == "" || text ~ /^-/ || (text ~ /^[.]/ && last ~ /[.]/) ? "" : " ") text
+  last = text
 }
 
 # The same path, each step from where the last one ended.
@@ -31,12 +34,22 @@ function relative(d,   n, i, word, command, k, x, y, at, startx, starty) {
     if (word[i] == "") { i++; continue }
     if (word[i] == "Z") {
       path = path "z"
+      last = ""
       x = startx; y = starty
       i++
       continue
     }
     if (word[i] !~ /^[MLC]$/) return d # something unknown: better large than wrong
     command = word[i++]
+    last = ""
+    px = hundredths(word[i]); py = hundredths(word[i + 1])
+    if (command == "L" && (px == x || py == y)) { # level or upright
+      path = path (py == y ? "h" : "v")
+      append(short(py == y ? px - x : py - y))
+      x = px; y = py
+      i += 2
+      continue
+    }
     path = path (command == "M" ? "M" : tolower(command))
     at = command == "C" ? 6 : 2
     for (k = 0; k < at; k += 2) {
@@ -88,6 +101,27 @@ function colours(line,   part, out) {
   if (line ~ /<defs>/) inside = 1
   if (line ~ /<\/defs>/) inside = 0
   line = colours(line)
+  # A letter of one path is that path.
+  if (line ~ /^<symbol overflow="visible" id="[^"]*">$/) {
+    letter = line
+    sub(/.* id="/, "", letter)
+    sub(/".*/, "", letter)
+    held_symbol = line
+    next
+  }
+  if (letter != "" && line ~ /^<path d="[^"]*"\/>$/ && held_path == "") {
+    held_path = line
+    next
+  }
+  if (letter != "" && line == "</symbol>" && held_path != "") {
+    sub(/^<path /, "<path id=\"" letter "\" ", held_path)
+    line = held_path
+    letter = held_path = ""
+  } else if (letter != "") {
+    print held_symbol
+    if (held_path != "") print held_path
+    letter = held_path = ""
+  }
   # The halo of a text is its letters once more, with an edge; the text follows.
   if (halo != "" && line ~ /^<g /) {
     print "<use xlink:href=\"#t" ++texts "\" style=\"" halo "\"/>"
